@@ -1,0 +1,1 @@
+//! The windowless runner: progress, output files, exit codes.

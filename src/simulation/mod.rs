@@ -1,0 +1,1 @@
+//! A run and the Bevy plugin that steps it.

@@ -1,0 +1,65 @@
+//! Where the time goes.
+
+use std::time::Duration;
+
+/// A stage of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Finding the pairs that are near each other.
+    Neighbours,
+    /// Contact laws, pair by pair.
+    Contacts,
+    /// Summing forces on each grain and moving it.
+    Integration,
+    /// Copying the state in and out of the world.
+    Exchange,
+}
+
+/// Time spent since the profile was last taken.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Profile {
+    /// Steps taken.
+    pub steps: u64,
+    /// Neighbour lists built.
+    pub rebuilds: u64,
+    /// Wall time in all.
+    pub total: Duration,
+    /// Wall time of each stage.
+    pub stages: [Duration; 4],
+    /// Grains.
+    pub grains: usize,
+    /// Listed pairs.
+    pub listed: usize,
+}
+
+impl Stage {
+    /// Every stage in the order of a step.
+    pub const ALL: [Self; 4] = [
+        Self::Neighbours,
+        Self::Contacts,
+        Self::Integration,
+        Self::Exchange,
+    ];
+
+    /// What people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Neighbours => "neighbours",
+            Self::Contacts => "contacts",
+            Self::Integration => "integration",
+            Self::Exchange => "exchange",
+        }
+    }
+}
+
+impl Profile {
+    /// Time spent in `stage`.
+    pub fn time(&self, stage: Stage) -> Duration {
+        self.stages[stage as usize]
+    }
+
+    /// Wall time per grain and step [s].
+    pub fn per_grain_step(&self) -> f64 {
+        self.total.as_secs_f64() / (self.steps.max(1) * self.grains.max(1) as u64) as f64
+    }
+}

@@ -1,0 +1,27 @@
+//! A touching pair and what it remembers.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The other side of a contact. Grains sort before walls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Partner {
+    /// Another grain, by index; always larger than the index of the contact's own grain.
+    Grain(u32),
+    /// A wall, by its index in the container.
+    Wall(u32),
+}
+
+/// A touching pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// The grain on which [`Contact::force`] acts; the smaller index of a pair of grains.
+    pub grain: u32,
+    /// The other side.
+    pub partner: Partner,
+    /// Tangential spring ξ, the elastic part of the tangential displacement of the grain's surface over its
+    /// partner's [m].
+    pub spring: DVec3,
+    /// Force on the grain at the last force evaluation [N].
+    pub force: DVec3,
+}

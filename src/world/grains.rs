@@ -1,0 +1,90 @@
+//! The grains' columns.
+
+use super::MaterialId;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// Index of a [`Species`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct SpeciesId(pub u16);
+
+/// A kind of grain.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Species {
+    /// What people call it.
+    pub name: String,
+    /// What it is made of.
+    pub material: MaterialId,
+}
+
+/// One entry per grain in every column.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Grains {
+    /// Centre [m].
+    pub position: Vec<DVec3>,
+    /// Velocity of the centre [m/s].
+    pub velocity: Vec<DVec3>,
+    /// Angular velocity [rad/s].
+    pub spin: Vec<DVec3>,
+    /// Radius [m].
+    pub radius: Vec<f64>,
+    /// Mass [kg].
+    pub mass: Vec<f64>,
+    /// Moment of inertia about the centre, `2/5 m r²` [kg m²].
+    pub inertia: Vec<f64>,
+    /// Kind of grain.
+    pub species: Vec<SpeciesId>,
+    /// Sum of the contact forces, without weight, at the last force evaluation [N].
+    pub force: Vec<DVec3>,
+    /// Torque of the contact forces, without rolling friction, at the last evaluation [N m].
+    pub torque: Vec<DVec3>,
+    /// Torque of rolling friction at the last evaluation [N m].
+    pub rolling_torque: Vec<DVec3>,
+    /// Touching partners, walls too, at the last evaluation.
+    pub contact_count: Vec<u32>,
+    /// Energy exchanged at the contacts of which the grain is the first partner, since the start [J]: lost in dashpots,
+    /// lost in sliding, lost in rolling, done by walls.
+    pub exchanged: Vec<[f64; 4]>,
+}
+
+impl Grains {
+    /// Number of grains.
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Adds a sphere at rest in equilibrium (no force) of the given density [kg/m³].
+    pub fn push_sphere(&mut self, position: DVec3, radius: f64, density: f64, species: SpeciesId) {
+        let mass = sphere_volume(radius) * density;
+        self.position.push(position);
+        self.velocity.push(DVec3::ZERO);
+        self.spin.push(DVec3::ZERO);
+        self.radius.push(radius);
+        self.mass.push(mass);
+        self.inertia.push(0.4 * mass * radius * radius);
+        self.species.push(species);
+        self.force.push(DVec3::ZERO);
+        self.torque.push(DVec3::ZERO);
+        self.rolling_torque.push(DVec3::ZERO);
+        self.contact_count.push(0);
+        self.exchanged.push([0.0; 4]);
+    }
+
+    /// Makes grain `i` one of `species`, with the mass its radius and the `density` [kg/m³] give.
+    pub fn relabel(&mut self, i: usize, species: SpeciesId, density: f64) {
+        let radius = self.radius[i];
+        self.species[i] = species;
+        self.mass[i] = sphere_volume(radius) * density;
+        self.inertia[i] = 0.4 * self.mass[i] * radius * radius;
+    }
+}
+
+/// Volume of a sphere [m³].
+fn sphere_volume(radius: f64) -> f64 {
+    4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius
+}

@@ -1,0 +1,95 @@
+//! Materials and how two of them meet.
+
+use serde::{Deserialize, Serialize};
+
+/// Index of a [`Material`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct MaterialId(pub u16);
+
+/// What a body is made of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// What the scene calls it.
+    pub name: String,
+    /// Young's modulus E [Pa].
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+    /// Density ρ [kg/m³].
+    pub density: f64,
+}
+
+impl Material {
+    /// Shear modulus `G = E / (2 (1 + ν))` [Pa].
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+}
+
+/// How two materials meet.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PairProperties {
+    /// Coefficient of restitution e, in (0, 1].
+    pub restitution: f64,
+    /// Coefficient of sliding friction μ.
+    pub friction: f64,
+    /// Coefficient of rolling friction μ_R.
+    pub rolling_friction: f64,
+}
+
+/// All materials of a world and the properties of each pair.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Materials {
+    list: Vec<Material>,
+    /// Lower triangle with diagonal, row by row: the pair (a, b) with a ≥ b stands at `a (a + 1) / 2 + b`.
+    pairs: Vec<PairProperties>,
+}
+
+impl Materials {
+    /// Materials whose pair properties `pair(a, b)` gives, asked once for every a ≥ b.
+    pub fn new(
+        list: Vec<Material>,
+        mut pair: impl FnMut(MaterialId, MaterialId) -> PairProperties,
+    ) -> Self {
+        let mut pairs = Vec::new();
+        for a in 0..list.len() {
+            for b in 0..=a {
+                pairs.push(pair(MaterialId(a as u16), MaterialId(b as u16)));
+            }
+        }
+        Self { list, pairs }
+    }
+
+    /// The materials in order of their index.
+    pub fn list(&self) -> &[Material] {
+        &self.list
+    }
+
+    /// One material.
+    pub fn get(&self, id: MaterialId) -> &Material {
+        &self.list[usize::from(id.0)]
+    }
+
+    /// Index of the material called `name`.
+    pub fn find(&self, name: &str) -> Option<MaterialId> {
+        self.list
+            .iter()
+            .position(|material| material.name == name)
+            .map(|index| MaterialId(index as u16))
+    }
+
+    /// How `a` and `b` meet; the order does not matter.
+    pub fn pair(&self, a: MaterialId, b: MaterialId) -> PairProperties {
+        self.pairs[slot(a, b)]
+    }
+
+    /// Changes how `a` and `b` meet; the order does not matter.
+    pub fn pair_mut(&mut self, a: MaterialId, b: MaterialId) -> &mut PairProperties {
+        &mut self.pairs[slot(a, b)]
+    }
+}
+
+fn slot(a: MaterialId, b: MaterialId) -> usize {
+    let (high, low) = (usize::from(a.0.max(b.0)), usize::from(a.0.min(b.0)));
+    high * (high + 1) / 2 + low
+}
