@@ -1,0 +1,95 @@
+//! Everything a person can ask of a run.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Everything a person can ask of a run. One enum, one handler ([`super::Command`]).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Command {
+    /// Go on.
+    Play,
+    /// Hold.
+    Pause,
+    /// Take this many steps, then hold.
+    Step(u64),
+    /// Simulated seconds per wall-clock second to aim for; infinity for as fast as the machine can.
+    Speed(f64),
+    /// Back to time zero with the settled bed and the present values of the live parameters.
+    Reset,
+    /// Give a live parameter a value, in SI units.
+    Set {
+        /// Which one.
+        parameter: Parameter,
+        /// Its new value, in [`super::ParameterInfo::range`].
+        value: f64,
+    },
+}
+
+/// A command and the step before which it was carried out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StampedCommand {
+    /// Steps taken when it was carried out.
+    pub step: u64,
+    /// Simulated time then [s].
+    pub time: f64,
+    /// What was asked.
+    pub command: Command,
+}
+
+/// A number that can change while a run goes on. Materials and species go by the names the scene gives them.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub enum Parameter {
+    /// Sliding friction μ between two materials.
+    Friction(String, String),
+    /// Restitution e between two materials.
+    Restitution(String, String),
+    /// Rolling friction μ_R between two materials.
+    RollingFriction(String, String),
+    /// Angular speed of the drum [rad/s].
+    DrumSpeed,
+    /// Magnitude of gravity, its direction kept [m/s²].
+    Gravity,
+    /// Share of a species by number, where species share one radius.
+    Share(String),
+}
+
+impl fmt::Display for Parameter {
+    /// The key in command lists and for `--set`: `friction.glass.drum`, `drum-speed` …
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Friction(a, b) => write!(f, "friction.{a}.{b}"),
+            Self::Restitution(a, b) => write!(f, "restitution.{a}.{b}"),
+            Self::RollingFriction(a, b) => write!(f, "rolling-friction.{a}.{b}"),
+            Self::DrumSpeed => f.write_str("drum-speed"),
+            Self::Gravity => f.write_str("gravity"),
+            Self::Share(species) => write!(f, "share.{species}"),
+        }
+    }
+}
+
+impl From<Parameter> for String {
+    fn from(parameter: Parameter) -> Self {
+        parameter.to_string()
+    }
+}
+
+impl TryFrom<String> for Parameter {
+    type Error = String;
+
+    fn try_from(key: String) -> Result<Self, String> {
+        let parts: Vec<&str> = key.split('.').collect();
+        match parts[..] {
+            ["friction", a, b] => Ok(Self::Friction(a.into(), b.into())),
+            ["restitution", a, b] => Ok(Self::Restitution(a.into(), b.into())),
+            ["rolling-friction", a, b] => Ok(Self::RollingFriction(a.into(), b.into())),
+            ["drum-speed"] => Ok(Self::DrumSpeed),
+            ["gravity"] => Ok(Self::Gravity),
+            ["share", species] => Ok(Self::Share(species.into())),
+            _ => Err(format!(
+                "no parameter is called `{key}`; expected one of friction.A.B, restitution.A.B, rolling-friction.A.B \
+                 (A, B: materials), drum-speed, gravity, share.S (S: a species)"
+            )),
+        }
+    }
+}
