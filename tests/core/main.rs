@@ -1,0 +1,1 @@
+//! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.

@@ -1,0 +1,1 @@
+//! Claims about the window: panels by their accessible labels, pictures through any Vulkan driver.
