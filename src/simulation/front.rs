@@ -98,7 +98,7 @@ pub enum Status {
     Paused,
     /// It goes on.
     Running,
-    /// The solver met an absurd state; the last good one is shown.
+    /// The solver met an absurd state; the last good one is shown, none where the bed was still settling.
     Faulted(Fault),
     /// There is no run, for the reason given.
     Failed(String),
@@ -267,7 +267,8 @@ impl Simulation {
         let update = driver.tick(passed);
         if update.is_none() && driver.has_died() {
             self.driver = None;
-            self.status = Status::Failed("the solver's thread ended; this is a mistake in Grainfall".into());
+            self.status =
+                Status::Failed("the solver's thread ended; this is a mistake in Grainfall".into());
         }
         if let Some(update) = update {
             self.take(update);
