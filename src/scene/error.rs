@@ -3,6 +3,10 @@
 use super::outline::{Entry, Outline, byte_at, line_of, shorten};
 use std::fmt;
 
+const WHOLE_NUMBER: &str = "a whole number of at least 0";
+/// The characters of an index in a path.
+const INDEX: [char; 12] = ['[', ']', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9'];
+
 /// A scene that cannot be used: where, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.describe())]
@@ -65,7 +69,7 @@ impl SceneError {
     pub(super) fn at_line(mut self, text: &str, at: usize) -> Self {
         let line = line_of(text, at);
         let written = text.lines().nth(line - 1).unwrap_or_default();
-        self.line = Some((line, shorten(written)));
+        self.line = Some((line, shorten(written, 100)));
         self
     }
 
@@ -79,12 +83,22 @@ impl SceneError {
         let outline = Outline::new(text);
         let entry = outline.find(&problem.path);
         let exact = entry.filter(|e| e.path.starts_with(&problem.path));
+        let value = exact.map(|e| outline.value(e));
+        let fault = match (problem.fault, &value, exact) {
+            (Fault::Value(_), Some(written), Some(e)) if e.path == problem.path => {
+                format!("is {written}")
+            }
+            (Fault::Value(si), Some(written), _) if si != *written => {
+                format!("is {written}, in SI units {si}")
+            }
+            (fault, ..) => fault.to_string(),
+        };
         let error = Self {
             file: file.to_owned(),
             line: None,
             key: Some(exact.map_or(problem.path, |e| e.path.clone())),
-            value: exact.map(|e| outline.value(e)),
-            fault: problem.fault,
+            value,
+            fault,
             expected: problem.expected,
             advice: problem.advice,
         };
@@ -96,7 +110,7 @@ impl SceneError {
 
     /// `problem` with a value that no file gave.
     pub(super) fn outside_of_files(origin: &str, problem: Problem) -> Self {
-        let mut error = Self::unreadable(origin, problem.fault, &problem.expected);
+        let mut error = Self::unreadable(origin, problem.fault.to_string(), &problem.expected);
         error.key = Some(problem.path);
         error.advise(problem.advice)
     }
@@ -146,12 +160,30 @@ impl SceneError {
 pub(super) struct Problem {
     /// Path of the key.
     pub path: String,
-    /// What is wrong, a phrase of which the key is the subject.
-    pub fault: String,
+    /// What is wrong.
+    pub fault: Fault,
     /// What was expected.
     pub expected: String,
     /// What to do where that is not obvious.
     pub advice: Option<String>,
+}
+
+/// What is wrong with a key.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// It has this value, here in SI units.
+    Value(String),
+    /// Something else, a phrase of which the key is the subject.
+    Other(String),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Value(value) => write!(f, "is {value}"),
+            Self::Other(phrase) => f.write_str(phrase),
+        }
+    }
 }
 
 impl Problem {
@@ -162,7 +194,7 @@ impl Problem {
     ) -> Self {
         Self {
             path: path.into(),
-            fault: fault.into(),
+            fault: Fault::Other(fault.into()),
             expected: expected.into(),
             advice: None,
         }
@@ -174,7 +206,10 @@ impl Problem {
         value: impl fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        Self::new(path, format!("is {value}"), expected)
+        Self {
+            fault: Fault::Value(value.to_string()),
+            ..Self::new(path, "", expected)
+        }
     }
 
     pub fn advise(mut self, advice: impl Into<String>) -> Self {
@@ -192,7 +227,7 @@ impl Problem {
         let known: Vec<&str> = known.into_iter().collect();
         let mut problem = Self::new(
             path,
-            format!("names {what} `{}`, which does not exist", shorten(name)),
+            format!("names {what} `{}`, which does not exist", shorten(name, 40)),
             one_of(&known),
         );
         problem.advice = suggestion(name, &known);
@@ -254,31 +289,30 @@ impl Finding<'_> {
                 expected, found, ..
             } => self.unknown_key(found, expected),
             E::MissingStructField { field, .. } => self.missing_key(field),
-            E::DuplicateStructField { field, .. } => {
-                self.wrong(format!("gives `{field}` twice"), "each key once".to_owned())
+            E::DuplicateStructField { .. } => {
+                self.wrong("is given twice".to_owned(), "each key once")
             }
             E::NoSuchEnumVariant {
                 expected, found, ..
             } => self
-                .wrong(format!("is `{found}`"), one_of(expected))
+                .wrong(format!("is `{found}`"), &one_of(expected))
                 .advise(suggestion(found, expected)),
             E::ExpectedFloat => self.wrong_type("a number"),
             E::ExpectedInteger
             | E::IntegerOutOfBounds
             | E::InvalidIntegerDigit { .. }
-            | E::UnderscoreAtBeginning => self.wrong_type("a whole number of at least 0"),
+            | E::UnderscoreAtBeginning => self.wrong_type(WHOLE_NUMBER),
+            E::ExpectedComma if self.within_number() => self.wrong_number(),
+            E::ExpectedIdentifier if self.at_value() => self.wrong_type("a name"),
             E::ExpectedString => self.wrong_type("text in double quotes"),
             E::ExpectedArray => self.wrong_type("a list `[…]`"),
             E::ExpectedMap => self.wrong_type("a map `{\"name\": (…), …}`"),
             E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
                 self.wrong_type("`(` and what belongs inside")
             }
-            E::InvalidValueForType { expected, found } => {
-                self.wrong(format!("is {found}"), expected.clone())
-            }
-            E::ExpectedDifferentLength { expected, found } => {
-                self.wrong(format!("has {found} elements"), expected.clone())
-            }
+            E::SuggestRawIdentifier(found) => self.wrong_type_of(found, "a name"),
+            E::ExpectedDifferentLength { .. } => self.wrong_length("too few elements"),
+            E::ExpectedStructLikeEnd => self.wrong_length("too many elements"),
             other => self.syntax(other),
         }
     }
@@ -290,41 +324,75 @@ impl Finding<'_> {
             Some(holder) => format!("is not a key of `{holder}`"),
             None => "is not a key of a scene".to_owned(),
         };
-        let path = entry.map_or_else(|| found.to_owned(), |e| e.path.clone());
-        self.error(entry, Some(path), fault, one_of(expected))
-            .advise(suggestion(found, expected))
+        let mut error = self.error(entry, fault, one_of(expected));
+        error.value = None;
+        error.key.get_or_insert_with(|| found.to_owned());
+        error.advise(suggestion(found, expected))
     }
 
     fn missing_key(&self, field: &str) -> SceneError {
-        let holder = self.holder();
-        let fault = match holder {
-            Some(_) => format!("has no `{field}`"),
-            None => format!("the scene has no `{field}`"),
-        };
-        let key = holder.map(|e| e.path.clone());
-        self.error(holder, key, fault, meaning(field).to_owned())
+        if let Some(holder) = self.outline.holding(self.at) {
+            let fault = format!("has no `{field}`");
+            return self.error(Some(holder), fault, meaning(field).to_owned());
+        }
+        let fault = "is missing from the scene".to_owned();
+        let mut error = self.error(None, fault, meaning(field).to_owned());
+        error.key = Some(field.to_owned());
+        error
     }
 
     fn wrong_type(&self, expected: &str) -> SceneError {
-        let entry = self.outline.around(self.at);
-        let key = entry.map_or("", |e| e.path.as_str());
-        let last = key.rsplit('.').next().unwrap_or_default();
-        let meaning = meaning(last.trim_end_matches("_mm"));
-        let expected = if meaning.is_empty() {
-            expected.to_owned()
-        } else {
-            format!("{expected} ({meaning})")
-        };
-        let fault = entry.map_or_else(
-            || "the scene begins wrongly".to_owned(),
-            |e| format!("is {}", self.outline.value(e)),
-        );
-        self.error(entry, entry.map(|e| e.path.clone()), fault, expected)
+        let found = self.outline.around(self.at).map(|e| self.outline.value(e));
+        self.wrong_type_of(found.as_deref().unwrap_or_default(), expected)
     }
 
-    fn wrong(&self, fault: String, expected: String) -> SceneError {
+    fn wrong_type_of(&self, found: &str, expected: &str) -> SceneError {
+        let Some(entry) = self.outline.around(self.at) else {
+            let fault = "the text does not begin as a scene".to_owned();
+            return self.error(None, fault, "`(title: …, …)`".to_owned());
+        };
+        let expected = match meaning(last_key(&entry.path)) {
+            "" => expected.to_owned(),
+            meaning => format!("{expected}: {meaning}"),
+        };
+        self.error(Some(entry), format!("is {found}"), expected)
+    }
+
+    /// A tuple ends too early or too late.
+    fn wrong_length(&self, fault: &str) -> SceneError {
+        let element = self.outline.holding(self.at);
+        let entry = element.and_then(|e| self.outline.find(e.path.trim_end_matches(INDEX)));
+        let expected = entry.map_or("", |e| meaning(last_key(&e.path)));
+        self.error(entry, format!("has {fault}"), expected.to_owned())
+    }
+
+    fn wrong(&self, fault: String, expected: &str) -> SceneError {
         let entry = self.outline.around(self.at);
-        self.error(entry, entry.map(|e| e.path.clone()), fault, expected)
+        self.error(entry, fault, expected.to_owned())
+    }
+
+    /// A number that the reader took for a whole one, until it met more.
+    fn wrong_number(&self) -> SceneError {
+        let entry = self.outline.around(self.at);
+        if entry.is_some_and(|e| self.outline.value(e).parse::<f64>().is_ok()) {
+            self.wrong_type(WHOLE_NUMBER)
+        } else {
+            self.wrong_type("a number alone")
+        }
+    }
+
+    /// Whether the reader stands in a single word that begins with a digit.
+    fn within_number(&self) -> bool {
+        self.outline.around(self.at).is_some_and(|entry| {
+            let value = self.outline.value(entry);
+            value.starts_with(|c: char| c.is_ascii_digit()) && !value.contains(' ')
+        })
+    }
+
+    /// Whether the reader stands where a value begins.
+    fn at_value(&self) -> bool {
+        let entry = self.outline.around(self.at);
+        entry.is_some_and(|e| e.value.start == self.at && e.start < self.at)
     }
 
     fn syntax(&self, code: &ron::Error) -> SceneError {
@@ -334,37 +402,28 @@ impl Finding<'_> {
             None => String::new(),
         };
         let what = code.to_string();
-        let mut error = SceneError::unreadable(
+        SceneError::unreadable(
             self.file,
             format!("this is not RON{near}: {}", lower_first(&what)),
             "",
-        );
-        error.key = None;
-        error
-            .advise(syntax_advice(code).map(str::to_owned))
-            .at_line(self.text, self.at)
+        )
+        .advise(syntax_advice(code).map(str::to_owned))
+        .at_line(self.text, self.at)
     }
 
-    /// The innermost value in brackets that ends where the reader stands.
-    fn holder(&self) -> Option<&Entry> {
-        let before = self.text[..self.at].trim_end();
-        let inside = before.trim_end_matches([')', ',']).len();
-        let entry = self.outline.around(self.at.min(before.len()));
-        entry.or_else(|| self.outline.around(inside))
-    }
-
-    fn error(
-        &self,
-        entry: Option<&Entry>,
-        key: Option<String>,
-        fault: String,
-        expected: String,
-    ) -> SceneError {
+    fn error(&self, entry: Option<&Entry>, fault: String, expected: String) -> SceneError {
         let mut error = SceneError::unreadable(self.file, fault, &expected);
         error.value = entry.map(|e| self.outline.value(e));
-        error.key = key;
+        error.key = entry.map(|e| e.path.clone());
         error.at_line(self.text, entry.map_or(self.at, |e| e.start))
     }
+}
+
+/// The last name of a path without the unit in it.
+fn last_key(path: &str) -> &str {
+    let key = path.trim_end_matches(INDEX).rsplit('.').next();
+    let key = key.unwrap_or_default();
+    key.trim_end_matches("_mm").trim_end_matches("_rpm")
 }
 
 fn lower_first(text: &str) -> String {
@@ -379,7 +438,9 @@ fn syntax_advice(code: &ron::Error) -> Option<&'static str> {
     use ron::Error as E;
     match code {
         E::Eof => Some("The text ends too early: is a closing bracket or quote missing?"),
-        E::ExpectedComma => Some("Is there a comma missing before this, or a bracket too many?"),
+        E::ExpectedComma => Some(
+            "Is a comma or a closing quote missing before this, or is there a bracket too many?",
+        ),
         E::TrailingCharacters => Some("Nothing may follow the scene's closing bracket"),
         E::ExpectedMapColon => Some("A key and its value are parted by a colon"),
         E::ExpectedIdentifier => {
@@ -408,6 +469,8 @@ fn meaning(key: &str) -> &'static str {
         "normal" => "the direction `(x, y, z)` towards the grains",
         "between" => "two materials, `(\"glass\", \"drum\")`",
         "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
+        "law" => "`HertzMindlin` or `Hooke(…)`",
+        "time_step" => "`Automatic` or `Given(…)` with a time in s",
         "duration" | "output_interval" => "a time in s",
         _ => "",
     }

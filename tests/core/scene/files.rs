@@ -61,17 +61,6 @@ fn each_bad_file_is_refused_with_its_message() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// `cargo test -- --ignored show` prints every message, to read them as a person would.
-#[test]
-#[ignore = "prints messages for people to judge"]
-fn show_all_messages() {
-    for file in files_below("tests/core/scene/bad") {
-        if let Err(error) = Scene::load(&file) {
-            println!("{error}\n");
-        }
-    }
-}
-
 #[test]
 fn every_shipped_scene_is_built_in_and_sound() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
