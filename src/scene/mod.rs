@@ -48,6 +48,7 @@ mod lattice;
 mod mixture;
 mod outline;
 mod set;
+mod syntax;
 
 pub use built_in::{BuiltIn, built_in};
 pub use error::SceneError;
@@ -253,26 +254,28 @@ impl Scene {
         Self::parse(&name, &read(path, &name)?)
     }
 
-    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name.
+    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name or path.
     ///
     /// # Errors
     /// As [`Scene::load`], and when there is neither such a file nor such a scene.
-    pub fn open(name: &str) -> Result<Self, SceneError> {
-        let wanted = name.strip_suffix(".ron").unwrap_or(name);
-        let known = || built_in().iter();
-        match known().find(|scene| scene.name == wanted || scene.path == name) {
-            Some(scene) if !Path::new(name).exists() => Self::parse(scene.path, scene.text),
-            None if !Path::new(name).exists() => {
-                let names: Vec<&str> = known().map(|scene| scene.name).collect();
-                Err(SceneError::unreadable(
-                    name,
-                    "there is no such file, nor a built-in scene of that name",
-                    &format!("a file, or {}", error::one_of(&names)),
-                )
-                .advise(error::suggestion(wanted, &names)))
-            }
-            _ => Self::load(name),
+    pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = name.as_ref();
+        if path.exists() {
+            return Self::load(path);
         }
+        let name = path.display().to_string();
+        let wanted = name.strip_suffix(".ron").unwrap_or(&name);
+        let mut known = built_in().iter();
+        if let Some(scene) = known.find(|scene| scene.name == wanted || scene.path == name) {
+            return Self::parse(scene.path, scene.text);
+        }
+        let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
+        Err(SceneError::unreadable(
+            &name,
+            "there is no such file, nor a built-in scene of that name",
+            &format!("a file, or {}", error::one_of(&names)),
+        )
+        .advise(error::suggestion(wanted, &names)))
     }
 
     /// The scene that `text` states; `file` is what errors call it.
@@ -292,7 +295,7 @@ impl Scene {
         let scene = ron::Options::default()
             .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES)
             .from_str::<SceneFile>(text)
-            .map_err(|error| SceneError::from_ron(file, text, &error))?
+            .map_err(|error| syntax::explain(file, text, &error))?
             .into_scene()
             .map_err(refuse)?;
         scene.problem().map_err(refuse)?;

@@ -32,6 +32,10 @@ impl<'a> Outline<'a> {
         }
     }
 
+    pub fn text(&self) -> &'a str {
+        self.text
+    }
+
     /// The last entry called `path`; where there is none, the one that says it in another unit (`radius_mm` for
     /// `radius`), or else the nearest entry that would hold it.
     pub fn find(&self, path: &str) -> Option<&Entry> {
@@ -87,7 +91,7 @@ pub(super) fn shorten(text: &str, longest: usize) -> String {
 /// Line, counted from 1, in which the byte `at` stands.
 pub(super) fn line_of(text: &str, at: usize) -> usize {
     let before = &text.as_bytes()[..at.min(text.len())];
-    1 + before.iter().filter(|&&byte| byte == b'\n').count()
+    before.split(|&byte| byte == b'\n').count()
 }
 
 /// Byte at `line` and `column`, both counted from 1 in characters.
