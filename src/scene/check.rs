@@ -89,7 +89,7 @@ impl Rule {
         if (self.accepts)(value) {
             Ok(())
         } else {
-            Err(Problem::value(path(), value, self.expected))
+            Err(Problem::value(path(), format!("{value:?}"), self.expected))
         }
     }
 }
@@ -409,8 +409,8 @@ fn check_count(count: usize) -> Checked {
         return Ok(());
     }
     Err(Problem::new(
-        "grains.count",
-        format!("would make {count} grains"),
+        "grains",
+        format!("are {count} in number"),
         format!("between 1 and {MOST_GRAINS} grains, which take about 2 kB of memory each"),
     ))
 }

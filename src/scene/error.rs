@@ -1,12 +1,16 @@
 //! What was wrong with a scene, in words a person can act on.
 
-use super::outline::{Entry, Outline, byte_at, line_of, shorten};
+use super::outline::{Entry, Outline, line_of, shorten};
 use std::fmt;
 
 /// A scene that cannot be used: where, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}", self.describe())]
-pub struct SceneError {
+#[error("{0}")]
+pub struct SceneError(Box<Mistake>);
+
+/// What a [`SceneError`] tells.
+#[derive(Clone, Debug, PartialEq)]
+struct Mistake {
     /// The file, or whatever else gave the value.
     file: String,
     /// Line, counted from 1, and its text.
@@ -26,32 +30,32 @@ pub struct SceneError {
 impl SceneError {
     /// The file that is wrong.
     pub fn file(&self) -> &str {
-        &self.file
+        &self.0.file
     }
 
     /// Line of the mistake, counted from 1.
     pub fn line(&self) -> Option<usize> {
-        self.line.as_ref().map(|line| line.0)
+        self.0.line.as_ref().map(|line| line.0)
     }
 
     /// The key that is wrong, with all that lead to it: `grains.species[0].radius`.
     pub fn key(&self) -> Option<&str> {
-        self.key.as_deref()
+        self.0.key.as_deref()
     }
 
     /// The value that is wrong, as written.
     pub fn value(&self) -> Option<&str> {
-        self.value.as_deref()
+        self.0.value.as_deref()
     }
 
     /// What was expected.
     pub fn expected(&self) -> &str {
-        &self.expected
+        &self.0.expected
     }
 
     /// A file that cannot be read at all.
     pub(super) fn unreadable(file: &str, fault: impl Into<String>, expected: &str) -> Self {
-        Self {
+        Self(Box::new(Mistake {
             file: file.to_owned(),
             line: None,
             key: None,
@@ -59,18 +63,18 @@ impl SceneError {
             fault: fault.into(),
             expected: expected.to_owned(),
             advice: None,
-        }
+        }))
     }
 
     pub(super) fn at_line(mut self, text: &str, at: usize) -> Self {
         let line = line_of(text, at);
         let written = text.lines().nth(line - 1).unwrap_or_default();
-        self.line = Some((line, shorten(written)));
+        self.0.line = Some((line, shorten(written, 100)));
         self
     }
 
     pub(super) fn advise(mut self, advice: Option<String>) -> Self {
-        self.advice = advice;
+        self.0.advice = advice;
         self
     }
 
@@ -79,65 +83,67 @@ impl SceneError {
         let outline = Outline::new(text);
         let entry = outline.find(&problem.path);
         let exact = entry.filter(|e| e.path.starts_with(&problem.path));
-        let error = Self {
-            file: file.to_owned(),
-            line: None,
-            key: Some(exact.map_or(problem.path, |e| e.path.clone())),
-            value: exact.map(|e| outline.value(e)),
-            fault: problem.fault,
-            expected: problem.expected,
-            advice: problem.advice,
+        let value = exact.map(|e| outline.value(e));
+        let fault = match (problem.fault, &value, exact) {
+            (Fault::Value(_), Some(written), Some(e)) if e.path == problem.path => {
+                format!("is {written}")
+            }
+            (Fault::Value(si), Some(written), _) if si != *written => {
+                format!("is {written}, in SI units {si}")
+            }
+            (fault, ..) => fault.to_string(),
         };
+        let error = Self::unreadable(file, fault, &problem.expected).advise(problem.advice);
         match entry {
-            Some(entry) => error.at_line(text, entry.start),
-            None => error,
+            Some(entry) if exact.is_some() => error.in_entry(&outline, entry),
+            Some(holder) => error.about(problem.path).at_line(text, holder.start),
+            None => error.about(problem.path),
         }
     }
 
     /// `problem` with a value that no file gave.
     pub(super) fn outside_of_files(origin: &str, problem: Problem) -> Self {
-        let mut error = Self::unreadable(origin, problem.fault, &problem.expected);
-        error.key = Some(problem.path);
-        error.advise(problem.advice)
+        Self::unreadable(origin, problem.fault.to_string(), &problem.expected)
+            .about(problem.path)
+            .advise(problem.advice)
     }
 
-    /// What the RON reader found wrong, in our words.
-    pub(super) fn from_ron(file: &str, text: &str, error: &ron::error::SpannedError) -> Self {
-        let outline = Outline::new(text);
-        let start = byte_at(text, error.span.start.line, error.span.start.col);
-        let end = byte_at(text, error.span.end.line, error.span.end.col);
-        // The reader stands before the white space that leads to the token it refuses.
-        let blank = text[start..].len() - text[start..].trim_start().len();
-        let at = (start + blank).min(end.max(start));
-        let finding = Finding {
-            file,
-            text,
-            outline: &outline,
-            at,
-        };
-        finding.explain(&error.code)
+    /// The mistake is in `entry`: its key, its value, its line.
+    pub(super) fn in_entry(mut self, outline: &Outline, entry: &Entry) -> Self {
+        self.0.key = Some(entry.path.clone());
+        self.0.value = Some(outline.value(entry));
+        self.at_line(outline.text(), entry.start)
     }
 
-    fn describe(&self) -> String {
-        let mut text = self.file.clone();
+    /// The mistake concerns `key`, which has no value.
+    pub(super) fn about(mut self, key: impl Into<String>) -> Self {
+        self.0.key = Some(key.into());
+        self.0.value = None;
+        self
+    }
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
         if let Some((line, _)) = &self.line {
-            text += &format!(", line {line}");
+            write!(f, ", line {line}")?;
         }
-        text += ": ";
+        f.write_str(": ")?;
         if let Some(key) = &self.key {
-            text += &format!("`{key}` ");
+            write!(f, "`{key}` ")?;
         }
-        text += &self.fault;
+        f.write_str(&self.fault)?;
         if !self.expected.is_empty() {
-            text += &format!("; expected {}", self.expected);
+            write!(f, "; expected {}", self.expected)?;
         }
         if let Some(advice) = &self.advice {
-            text += &format!(". {advice}");
+            write!(f, ". {advice}")?;
         }
         if let Some((line, written)) = &self.line {
-            text += &format!("\n  {line} | {written}");
+            write!(f, "\n  {line} | {written}")?;
         }
-        text
+        Ok(())
     }
 }
 
@@ -146,12 +152,30 @@ impl SceneError {
 pub(super) struct Problem {
     /// Path of the key.
     pub path: String,
-    /// What is wrong, a phrase of which the key is the subject.
-    pub fault: String,
+    /// What is wrong.
+    pub fault: Fault,
     /// What was expected.
     pub expected: String,
     /// What to do where that is not obvious.
     pub advice: Option<String>,
+}
+
+/// What is wrong with a key.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// It has this value, here in SI units.
+    Value(String),
+    /// Something else, a phrase of which the key is the subject.
+    Other(String),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Value(value) => write!(f, "is {value}"),
+            Self::Other(phrase) => f.write_str(phrase),
+        }
+    }
 }
 
 impl Problem {
@@ -162,7 +186,7 @@ impl Problem {
     ) -> Self {
         Self {
             path: path.into(),
-            fault: fault.into(),
+            fault: Fault::Other(fault.into()),
             expected: expected.into(),
             advice: None,
         }
@@ -174,7 +198,10 @@ impl Problem {
         value: impl fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        Self::new(path, format!("is {value}"), expected)
+        Self {
+            fault: Fault::Value(value.to_string()),
+            ..Self::new(path, "", expected)
+        }
     }
 
     pub fn advise(mut self, advice: impl Into<String>) -> Self {
@@ -192,7 +219,7 @@ impl Problem {
         let known: Vec<&str> = known.into_iter().collect();
         let mut problem = Self::new(
             path,
-            format!("names {what} `{}`, which does not exist", shorten(name)),
+            format!("names {what} `{}`, which does not exist", shorten(name, 40)),
             one_of(&known),
         );
         problem.advice = suggestion(name, &known);
@@ -236,179 +263,4 @@ fn edit_distance(a: &str, b: &str) -> usize {
         }
     }
     row[b.len()]
-}
-
-/// A mistake that the RON reader found at the byte `at`.
-struct Finding<'a> {
-    file: &'a str,
-    text: &'a str,
-    outline: &'a Outline<'a>,
-    at: usize,
-}
-
-impl Finding<'_> {
-    fn explain(&self, code: &ron::Error) -> SceneError {
-        use ron::Error as E;
-        match code {
-            E::NoSuchStructField {
-                expected, found, ..
-            } => self.unknown_key(found, expected),
-            E::MissingStructField { field, .. } => self.missing_key(field),
-            E::DuplicateStructField { field, .. } => {
-                self.wrong(format!("gives `{field}` twice"), "each key once".to_owned())
-            }
-            E::NoSuchEnumVariant {
-                expected, found, ..
-            } => self
-                .wrong(format!("is `{found}`"), one_of(expected))
-                .advise(suggestion(found, expected)),
-            E::ExpectedFloat => self.wrong_type("a number"),
-            E::ExpectedInteger
-            | E::IntegerOutOfBounds
-            | E::InvalidIntegerDigit { .. }
-            | E::UnderscoreAtBeginning => self.wrong_type("a whole number of at least 0"),
-            E::ExpectedString => self.wrong_type("text in double quotes"),
-            E::ExpectedArray => self.wrong_type("a list `[…]`"),
-            E::ExpectedMap => self.wrong_type("a map `{\"name\": (…), …}`"),
-            E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
-                self.wrong_type("`(` and what belongs inside")
-            }
-            E::InvalidValueForType { expected, found } => {
-                self.wrong(format!("is {found}"), expected.clone())
-            }
-            E::ExpectedDifferentLength { expected, found } => {
-                self.wrong(format!("has {found} elements"), expected.clone())
-            }
-            other => self.syntax(other),
-        }
-    }
-
-    fn unknown_key(&self, found: &str, expected: &[&str]) -> SceneError {
-        let entry = self.outline.around(self.at);
-        let holder = entry.and_then(|e| e.path.rsplit_once('.')).map(|p| p.0);
-        let fault = match holder {
-            Some(holder) => format!("is not a key of `{holder}`"),
-            None => "is not a key of a scene".to_owned(),
-        };
-        let path = entry.map_or_else(|| found.to_owned(), |e| e.path.clone());
-        self.error(entry, Some(path), fault, one_of(expected))
-            .advise(suggestion(found, expected))
-    }
-
-    fn missing_key(&self, field: &str) -> SceneError {
-        let holder = self.holder();
-        let fault = match holder {
-            Some(_) => format!("has no `{field}`"),
-            None => format!("the scene has no `{field}`"),
-        };
-        let key = holder.map(|e| e.path.clone());
-        self.error(holder, key, fault, meaning(field).to_owned())
-    }
-
-    fn wrong_type(&self, expected: &str) -> SceneError {
-        let entry = self.outline.around(self.at);
-        let key = entry.map_or("", |e| e.path.as_str());
-        let last = key.rsplit('.').next().unwrap_or_default();
-        let meaning = meaning(last.trim_end_matches("_mm"));
-        let expected = if meaning.is_empty() {
-            expected.to_owned()
-        } else {
-            format!("{expected} ({meaning})")
-        };
-        let fault = entry.map_or_else(
-            || "the scene begins wrongly".to_owned(),
-            |e| format!("is {}", self.outline.value(e)),
-        );
-        self.error(entry, entry.map(|e| e.path.clone()), fault, expected)
-    }
-
-    fn wrong(&self, fault: String, expected: String) -> SceneError {
-        let entry = self.outline.around(self.at);
-        self.error(entry, entry.map(|e| e.path.clone()), fault, expected)
-    }
-
-    fn syntax(&self, code: &ron::Error) -> SceneError {
-        let entry = self.outline.around(self.at);
-        let near = match entry {
-            Some(entry) => format!(" (in `{}`)", entry.path),
-            None => String::new(),
-        };
-        let what = code.to_string();
-        let mut error = SceneError::unreadable(
-            self.file,
-            format!("this is not RON{near}: {}", lower_first(&what)),
-            "",
-        );
-        error.key = None;
-        error
-            .advise(syntax_advice(code).map(str::to_owned))
-            .at_line(self.text, self.at)
-    }
-
-    /// The innermost value in brackets that ends where the reader stands.
-    fn holder(&self) -> Option<&Entry> {
-        let before = self.text[..self.at].trim_end();
-        let inside = before.trim_end_matches([')', ',']).len();
-        let entry = self.outline.around(self.at.min(before.len()));
-        entry.or_else(|| self.outline.around(inside))
-    }
-
-    fn error(
-        &self,
-        entry: Option<&Entry>,
-        key: Option<String>,
-        fault: String,
-        expected: String,
-    ) -> SceneError {
-        let mut error = SceneError::unreadable(self.file, fault, &expected);
-        error.value = entry.map(|e| self.outline.value(e));
-        error.key = key;
-        error.at_line(self.text, entry.map_or(self.at, |e| e.start))
-    }
-}
-
-fn lower_first(text: &str) -> String {
-    let mut characters = text.chars();
-    characters
-        .next()
-        .map(|first| first.to_lowercase().chain(characters).collect())
-        .unwrap_or_default()
-}
-
-fn syntax_advice(code: &ron::Error) -> Option<&'static str> {
-    use ron::Error as E;
-    match code {
-        E::Eof => Some("The text ends too early: is a closing bracket or quote missing?"),
-        E::ExpectedComma => Some("Is there a comma missing before this, or a bracket too many?"),
-        E::TrailingCharacters => Some("Nothing may follow the scene's closing bracket"),
-        E::ExpectedMapColon => Some("A key and its value are parted by a colon"),
-        E::ExpectedIdentifier => {
-            Some("Keys are plain words; only names of materials stand in quotes")
-        }
-        _ => None,
-    }
-}
-
-/// What a key holds, for those who left it out or gave something else.
-fn meaning(key: &str) -> &'static str {
-    match key {
-        "title" => "one line that names the scene",
-        "materials" => "the materials by name: `{\"glass\": (density: 2500), …}`",
-        "container" => "`Drum(…)`, `Box(…)`, `Planes([…])` or `Nothing`",
-        "grains" => "`Fill(…)` or `List([…])`",
-        "species" => "the kinds of grain, `[(radius: 0.003, material: \"glass\")]`",
-        "material" => "the name of one of the scene's materials",
-        "radius" => "a length in m, or in mm as `radius_mm`",
-        "width" => "a length in m, or in mm as `width_mm`",
-        "speed" => "rad/s, or turns per minute as `speed_rpm`",
-        "position" | "point" | "min" | "max" => "a point `(x, y, z)` in m",
-        "velocity" => "`(x, y, z)` in m/s",
-        "spin" => "`(x, y, z)` in rad/s",
-        "gravity" => "`(x, y, z)` in m/s²",
-        "normal" => "the direction `(x, y, z)` towards the grains",
-        "between" => "two materials, `(\"glass\", \"drum\")`",
-        "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
-        "duration" | "output_interval" => "a time in s",
-        _ => "",
-    }
 }

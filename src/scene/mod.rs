@@ -3,42 +3,7 @@
 //! In: the text of a scene file. Out: a [`Scene`] in SI units, or a [`SceneError`] that names file, line, key, value and
 //! what was expected. Nothing here places a grain: [`crate::world::build`] does.
 //!
-//! # Scene files
-//! ```ron
-//! (
-//!     title: "A drum of glass and steel beads",
-//!     look_for: "How the mixture changes the angle of the surface.",
-//!     source: "Drum and glass of Kasper et al. 2021; the steel is made up.",
-//!     materials: {
-//!         "glass": (youngs_modulus: 63e6, poisson_ratio: 0.21, density: 2500, restitution: 0.95, friction: 0.4),
-//!         "steel": (youngs_modulus: 63e6, poisson_ratio: 0.3, density: 7800, friction: 0.2),
-//!         "drum": (youngs_modulus: 12e6, poisson_ratio: 0.35),
-//!     },
-//!     pairs: [(between: ("glass", "drum"), restitution: 0.72, friction: 0.3)],
-//!     container: Drum(radius_mm: 60.5, width_mm: 22, speed_rpm: 0.5, material: "drum"),
-//!     grains: Fill(
-//!         bulk_fraction: 0.35,
-//!         packing: 0.6,
-//!         species: [
-//!             (name: "glass", radius_mm: 3, material: "glass", share: 0.7),
-//!             (name: "steel", radius_mm: 3, material: "steel", share: 0.3),
-//!         ],
-//!     ),
-//!     duration: 10,
-//!     output_interval: 0.1,
-//! )
-//! ```
-//! **Units**: SI, save under a key that names its unit: `radius_mm`, `width_mm`, `speed_rpm`.
-//! **Defaults**: a material's values are those of the dry glass of Kasper et al. 2021, a drum's those of their drum (0.5
-//! rpm), a filling's 0.35 of the volume at a packing of 0.60; gravity (0, −9.81, 0), law `HertzMindlin`, time step
-//! `Automatic`, duration 50 s, an output each 0.1 s, seed 1. A species is called after its material. All else is required.
-//! **Containers**: `Drum(…)`, `Box(min: …, max: …, material: …)`, `Planes([(point: …, normal: …, material: …), …])`,
-//! `Nothing`. **Grains**: `Fill(…)` by `bulk_fraction` and `packing` or by `count`, from low y upwards, or
-//! `List([(position: …, velocity: …, spin: …, radius: …, material: …), …])`, of which nothing is settled.
-//! **Laws**: `HertzMindlin`, `Hooke(normal_stiffness: …, tangential_stiffness: …)`. **Time step**: `Automatic`,
-//! `Given(1e-5)`.
-//!
-//! `pairs` says how two different materials meet where that is not the harmonic mean of their own values.
+#![doc = include_str!("../../scenes/README.md")]
 
 mod built_in;
 mod check;
@@ -48,6 +13,7 @@ mod lattice;
 mod mixture;
 mod outline;
 mod set;
+mod syntax;
 
 pub use built_in::{BuiltIn, built_in};
 pub use error::SceneError;
@@ -253,26 +219,28 @@ impl Scene {
         Self::parse(&name, &read(path, &name)?)
     }
 
-    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name.
+    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name or path.
     ///
     /// # Errors
     /// As [`Scene::load`], and when there is neither such a file nor such a scene.
-    pub fn open(name: &str) -> Result<Self, SceneError> {
-        let wanted = name.strip_suffix(".ron").unwrap_or(name);
-        let known = || built_in().iter();
-        match known().find(|scene| scene.name == wanted || scene.path == name) {
-            Some(scene) if !Path::new(name).exists() => Self::parse(scene.path, scene.text),
-            None if !Path::new(name).exists() => {
-                let names: Vec<&str> = known().map(|scene| scene.name).collect();
-                Err(SceneError::unreadable(
-                    name,
-                    "there is no such file, nor a built-in scene of that name",
-                    &format!("a file, or {}", error::one_of(&names)),
-                )
-                .advise(error::suggestion(wanted, &names)))
-            }
-            _ => Self::load(name),
+    pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = name.as_ref();
+        if path.exists() {
+            return Self::load(path);
         }
+        let name = path.display().to_string();
+        let wanted = name.strip_suffix(".ron").unwrap_or(&name);
+        let mut known = built_in().iter();
+        if let Some(scene) = known.find(|scene| scene.name == wanted || scene.path == name) {
+            return Self::parse(scene.path, scene.text);
+        }
+        let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
+        Err(SceneError::unreadable(
+            &name,
+            "there is no such file, nor a built-in scene of that name",
+            &format!("a file, or {}", error::one_of(&names)),
+        )
+        .advise(error::suggestion(wanted, &names)))
     }
 
     /// The scene that `text` states; `file` is what errors call it.
@@ -292,7 +260,7 @@ impl Scene {
         let scene = ron::Options::default()
             .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES)
             .from_str::<SceneFile>(text)
-            .map_err(|error| SceneError::from_ron(file, text, &error))?
+            .map_err(|error| syntax::explain(file, text, &error))?
             .into_scene()
             .map_err(refuse)?;
         scene.problem().map_err(refuse)?;

@@ -32,6 +32,10 @@ impl<'a> Outline<'a> {
         }
     }
 
+    pub fn text(&self) -> &'a str {
+        self.text
+    }
+
     /// The last entry called `path`; where there is none, the one that says it in another unit (`radius_mm` for
     /// `radius`), or else the nearest entry that would hold it.
     pub fn find(&self, path: &str) -> Option<&Entry> {
@@ -46,7 +50,14 @@ impl<'a> Outline<'a> {
             .or_else(|| self.find(path.rsplit_once(['.', '['])?.0))
     }
 
-    /// The innermost entry around the byte `at`.
+    /// The innermost entry whose value goes on after the byte `at`.
+    pub fn holding(&self, at: usize) -> Option<&Entry> {
+        self.entries
+            .iter()
+            .rfind(|e| e.start <= at && at < e.value.end)
+    }
+
+    /// The innermost entry around the byte `at`, or that ends there.
     pub fn around(&self, at: usize) -> Option<&Entry> {
         self.entries
             .iter()
@@ -56,21 +67,20 @@ impl<'a> Outline<'a> {
     /// The value of `entry` as written, on one line and not too long.
     pub fn value(&self, entry: &Entry) -> String {
         let written = self.text.get(entry.value.clone()).unwrap_or_default();
-        shorten(written)
+        shorten(written, 60)
     }
 }
 
-/// `text` on one line, cut after 60 characters.
-pub(super) fn shorten(text: &str) -> String {
-    const LONGEST: usize = 60;
+/// `text` on one line, cut after `longest` characters.
+pub(super) fn shorten(text: &str, longest: usize) -> String {
     let mut line = String::new();
     for word in text.split_whitespace() {
         if !line.is_empty() {
             line.push(' ');
         }
         line.push_str(word);
-        if line.chars().count() > LONGEST {
-            let mut cut: String = line.chars().take(LONGEST).collect();
+        if line.chars().count() > longest {
+            let mut cut: String = line.chars().take(longest).collect();
             cut.push('…');
             return cut;
         }
@@ -81,7 +91,7 @@ pub(super) fn shorten(text: &str) -> String {
 /// Line, counted from 1, in which the byte `at` stands.
 pub(super) fn line_of(text: &str, at: usize) -> usize {
     let before = &text.as_bytes()[..at.min(text.len())];
-    1 + before.iter().filter(|&&byte| byte == b'\n').count()
+    before.split(|&byte| byte == b'\n').count()
 }
 
 /// Byte at `line` and `column`, both counted from 1 in characters.

@@ -61,15 +61,13 @@ fn each_bad_file_is_refused_with_its_message() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// `cargo test -- --ignored show` prints every message, to read them as a person would.
 #[test]
-#[ignore = "prints messages for people to judge"]
-fn show_all_messages() {
-    for file in files_below("tests/core/scene/bad") {
-        if let Err(error) = Scene::load(&file) {
-            println!("{error}\n");
-        }
-    }
+fn the_example_in_the_documentation_is_read() {
+    let documentation = include_str!("../../../scenes/README.md");
+    let (_, rest) = documentation.split_once("```ron").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    let scene = Scene::parse("example", example).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.materials.len(), 3);
 }
 
 #[test]
