@@ -244,9 +244,9 @@ impl BedContact {
 }
 
 fn single(column: &[DVec3]) -> Vec<Vec3> {
-    column.iter().map(DVec3::as_vec3).collect()
+    column.iter().map(|v| v.as_vec3()).collect()
 }
 
 fn double(column: &[Vec3]) -> Vec<DVec3> {
-    column.iter().map(Vec3::as_dvec3).collect()
+    column.iter().map(|v| v.as_dvec3()).collect()
 }
