@@ -1,11 +1,12 @@
 //! The free surface as a straight line in the x–y plane: its angle θ and its roughness h.
 //!
-//! The middle part of the free surface (its chord between the container's walls) is cut into bins about two mean radii
-//! wide; in each bin the grain that stands highest is taken, over the whole depth along z, and a straight line is
-//! fitted through the centres of these grains by least squares. Bins and heights are measured along and across the line
-//! itself: the fit is repeated in the frame of the last line until the line no longer turns, so a steep surface is
-//! measured as well as a level one. Only grains that touch something count, unless none does, so a single grain in
-//! flight does not lift the surface; two that meet in flight can, for the moment of their impact.
+//! The middle part of the free surface (its chord between the container's walls) is cut into as many bins as fit if none
+//! is narrower than two mean radii, so that a closed row of grains leaves no bin empty; in each bin the grain that
+//! reaches highest is taken, over the whole depth along z, and a straight line is fitted through the centres of these
+//! grains by least squares. Bins and heights are measured along and across the line itself: the fit is repeated in the
+//! frame of the last line until the line no longer moves, so a steep surface is measured as well as a level one. Only
+//! grains that touch something count, unless none does, so a single grain in flight does not lift the surface; two that
+//! meet in flight can, for the moment of their impact.
 //!
 //! There is no surface line without a drum or a box, or with fewer than three bins that hold a grain.
 
@@ -18,8 +19,9 @@ pub const MIDDLE_SHARE: f64 = 0.7;
 /// Fits of the line at most.
 const MOST_FITS: usize = 12;
 
-/// A line that turns by less than this from one fit to the next is final [rad].
-const SETTLED_TURN: f64 = 1e-6;
+/// A line that turns by less than this [rad], and shifts by less than this share of its length, from one fit to the next
+/// is final.
+const SETTLED: f64 = 1e-6;
 
 /// A straight line through the top grains' centres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +67,13 @@ pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
         };
         let tops = grains.tops(guess, middle);
         let fit = Fit::through(&tops)?;
-        guess = fit.turned(guess);
-        line = Some(fit.line(guess, middle, &tops));
-        if fit.slope.abs() < SETTLED_TURN {
+        let next = fit.turned(guess);
+        line = Some(fit.line(next, middle, &tops));
+        let shift = (next.height - guess.height).abs() / (high - low);
+        if fit.slope.abs() < SETTLED && shift < SETTLED {
             break;
         }
+        guess = next;
     }
     line
 }
@@ -138,7 +142,7 @@ impl Silhouette {
     /// Centres, as (s, n) in the frame of `guess`, of the highest disc in each bin of `middle` that holds one.
     fn tops(&self, guess: Guess, middle: Stretch) -> Vec<DVec2> {
         let length = 2.0 * middle.half_length;
-        let bins = (length / (2.0 * self.mean_radius)).round().max(1.0);
+        let bins = (length / (2.0 * self.mean_radius)).floor().max(1.0);
         let start = middle.centre - middle.half_length;
         let mut highest = vec![f64::NEG_INFINITY; bins as usize];
         let mut tops = vec![DVec2::NAN; bins as usize];

@@ -1,1 +1,3 @@
 //! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
+
+mod measure;
