@@ -1,3 +1,4 @@
 //! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
 
 mod measure;
+mod scene;
