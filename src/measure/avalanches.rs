@@ -32,11 +32,12 @@ impl Avalanche {
 
 /// The avalanches in `theta` [rad] over `time` [s] whose drop is at least `smallest_drop` [rad].
 ///
-/// Samples that are not finite are passed over. The work is linear in the number of samples.
+/// Samples that are not finite, or that one of the two lacks, are passed over. The work is linear in the number of samples.
 pub fn avalanches(time: &[f64], theta: &[f64], smallest_drop: f64) -> Vec<Avalanche> {
     let mut found = Vec::new();
     let mut tracker = Tracker::default();
-    for (at, angle) in smoothed(time, theta) {
+    let count = time.len().min(theta.len());
+    for (at, angle) in smoothed(&time[..count], &theta[..count]) {
         found.extend(tracker.follow(Point { at, angle }, smallest_drop));
     }
     found

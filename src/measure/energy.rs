@@ -1,11 +1,11 @@
 //! The energy balance: what is stored, what came in, what was lost, and what remains unexplained.
 //!
-//! Stored energy is read from the world as it is; work and losses are read from the world's own books
+//! Stored energy is read from the world as it is, by the contact laws' own formulas ([`crate::solver::law`]); work and losses are read from the world's own books
 //! ([`crate::world::Ledger`], [`crate::world::Grains::exchanged`]), which the solver and the commands keep.
 
 use super::contacts::overlap;
-use crate::scene::ContactLaw;
-use crate::world::{Contact, Material, Partner, World};
+use crate::solver::law::Pairing;
+use crate::world::{Contact, World};
 use serde::Serialize;
 
 /// All terms of `kinetic + elastic − initial = gravity + walls + commands − dashpots − sliding − rolling + residual`.
@@ -82,74 +82,22 @@ impl EnergyLedger {
     }
 }
 
-/// Energy stored in the normal and tangential springs of all contacts [J].
-///
-/// Hertz–Mindlin: `2/5 · 4/3 E* √r* δ^(5/2) + 1/2 k_t ξ²` with `k_t = 8 G* √(r* δ)` (Eqs. 6 and 8 of Kasper et al. 2021).
-/// Hooke: `1/2 K_n δ² + 1/2 K_t ξ²` (Eqs. 3.3 and 3.5 of Man et al. 2023).
+/// Energy stored in the normal and tangential springs of all contacts [J]; one that has opened stores none.
 pub fn elastic_energy(world: &World) -> f64 {
+    let stored = |contact: &Contact| {
+        Pairing::of(world, contact.grain as usize, contact.partner).elastic_energy(
+            world.law,
+            &world.materials,
+            overlap(world, contact),
+            contact.spring.length(),
+        )
+    };
     world
         .contacts
         .iter()
-        .map(|contact| pair_elastic(world, contact))
+        .filter(|contact| overlap(world, contact) > 0.0)
+        .map(stored)
         .sum()
-}
-
-/// Energy stored in the springs of one contact [J]; zero where it has opened.
-fn pair_elastic(world: &World, contact: &Contact) -> f64 {
-    let delta = overlap(world, contact).max(0.0);
-    let xi_squared = contact.spring.length_squared();
-    match world.law {
-        ContactLaw::HertzMindlin => {
-            let (a, b) = pair_materials(world, contact);
-            let root = (effective_radius(world, contact) * delta).sqrt();
-            let normal_stiffness = 4.0 / 3.0 * effective_youngs_modulus(a, b) * root;
-            let tangential_stiffness = 8.0 * effective_shear_modulus(a, b) * root;
-            0.4 * normal_stiffness * delta * delta + 0.5 * tangential_stiffness * xi_squared
-        }
-        ContactLaw::Hooke {
-            normal_stiffness,
-            tangential_stiffness,
-        } => 0.5 * normal_stiffness * delta * delta + 0.5 * tangential_stiffness * xi_squared,
-    }
-}
-
-fn pair_materials<'w>(world: &'w World, contact: &Contact) -> (&'w Material, &'w Material) {
-    let of_grain = |i: u32| {
-        let species = world.grains.species[i as usize];
-        world.species[usize::from(species.0)].material
-    };
-    let partner = match contact.partner {
-        Partner::Grain(j) => of_grain(j),
-        Partner::Wall(w) => world.container.walls[w as usize].material,
-    };
-    let materials = &world.materials;
-    (
-        materials.get(of_grain(contact.grain)),
-        materials.get(partner),
-    )
-}
-
-/// `r*`, for a wall the grain's own radius [m].
-fn effective_radius(world: &World, contact: &Contact) -> f64 {
-    let radius = &world.grains.radius;
-    let r_i = radius[contact.grain as usize];
-    match contact.partner {
-        Partner::Grain(j) => {
-            let r_j = radius[j as usize];
-            r_i * r_j / (r_i + r_j)
-        }
-        Partner::Wall(_) => r_i,
-    }
-}
-
-fn effective_youngs_modulus(a: &Material, b: &Material) -> f64 {
-    let compliance = |m: &Material| (1.0 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
-    1.0 / (compliance(a) + compliance(b))
-}
-
-fn effective_shear_modulus(a: &Material, b: &Material) -> f64 {
-    let compliance = |m: &Material| (2.0 - m.poisson_ratio) / m.shear_modulus();
-    1.0 / (compliance(a) + compliance(b))
 }
 
 /// Sums of the grains' columns of exchanged energy [J].

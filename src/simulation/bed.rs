@@ -5,12 +5,12 @@
 //! bed that is stale, damaged or does not fit is no bed: settling makes it anew. Keeping one may fail, a run never does.
 
 use super::settling::{motions, standing, start};
+use crate::files::write_whole;
 use crate::world::{Contact, Partner, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds are then stale.
 const FORMAT: u32 = 1;
@@ -113,7 +113,7 @@ impl BedStore {
         let Some(path) = self.path(key) else {
             return Ok(());
         };
-        write(&path, &encode(key, settled))
+        write_whole(&path, |file| file.write_all(&encode(key, settled)))
             .map_err(|error| format!("cannot keep the settled bed in {}: {error}", path.display()))
     }
 
@@ -200,14 +200,4 @@ impl Bed {
         world.contacts = self.contacts;
         start(world, &motions(built))
     }
-}
-
-/// Writes `bytes` to `path`, whole or not at all.
-fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(bytes)?;
-    file.persist(path)?;
-    Ok(())
 }

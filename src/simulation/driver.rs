@@ -121,7 +121,8 @@ impl Threaded {
     fn tick(&mut self, passed: Duration) -> Option<Update> {
         self.owed = (self.owed + passed).min(LONGEST_DEBT);
         if !self.exchange.busy.swap(true, Ordering::AcqRel) {
-            self.order(Order::Tick(std::mem::take(&mut self.owed)));
+            let granted = std::mem::take(&mut self.owed);
+            self.order(Order::Tick(granted));
         }
         self.exchange.lock().take()
     }

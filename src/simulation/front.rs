@@ -6,7 +6,7 @@
 use super::bed::BedStore;
 use super::driver::Driver;
 use super::engine::{Engine, Order, Update};
-use super::parameter::{self, ParameterInfo};
+use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
 use super::{Command, Parameter, ScriptedCommand, StampedCommand};
 use crate::measure::{Avalanche, Measure, Series, avalanches};
@@ -204,7 +204,7 @@ impl Simulation {
     /// the scene has no such parameter.
     pub fn value(&self, parameter: &Parameter) -> f64 {
         let asked = self.asked.get(parameter).copied();
-        let present = || parameter::read(parameter, self.world.as_ref()?);
+        let present = || parameter.read(self.world.as_ref()?);
         asked.or_else(present).unwrap_or(f64::NAN)
     }
 

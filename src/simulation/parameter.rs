@@ -58,6 +58,53 @@ const METRES_PER_SECOND_SQUARED: DisplayUnit = DisplayUnit {
     factor: 1.0,
 };
 
+impl Parameter {
+    /// Its present value in SI units; `None` where `world` has no such parameter.
+    pub fn read(&self, world: &World) -> Option<f64> {
+        let pair = |a: &String, b: &String| {
+            let materials = &world.materials;
+            Some(materials.pair(materials.find(a)?, materials.find(b)?))
+        };
+        match self {
+            Self::Friction(a, b) => Some(pair(a, b)?.friction),
+            Self::Restitution(a, b) => Some(pair(a, b)?.restitution),
+            Self::RollingFriction(a, b) => Some(pair(a, b)?.rolling_friction),
+            Self::DrumSpeed => Some(world.container.drum_speed()),
+            Self::Gravity => Some(world.gravity.length()),
+            Self::Share(species) => relabel::share(world, species),
+        }
+    }
+
+    /// Its SI unit, `1` for a pure number.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::DrumSpeed => "rad/s",
+            Self::Gravity => "m/s²",
+            _ => "1",
+        }
+    }
+
+    /// The unit it is shown in.
+    pub fn display(&self) -> DisplayUnit {
+        match self {
+            Self::DrumSpeed => RPM,
+            Self::Gravity => METRES_PER_SECOND_SQUARED,
+            Self::Share(_) => PERCENT,
+            Self::Friction(..) | Self::Restitution(..) | Self::RollingFriction(..) => PURE,
+        }
+    }
+
+    /// The value that `text` states, a number alone (SI) or with its unit, in SI units: `0.1`, `0.5 rpm`.
+    pub fn parse_value(&self, text: &str) -> Option<f64> {
+        let (text, display) = (text.trim(), self.display());
+        let bare = |unit: &str| text.strip_suffix(unit).map(str::trim_end);
+        let number = |text: &str| text.parse().ok().filter(|value: &f64| value.is_finite());
+        let si = || number(bare(self.unit()).unwrap_or(text));
+        let shown = || Some(number(bare(display.name)?)? / display.factor);
+        number(text).or_else(shown).or_else(si)
+    }
+}
+
 /// Fastest drum a slider offers [rad/s], 10 rpm.
 const FASTEST_DRUM: f64 = 10.0 / RPM.factor;
 /// Strongest gravity a slider offers [m/s²].
@@ -76,22 +123,6 @@ pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
     }));
     list.extend(shares(scene));
     list
-}
-
-/// The present value of `parameter`, in SI units; `None` where the world has no such parameter.
-pub fn read(parameter: &Parameter, world: &World) -> Option<f64> {
-    let pair = |a: &String, b: &String| {
-        let materials = &world.materials;
-        Some(materials.pair(materials.find(a)?, materials.find(b)?))
-    };
-    match parameter {
-        Parameter::Friction(a, b) => Some(pair(a, b)?.friction),
-        Parameter::Restitution(a, b) => Some(pair(a, b)?.restitution),
-        Parameter::RollingFriction(a, b) => Some(pair(a, b)?.rolling_friction),
-        Parameter::DrumSpeed => Some(world.container.drum_speed()),
-        Parameter::Gravity => Some(world.gravity.length()),
-        Parameter::Share(species) => relabel::share(world, species),
-    }
 }
 
 /// Gives `parameter` of `world`, a world of `scene`, the `value` in SI units. A parameter that the world does not have is

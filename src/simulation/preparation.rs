@@ -52,11 +52,15 @@ impl Preparation {
     /// # Errors
     /// The solver's [`Fault`] while the grains settle.
     pub fn advance(&mut self) -> Result<Prepared, Fault> {
-        match &mut self.stage {
-            Stage::Placing => Ok(self.place()),
-            Stage::Settling { settling, .. } if !settling.advance()? => Ok(Prepared::NotYet),
-            Stage::Settling { .. } => Ok(self.finish()),
-        }
+        let Stage::Settling { settling, .. } = &mut self.stage else {
+            return Ok(self.place());
+        };
+        let at_rest = settling.advance()?;
+        Ok(if at_rest {
+            self.finish()
+        } else {
+            Prepared::NotYet
+        })
     }
 
     /// What is being done, for people.

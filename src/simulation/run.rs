@@ -213,7 +213,7 @@ impl Run {
             .parameters
             .iter()
             .map(|info| info.parameter.clone())
-            .map(|parameter| (parameter::read(&parameter, &self.world), parameter))
+            .map(|parameter| (parameter.read(&self.world), parameter))
             .collect();
         self.world.clone_from(&self.bed);
         self.commands.clear();
@@ -222,7 +222,7 @@ impl Run {
         self.next_sample = 0;
         self.take_due_sample();
         for (value, parameter) in present {
-            let Some(value) = value.filter(|_| value != parameter::read(&parameter, &self.world))
+            let Some(value) = value.filter(|_| value != parameter.read(&self.world))
             else {
                 continue;
             };
