@@ -30,6 +30,10 @@ pub struct ViewSettings {
     pub camera_request: Option<CameraRequest>,
     /// In: the part of the window that the panels leave free, in egui points. `None`: the whole window.
     pub free_rect: Option<egui::Rect>,
+    /// In: physical pixels per egui point.
+    pub pixels_per_point: f32,
+    /// Whether edges are smoothed by several samples a pixel; read when the picture is set up.
+    pub smooth_edges: bool,
     /// Out: what the colours mean now. `None` while grains are coloured by species.
     pub legend: Option<Legend>,
 }
@@ -48,6 +52,8 @@ impl Default for ViewSettings {
             background: Background::Dark,
             camera_request: None,
             free_rect: None,
+            pixels_per_point: 1.0,
+            smooth_edges: true,
             legend: None,
         }
     }

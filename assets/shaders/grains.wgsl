@@ -1,0 +1,142 @@
+// Spheres, each raymarched on a quad that just covers its outline: exact outline, depth and section at every size.
+
+#import bevy_pbr::mesh_view_bindings::view
+#import grainfall::light::{matt_light, gloss}
+
+struct Grain {
+    centre: vec3<f32>,
+    radius: f32,
+    colour: vec3<f32>,
+    unused: f32,
+}
+
+struct Picture {
+    // What lies beyond `dot(normal, x) = offset` is cut away; a zero normal cuts nothing.
+    cut_normal: vec3<f32>,
+    cut_offset: f32,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> grains: array<Grain>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> picture: Picture;
+
+struct Corner {
+    // x, y: which corner, ±1; z: index of the grain.
+    @location(0) place: vec3<f32>,
+}
+
+struct Covered {
+    @builtin(position) position: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    // The outline is the unit circle.
+    @location(1) across: vec2<f32>,
+    @location(2) @interpolate(flat) grain: u32,
+}
+
+struct Painted {
+    @location(0) colour: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+}
+
+fn orthographic() -> bool {
+    return view.clip_from_view[3][3] == 1.0;
+}
+
+// The ray of sight through a point of the world.
+fn ray_through(x: vec3<f32>) -> Ray {
+    if orthographic() {
+        return Ray(x, -normalize(view.world_from_view[2].xyz));
+    }
+    return Ray(view.world_position, normalize(x - view.world_position));
+}
+
+@vertex
+fn vertex(corner: Corner) -> Covered {
+    let index = u32(corner.place.z + 0.5);
+    let grain = grains[index];
+    var covered: Covered;
+    covered.grain = index;
+
+    let offset = grain.centre - view.world_position;
+    var forward = -normalize(view.world_from_view[2].xyz);
+    var outline = grain.radius;
+    var pixel = 2.0 / (view.clip_from_view[1][1] * view.viewport.w);
+    if !orthographic() {
+        let distance = length(offset);
+        forward = offset / distance;
+        let tangent = distance * distance - grain.radius * grain.radius;
+        outline = select(0.0, grain.radius * distance * inverseSqrt(tangent), tangent > 0.0);
+        pixel *= distance;
+    }
+    if dot(picture.cut_normal, grain.centre) - grain.radius > picture.cut_offset {
+        outline = 0.0;
+    }
+
+    // One pixel more on each side for the soft edge.
+    covered.across = corner.place.xy * (1.0 + select(0.0, pixel / outline, outline > 0.0));
+    let up = view.world_from_view[1].xyz;
+    let side = normalize(cross(forward, up));
+    let upward = cross(side, forward);
+    covered.world = grain.centre + outline * (covered.across.x * side + covered.across.y * upward);
+    covered.position = view.clip_from_world * vec4<f32>(covered.world, 1.0);
+    return covered;
+}
+
+@fragment
+fn fragment(covered: Covered) -> Painted {
+    let grain = grains[covered.grain];
+    let from_middle = length(covered.across);
+    let coverage = clamp(0.5 + (1.0 - from_middle) / fwidth(from_middle), 0.0, 1.0);
+#ifdef MULTISAMPLED
+    if coverage <= 0.0 { discard; }
+#else
+    if from_middle > 1.0 { discard; }
+#endif
+
+    let ray = ray_through(covered.world);
+    let away = ray.origin - grain.centre;
+    let b = dot(away, ray.direction);
+    // Beyond the outline, in the soft edge, the ray is taken to touch.
+    let half_chord = sqrt(max(b * b - dot(away, away) + grain.radius * grain.radius, 0.0));
+    var t = -b - half_chord;
+    var hit = ray.origin + t * ray.direction;
+    var normal = normalize(hit - grain.centre);
+    let to_eye = -ray.direction;
+
+    var light: vec3<f32>;
+    if dot(picture.cut_normal, hit) > picture.cut_offset {
+        // The near side is cut away: the ray goes on to the section, if it meets it within the grain.
+        let approach = -dot(picture.cut_normal, ray.direction);
+        if approach <= 0.0 { discard; }
+        t = (dot(picture.cut_normal, ray.origin) - picture.cut_offset) / approach;
+        if t > -b + half_chord { discard; }
+        hit = ray.origin + t * ray.direction;
+        light = section(grain, hit);
+    } else {
+        light = surface(grain.colour, normal, to_eye);
+    }
+
+    let clip = view.clip_from_world * vec4<f32>(hit, 1.0);
+    return Painted(vec4<f32>(light, coverage), clip.z / clip.w);
+}
+
+// A grain's skin: matt, a soft gloss, darker where it turns away so that neighbours stand apart.
+fn surface(colour: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let facing = max(dot(normal, to_eye), 0.0);
+    let turned = mix(0.42, 1.0, smoothstep(0.0, 0.75, facing));
+    return colour * matt_light(normal) * turned + vec3<f32>(0.16 * gloss(normal, to_eye, 28.0));
+}
+
+// A flat section with a darker rim.
+fn section(grain: Grain, hit: vec3<f32>) -> vec3<f32> {
+    let beyond = picture.cut_offset - dot(picture.cut_normal, grain.centre);
+    let section_radius = sqrt(max(grain.radius * grain.radius - beyond * beyond, 0.0));
+    let from_rim = section_radius - length(hit - grain.centre - beyond * picture.cut_normal);
+    let rim = smoothstep(0.0, 0.09 * grain.radius + fwidth(from_rim), from_rim);
+    let pale = mix(grain.colour, vec3<f32>(1.0), 0.12);
+    return mix(grain.colour * 0.35, pale, rim);
+}
