@@ -17,7 +17,10 @@ use glam::DVec2;
 pub const MIDDLE_SHARE: f64 = 0.7;
 
 /// Fits of the line at most.
-const MOST_FITS: usize = 12;
+const MOST_FITS: i32 = 14;
+
+/// Fits that the line follows the whole way; it follows each later one half as far as the one before.
+const FREE_FITS: i32 = 6;
 
 /// A line that turns by less than this [rad], and shifts by less than this share of its length, from one fit to the next
 /// is final.
@@ -59,7 +62,7 @@ pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
     let grains = Silhouette::of(&world.grains)?;
     let mut guess = first_guess(shape, &grains)?;
     let mut line = None;
-    for _ in 0..MOST_FITS {
+    for done in 0..MOST_FITS {
         let (low, high) = chord(shape, guess)?;
         let middle = Stretch {
             centre: 0.5 * (low + high),
@@ -67,13 +70,14 @@ pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
         };
         let tops = grains.tops(guess, middle);
         let fit = Fit::through(&tops)?;
-        let next = fit.turned(guess);
-        line = Some(fit.line(next, middle, &tops));
-        let shift = (next.height - guess.height).abs() / (high - low);
+        let fitted = fit.turned(guess);
+        let shift = (fitted.height - guess.height).abs() / (high - low);
+        // Two lines can each make the other by moving one grain over the edge of a bin; the shrinking steps end between.
+        guess = guess.towards(fitted, 0.5_f64.powi((done + 1 - FREE_FITS).max(0)));
+        line = Some(fit.line(guess, middle, &tops));
         if fit.slope.abs() < SETTLED && shift < SETTLED {
             break;
         }
-        guess = next;
     }
     line
 }
@@ -101,6 +105,14 @@ impl Guess {
 
     fn normal(self) -> DVec2 {
         self.direction.perp()
+    }
+
+    /// The line that lies `share` of the way from this one to `other`.
+    fn towards(self, other: Self, share: f64) -> Self {
+        Self {
+            direction: self.direction.lerp(other.direction, share).normalize(),
+            height: self.height + share * (other.height - self.height),
+        }
     }
 
     fn point(self, s: f64) -> DVec2 {

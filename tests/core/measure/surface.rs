@@ -95,14 +95,17 @@ fn line_runs_through_the_top_grains_and_spans_the_middle_of_the_surface() {
 
 #[test]
 fn surface_of_a_bed_that_turns_rigidly_turns_with_it() {
-    let mut world = random_bed(0.3, -0.02, 7);
-    let before = line(&world).angle;
     let turn = glam::DQuat::from_rotation_z(0.25);
-    for x in &mut world.grains.position {
-        *x = turn * *x;
+    for seed in 0..40 {
+        let mut world = random_bed(0.3, -0.02, seed);
+        let before = line(&world).angle;
+        for x in &mut world.grains.position {
+            *x = turn * *x;
+        }
+        // The method has no preferred direction; rounding may move a grain over the edge of a bin where the fits end on
+        // one, and then shifts the line by the last step: 0.4° over 256.
+        assert_close(line(&world).angle - before, 0.25, 3e-5);
     }
-    // The method has no preferred direction; what is left is rounding and the last turn of the fit.
-    assert_close(line(&world).angle - before, 0.25, 1e-5);
 }
 
 #[test]
