@@ -18,7 +18,9 @@ pub fn write_whole(
     fs::create_dir_all(folder)?;
     let mut buffer = BufWriter::new(new_file_in(folder)?);
     fill(&mut buffer)?;
-    let file = buffer.into_inner().map_err(io::IntoInnerError::into_error)?;
+    let file = buffer
+        .into_inner()
+        .map_err(io::IntoInnerError::into_error)?;
     file.persist(path)?;
     Ok(())
 }

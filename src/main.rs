@@ -73,8 +73,7 @@ enum Task {
     },
 }
 
-const EXIT_CODES: &str =
-    "Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 130 interrupted";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 130 interrupted";
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -99,10 +98,14 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     }
     let name = short_name(&name);
     let job = Job {
-        out: arguments.out.unwrap_or_else(|| Path::new("out").join(&name)),
+        out: arguments
+            .out
+            .unwrap_or_else(|| Path::new("out").join(&name)),
         scene,
         name,
-        threads: what.threads.map_or(Options::headless().threads, usize::from),
+        threads: what
+            .threads
+            .map_or(Options::headless().threads, usize::from),
         script,
         beds: BedStore::user(),
     };
@@ -112,7 +115,9 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
 
 /// The built-in scene to open when none is asked for.
 fn first_scene() -> String {
-    built_in().first().map_or(String::new(), |scene| scene.name.to_owned())
+    built_in()
+        .first()
+        .map_or(String::new(), |scene| scene.name.to_owned())
 }
 
 /// The scene called `name` with the changes asked for, and the commands to carry out while it runs.
@@ -167,9 +172,10 @@ fn set(scene: &mut Scene, setting: &str) -> Result<Option<ScriptedCommand>, Head
 /// `scenes/papers/kasper2021/dry-r3.ron` is called `dry-r3`.
 fn short_name(name: &str) -> String {
     let file = name.strip_suffix(".ron").unwrap_or(name);
-    Path::new(file)
-        .file_name()
-        .map_or_else(|| "scene".into(), |file| file.to_string_lossy().into_owned())
+    Path::new(file).file_name().map_or_else(
+        || "scene".into(),
+        |file| file.to_string_lossy().into_owned(),
+    )
 }
 
 fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {

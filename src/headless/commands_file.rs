@@ -28,8 +28,11 @@ pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, HeadlessError>
              [(time: 2.5, command: Set(parameter: \"drum-speed\", value: 0.1))], or a run's summary.json"
         ))
     };
-    let text = fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
-    let json = path.extension().is_some_and(|extension| extension == "json");
+    let text =
+        fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
+    let json = path
+        .extension()
+        .is_some_and(|extension| extension == "json");
     if !json {
         return ron::Options::default()
             .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES)

@@ -78,7 +78,8 @@ impl OutputFolder {
             let entry = entry?;
             let name = entry.file_name();
             let own = name.to_str().is_some_and(|name| {
-                name.starts_with("grains_") && Path::new(name).extension().is_some_and(|e| e == "vtp")
+                name.starts_with("grains_")
+                    && Path::new(name).extension().is_some_and(|e| e == "vtp")
             });
             if own {
                 fs::remove_file(entry.path())?;

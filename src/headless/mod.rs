@@ -145,7 +145,10 @@ fn follow(
     progress: &mut Progress,
 ) -> Result<Option<Ending>, HeadlessError> {
     match simulation.status() {
-        Status::Preparing { stage, progress: share } => {
+        Status::Preparing {
+            stage,
+            progress: share,
+        } => {
             progress.tell(f64::from(*share), || stage.clone());
             return Ok(None);
         }

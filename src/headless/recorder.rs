@@ -51,7 +51,11 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn record(&mut self, simulation: &Simulation, world: &World) -> Result<bool, HeadlessError> {
+    pub fn record(
+        &mut self,
+        simulation: &Simulation,
+        world: &World,
+    ) -> Result<bool, HeadlessError> {
         let over = world.clock.step >= world.clock.step_at(self.job.scene.duration);
         if over || world.clock.step >= self.next_stop(&world.clock) {
             self.write_grains(world)?;

@@ -1,8 +1,8 @@
 //! The short summary on standard output at the end of a run.
 
+use super::Ending;
 use super::progress::spoken;
 use super::recorder::Recorder;
-use super::Ending;
 use crate::measure::{Summary, SummaryEntry};
 use crate::simulation::Simulation;
 
@@ -12,7 +12,10 @@ const FILE_ONLY: &str = "(≥";
 /// Prints how a run ended, its results and where its files are.
 pub fn report(simulation: &Simulation, recorder: &Recorder, ending: &Ending, results: &Summary) {
     let Some(world) = simulation.world() else {
-        println!("stopped before the run began; the summary is in {}", recorder.folder().path().display());
+        println!(
+            "stopped before the run began; the summary is in {}",
+            recorder.folder().path().display()
+        );
         return;
     };
     for warning in simulation.warnings() {
@@ -29,8 +32,15 @@ pub fn report(simulation: &Simulation, recorder: &Recorder, ending: &Ending, res
         spoken(wall_time),
         world.time() / wall_time
     );
-    println!("results from t = {:.2} s to {:.2} s:", results.from, results.to);
-    for entry in results.entries.iter().filter(|entry| !entry.name.contains(FILE_ONLY)) {
+    println!(
+        "results from t = {:.2} s to {:.2} s:",
+        results.from, results.to
+    );
+    for entry in results
+        .entries
+        .iter()
+        .filter(|entry| !entry.name.contains(FILE_ONLY))
+    {
         println!("  {:<32} {}", entry.name, value(entry));
     }
     println!("state {}", world.hash());

@@ -16,7 +16,11 @@ pub fn write_series(series: &Series, file: &mut dyn Write) -> io::Result<()> {
         let quantity = measure.quantity();
         format!("{} [{}]", quantity.name, quantity.unit)
     });
-    writer.write_record(["step [1]", "time [s]"].into_iter().chain(heads.iter().map(String::as_str)))?;
+    writer.write_record(
+        ["step [1]", "time [s]"]
+            .into_iter()
+            .chain(heads.iter().map(String::as_str)),
+    )?;
     for sample in (0..series.len()).filter_map(|index| series.get(index)) {
         writer.write_field(sample.step.to_string())?;
         writer.write_field(format!("{:?}", sample.time))?;

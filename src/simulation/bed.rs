@@ -176,8 +176,14 @@ impl Bed {
     /// One finite entry per grain in each column, and contacts only between grains and walls that exist.
     fn fits(&self, built: &World) -> bool {
         let count = built.grains.len();
-        let columns = [&self.position, &self.force, &self.torque, &self.rolling_torque];
-        let whole = |column: &Vec<DVec3>| column.len() == count && column.iter().all(|v| v.is_finite());
+        let columns = [
+            &self.position,
+            &self.force,
+            &self.torque,
+            &self.rolling_torque,
+        ];
+        let whole =
+            |column: &Vec<DVec3>| column.len() == count && column.iter().all(|v| v.is_finite());
         let exists = |contact: &Contact| {
             let partner = match contact.partner {
                 Partner::Grain(j) => (j as usize) < count,

@@ -119,7 +119,11 @@ impl Engine {
     ) -> Self {
         Self {
             stage: Stage::Preparing(Box::new(preparation)),
-            mode: if autoplay { Mode::Running } else { Mode::Paused },
+            mode: if autoplay {
+                Mode::Running
+            } else {
+                Mode::Paused
+            },
             speed,
             owed: 0.0,
             target: 0,

@@ -267,7 +267,8 @@ impl Simulation {
         let update = driver.tick(passed);
         if update.is_none() && driver.has_died() {
             self.driver = None;
-            self.status = Status::Failed("the solver's thread ended; this is a mistake in Grainfall".into());
+            self.status =
+                Status::Failed("the solver's thread ended; this is a mistake in Grainfall".into());
         }
         if let Some(update) = update {
             self.take(update);

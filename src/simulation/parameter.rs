@@ -253,12 +253,7 @@ pub fn canonical(parameter: &Parameter, materials: &Materials) -> Parameter {
     let ordered = |a: &str, b: &str| {
         ids(materials, a, b).map_or_else(
             || (a.to_owned(), b.to_owned()),
-            |(a, b)| {
-                (
-                    materials.get(a).name.clone(),
-                    materials.get(b).name.clone(),
-                )
-            },
+            |(a, b)| (materials.get(a).name.clone(), materials.get(b).name.clone()),
         )
     };
     match parameter {

@@ -23,7 +23,10 @@ pub struct Preparation {
 
 enum Stage {
     Placing,
-    Settling { key: BedKey, settling: Box<Settling> },
+    Settling {
+        key: BedKey,
+        settling: Box<Settling>,
+    },
 }
 
 /// What a slice of preparation led to.

@@ -222,8 +222,7 @@ impl Run {
         self.next_sample = 0;
         self.take_due_sample();
         for (value, parameter) in present {
-            let Some(value) = value.filter(|_| value != parameter.read(&self.world))
-            else {
+            let Some(value) = value.filter(|_| value != parameter.read(&self.world)) else {
                 continue;
             };
             self.set(&parameter, value);

@@ -38,7 +38,9 @@ pub enum ScriptError {
     #[error("command {0}: `time` is {1}; expected a number of seconds from 0 on")]
     BadTime(usize, f64),
     /// An entry starts the run afresh.
-    #[error("command {0} is Reset, which a list cannot hold: the list of a run starts at its last reset")]
+    #[error(
+        "command {0} is Reset, which a list cannot hold: the list of a run starts at its last reset"
+    )]
     Reset(usize),
 }
 

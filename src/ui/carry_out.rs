@@ -30,7 +30,9 @@ pub fn fulfil_requests(
             Request::ChoosePicture => desk.path_dialog.ask(Purpose::Picture),
             Request::Open(name) => open(&name, &options, &mut desk, &mut view, &mut commands),
             Request::SavePicture(path) => {
-                commands.spawn(Screenshot::primary_window()).observe(save_to(path));
+                commands
+                    .spawn(Screenshot::primary_window())
+                    .observe(save_to(path));
             }
             Request::Show(sheet) => desk.show_sheet(sheet),
             Request::Quit => {
@@ -41,7 +43,13 @@ pub fn fulfil_requests(
 }
 
 /// Opens the scene called `name`; one that cannot be opened leaves the present one running.
-fn open(name: &str, options: &OpenWith, desk: &mut Desk, view: &mut ViewSettings, commands: &mut Commands) {
+fn open(
+    name: &str,
+    options: &OpenWith,
+    desk: &mut Desk,
+    view: &mut ViewSettings,
+    commands: &mut Commands,
+) {
     match Scene::open(name) {
         Ok(scene) => {
             commands.insert_resource(Simulation::open(scene, options.0.clone()));
@@ -59,14 +67,19 @@ fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, ResMut<Desk>) {
         let shown = path.display();
         match write_picture(&captured.image, &path) {
             Ok(()) => desk.notify(format!("Saved {shown}")),
-            Err(reason) => desk.notify(format!("The picture cannot be written to {shown}: {reason}")),
+            Err(reason) => desk.notify(format!(
+                "The picture cannot be written to {shown}: {reason}"
+            )),
         }
     }
 }
 
 /// Writes `image` as PNG, whole or not at all.
 fn write_picture(image: &Image, path: &Path) -> Result<(), String> {
-    let picture = image.clone().try_into_dynamic().map_err(|error| error.to_string())?;
+    let picture = image
+        .clone()
+        .try_into_dynamic()
+        .map_err(|error| error.to_string())?;
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
@@ -75,7 +88,10 @@ fn write_picture(image: &Image, path: &Path) -> Result<(), String> {
         .suffix(".png")
         .tempfile_in(folder)
         .map_err(|error| error.to_string())?;
-    picture.to_rgb8().save(file.path()).map_err(|error| error.to_string())?;
+    picture
+        .to_rgb8()
+        .save(file.path())
+        .map_err(|error| error.to_string())?;
     file.persist(path).map_err(|error| error.to_string())?;
     Ok(())
 }

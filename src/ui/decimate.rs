@@ -47,11 +47,16 @@ fn extremes(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = [f64
         let higher = if point[1] > high[1] { point } else { high };
         Some([lower, higher])
     });
-    both.into_iter().flat_map(|[low, high]| {
-        let (first, second) = if low[0] <= high[0] { (low, high) } else { (high, low) };
-        [Some(first), (first != second).then_some(second)]
-    })
-    .flatten()
+    both.into_iter()
+        .flat_map(|[low, high]| {
+            let (first, second) = if low[0] <= high[0] {
+                (low, high)
+            } else {
+                (high, low)
+            };
+            [Some(first), (first != second).then_some(second)]
+        })
+        .flatten()
 }
 
 #[cfg(test)]
@@ -65,16 +70,24 @@ mod tests {
     #[test]
     fn a_single_peak_among_ten_thousand_samples_is_kept() {
         let time = times(10_000);
-        let points = decimate(&time, &(0.0..=200.0), 300, |i| if i == 7_777 { 5.0 } else { 0.0 });
+        let points = decimate(&time, &(0.0..=200.0), 300, |i| {
+            if i == 7_777 { 5.0 } else { 0.0 }
+        });
         assert!(points.contains(&[time[7_777], 5.0]));
-        assert!(points.len() <= 602, "{} points for 300 columns", points.len());
+        assert!(
+            points.len() <= 602,
+            "{} points for 300 columns",
+            points.len()
+        );
         assert!(points.is_sorted_by(|a, b| a[0] <= b[0]));
     }
 
     #[test]
     fn a_short_series_is_drawn_as_it_is_without_what_is_no_number() {
         let time = times(5);
-        let points = decimate(&time, &(0.0..=1.0), 300, |i| if i == 2 { f64::NAN } else { 1.0 });
+        let points = decimate(&time, &(0.0..=1.0), 300, |i| {
+            if i == 2 { f64::NAN } else { 1.0 }
+        });
         assert_eq!(points.len(), 4);
     }
 

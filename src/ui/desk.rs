@@ -1,25 +1,22 @@
 //! Everything that is drawn round the picture: which panels there are, where they stand, what lies over them.
 //!
-//! In: the simulation and the view's settings. Out: requests, and the response of the free part of the window, which is
-//! the picture's. Needs no Bevy app.
+//! In: the simulation and the view's settings. Out: requests, and what is left free for the picture. Needs no Bevy app.
 
 use super::about_scene::AboutScene;
 use super::menu::{Shown, menu_ui};
 use super::parameters::Parameters;
-use super::path_dialog::{PathDialog, Purpose};
+use super::path_dialog::PathDialog;
 use super::picture::Picture;
 use super::plots::Plots;
 use super::profile::SolverProfile;
 use super::results::Results;
 use super::theme::{self, Palette};
-use super::transport::{Transport, status_ui};
+use super::transport::Transport;
 use super::{Panel, Request, Sheet, sheets, shortcuts};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
-use bevy_egui::egui::{
-    self, Align2, CollapsingHeader, FontId, Id, Margin, RichText, ScrollArea, Sense,
-};
+use bevy_egui::egui::{self, Align2, CollapsingHeader, FontId, Id, Margin, RichText, ScrollArea};
 use std::time::{Duration, Instant};
 
 /// How long a notice stays.
@@ -62,7 +59,10 @@ fn left() -> Vec<Section> {
 
 /// The register of panels on the right.
 fn right() -> Vec<Section> {
-    vec![section(Plots::default(), true), section(Results::default(), true)]
+    vec![
+        section(Plots::default(), true),
+        section(Results::default(), true),
+    ]
 }
 
 fn section(panel: impl Panel, open_at_first: bool) -> Section {
@@ -93,29 +93,45 @@ impl Default for Desk {
 }
 
 impl Desk {
-    /// Draws everything into `root`, which spans the window, and reads the keyboard. The response is that of the free
-    /// part, [`ViewSettings::free_rect`].
+    /// Draws everything into `root`, which spans the window and keeps what is free, and reads the keyboard.
     pub fn ui(
         &mut self,
         root: &mut egui::Ui,
         simulation: Option<&Simulation>,
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
-    ) -> egui::Response {
+    ) {
         theme::show(root.ctx(), view.background);
-        out.extend(shortcuts::pressed(root.ctx(), simulation.map(Simulation::status)));
+        out.extend(shortcuts::pressed(
+            root.ctx(),
+            simulation.map(Simulation::status),
+        ));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
             self.sides_ui(root, simulation, view, out);
             let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
             bar.show(root, |ui| self.transport.ui(ui, simulation, out));
         }
-        let free = root.available_rect_before_wrap();
-        view.free_rect = Some(free);
-        let response = root.interact(free, Id::new("picture"), Sense::click_and_drag());
-        self.over_picture_ui(root, free, simulation);
         self.windows_ui(root.ctx(), out);
-        response
+    }
+
+    /// Paints over the picture, which fills what `root` keeps free, without taking its pointer.
+    pub fn over_picture_ui(&self, root: &egui::Ui, simulation: Option<&Simulation>) {
+        let free = root.available_rect_before_wrap();
+        let painter = root.painter_at(free);
+        let visuals = root.visuals();
+        let write = |text: &str, size, colour| {
+            let font = FontId::proportional(size);
+            painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
+        };
+        if simulation.is_none() {
+            let text = "Open a scene: File menu, Ctrl+O, or drop a .ron file here";
+            write(text, 18.0, visuals.text_color());
+        }
+        if self.file_hovers {
+            painter.rect_filled(free, 0.0, Palette::of(visuals).veil);
+            write("Drop to open the scene", 24.0, visuals.strong_text_color());
+        }
     }
 
     /// Shows a sheet.
@@ -177,21 +193,6 @@ impl Desk {
             });
     }
 
-    /// What is painted over the picture without taking its pointer.
-    fn over_picture_ui(&mut self, root: &egui::Ui, free: egui::Rect, simulation: Option<&Simulation>) {
-        let painter = root.painter_at(free);
-        let visuals = root.visuals();
-        if simulation.is_none() {
-            let text = "Open a scene: File menu, Ctrl+O, or drop a .ron file here";
-            painter.text(free.center(), Align2::CENTER_CENTER, text, FontId::proportional(18.0), visuals.text_color());
-        }
-        if self.file_hovers {
-            painter.rect_filled(free, 0.0, Palette::of(visuals).veil);
-            let font = FontId::proportional(24.0);
-            painter.text(free.center(), Align2::CENTER_CENTER, "Drop to open the scene", font, visuals.strong_text_color());
-        }
-    }
-
     fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
         self.path_dialog.ui(ctx, out);
         self.sheet = self.sheet.filter(|sheet| sheets::sheet_ui(ctx, *sheet));
@@ -201,7 +202,10 @@ impl Desk {
     }
 
     fn notice_ui(&mut self, ctx: &egui::Context) {
-        self.notice = self.notice.take().filter(|(_, since)| since.elapsed() < NOTICE_TIME);
+        self.notice = self
+            .notice
+            .take()
+            .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
         let waiting = "Waiting for the system's file dialog; Ctrl+O again to type a path";
         let said = self.notice.as_ref().map(|(text, _)| text.as_str());
         let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
@@ -211,7 +215,9 @@ impl Desk {
             .anchor(Align2::CENTER_TOP, [0.0, 44.0])
             .interactable(false)
             .show(ctx, |ui| {
-                egui::Frame::popup(ui.style()).inner_margin(10).show(ui, |ui| ui.label(text));
+                egui::Frame::popup(ui.style())
+                    .inner_margin(10)
+                    .show(ui, |ui| ui.label(text));
             });
         ctx.request_repaint_after(NOTICE_TIME);
     }

@@ -61,7 +61,12 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
     item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
     item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
     for side in Side::ALL {
-        item_ui(ui, side.label(), Request::Camera(CameraRequest::From(side)), out);
+        item_ui(
+            ui,
+            side.label(),
+            Request::Camera(CameraRequest::From(side)),
+            out,
+        );
     }
     ui.separator();
     let mut parallel = view.projection == ProjectionKind::Orthographic;
@@ -73,8 +78,15 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
         };
     }
     let mut light = view.background == Background::Light;
-    if ui.checkbox(&mut light, "Light, for projectors and print").changed() {
-        view.background = if light { Background::Light } else { Background::Dark };
+    if ui
+        .checkbox(&mut light, "Light, for projectors and print")
+        .changed()
+    {
+        view.background = if light {
+            Background::Light
+        } else {
+            Background::Dark
+        };
     }
     ui.separator();
     ui.checkbox(&mut shown.left, "Controls on the left");
@@ -83,9 +95,14 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
 
 /// An entry that asks for `request`, with its shortcut.
 fn item_ui(ui: &mut egui::Ui, name: &str, request: Request, out: &mut Vec<Request>) {
-    let shortcut = SHORTCUTS.iter().find(|shortcut| shortcut.asks_for(&request));
+    let shortcut = SHORTCUTS
+        .iter()
+        .find(|shortcut| shortcut.asks_for(&request));
     let keys = shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ui.ctx()));
-    if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+    if ui
+        .add(egui::Button::new(name).shortcut_text(keys))
+        .clicked()
+    {
         out.push(request);
         ui.close();
     }

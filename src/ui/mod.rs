@@ -1,7 +1,7 @@
 //! The egui panels.
 //!
 //! In: the [`Simulation`], read only, and the [`ViewSettings`]. Out: [`Request`]s, fulfilled in one place
-//! ([`carry_out`]), and the response of the free part of the window, which moves the camera. A panel is one file, one
+//! ([`carry_out`]), and what is left free for the picture. A panel is one file, one
 //! struct and one function `ui`; it needs neither Bevy nor a GPU, and every control has an accessible label.
 //!
 //! | file | holds |
@@ -48,7 +48,7 @@ pub use sheets::{scene_error_ui, sheet_ui};
 pub use transport::{Transport, status_ui};
 
 use crate::simulation::{Options, Simulation};
-use crate::view::{OrbitCamera, ViewSettings, apply_response};
+use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
@@ -89,7 +89,10 @@ impl Plugin for UiPlugin {
             .init_resource::<Requests>()
             .init_resource::<Desk>()
             .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain())
-            .add_systems(Update, (take_dropped_files, carry_out::fulfil_requests).chain());
+            .add_systems(
+                Update,
+                (take_dropped_files, carry_out::fulfil_requests).chain(),
+            );
     }
 }
 
@@ -102,7 +105,7 @@ fn install_theme(mut contexts: EguiContexts, mut installed: Local<bool>) -> Resu
     Ok(())
 }
 
-/// Draws everything round the picture and lets the pointer over the rest move the camera.
+/// Draws everything round the picture, writes into the picture, and lets the pointer over the rest move the camera.
 fn draw_panels(
     mut contexts: EguiContexts,
     mut desk: ResMut<Desk>,
@@ -116,9 +119,19 @@ fn draw_panels(
         .layer_id(egui::LayerId::background())
         .max_rect(ctx.viewport_rect());
     let mut root = egui::Ui::new(ctx, "root".into(), builder);
-    let response = desk.ui(&mut root, simulation.as_deref(), &mut view, &mut requests.0);
-    apply_response(&response, &mut camera);
+    let simulation = simulation.as_deref();
+    desk.ui(&mut root, simulation, &mut view, &mut requests.0);
+    viewport_ui(&mut root, caption(simulation), &mut view, &mut camera);
+    desk.over_picture_ui(&root, simulation);
     Ok(())
+}
+
+fn caption(simulation: Option<&Simulation>) -> Caption<'_> {
+    let factor = simulation.map_or(0.0, Simulation::real_time_factor);
+    Caption {
+        world: simulation.and_then(|simulation| simulation.world().map(AsRef::as_ref)),
+        real_time_factor: (factor > 0.0).then_some(factor),
+    }
 }
 
 /// Asks to open what is dropped on the window.
@@ -130,7 +143,9 @@ fn take_dropped_files(
     for file in files.read() {
         desk.file_hovers = matches!(file, FileDragAndDrop::HoveredFile { .. });
         if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
-            requests.0.push(Request::Open(path_buf.display().to_string()));
+            requests
+                .0
+                .push(Request::Open(path_buf.display().to_string()));
         }
     }
 }

@@ -9,7 +9,11 @@ const NOTHING: &str = "–";
 /// `value` with about four digits; small and large ones as `1.23·10⁻⁹`, and a dash for what is no number.
 pub fn short(value: f64) -> String {
     if !value.is_finite() {
-        return if value.is_nan() { NOTHING.into() } else { "∞".into() };
+        return if value.is_nan() {
+            NOTHING.into()
+        } else {
+            "∞".into()
+        };
     }
     let magnitude = value.abs();
     if magnitude == 0.0 {
@@ -21,7 +25,11 @@ pub fn short(value: f64) -> String {
     }
     let exponent = magnitude.log10().floor() as i32;
     let mantissa = value / 10_f64.powi(exponent);
-    format!("{}·{}", signed(format!("{mantissa:.2}")), power_of_ten(exponent))
+    format!(
+        "{}·{}",
+        signed(format!("{mantissa:.2}")),
+        power_of_ten(exponent)
+    )
 }
 
 /// `value` with `decimals` digits after the point, and a dash for what is no number.
@@ -42,7 +50,11 @@ pub fn power_of_ten(exponent: i32) -> String {
         '3' => '³',
         _ => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
     };
-    let digits = exponent.to_string().chars().map(superscript).collect::<String>();
+    let digits = exponent
+        .to_string()
+        .chars()
+        .map(superscript)
+        .collect::<String>();
     format!("10{digits}")
 }
 
@@ -72,16 +84,30 @@ pub fn prefix_for(magnitude: f64) -> (&'static str, f64) {
         return ("", 1.0);
     }
     let fits = |(_, factor): &&(&str, f64)| magnitude * factor >= 1.0;
-    PREFIXES.iter().rev().find(fits).copied().unwrap_or(PREFIXES[0])
+    PREFIXES
+        .iter()
+        .rev()
+        .find(fits)
+        .copied()
+        .unwrap_or(PREFIXES[0])
 }
 
 /// The unit in which panels show a quantity that is kept in `unit`: degrees for radians, nothing for a pure number.
 pub fn display_unit(unit: &'static str) -> DisplayUnit {
     let degrees = 180.0 / std::f64::consts::PI;
     match unit {
-        "rad" => DisplayUnit { name: "°", factor: degrees },
-        "rad/s" => DisplayUnit { name: "°/s", factor: degrees },
-        "1" => DisplayUnit { name: "", factor: 1.0 },
+        "rad" => DisplayUnit {
+            name: "°",
+            factor: degrees,
+        },
+        "rad/s" => DisplayUnit {
+            name: "°/s",
+            factor: degrees,
+        },
+        "1" => DisplayUnit {
+            name: "",
+            factor: 1.0,
+        },
         name => DisplayUnit { name, factor: 1.0 },
     }
 }

@@ -97,7 +97,9 @@ impl Panel for Parameters {
             return;
         }
         let grouped = |group| {
-            let own = move |info: &&ParameterInfo| Group::of(&info.parameter, simulation.scene()) == group;
+            let own = move |info: &&ParameterInfo| {
+                Group::of(&info.parameter, simulation.scene()) == group
+            };
             list.iter().filter(own)
         };
         for group in Group::ALL {
@@ -111,10 +113,17 @@ impl Panel for Parameters {
             }
             ui.add_space(4.0);
         }
-        let changed = list.iter().any(|info| simulation.value(&info.parameter) != info.default);
+        let changed = list
+            .iter()
+            .any(|info| simulation.value(&info.parameter) != info.default);
         let button = ui.add_enabled(changed, egui::Button::new("Reset all"));
-        if button.on_hover_text("Every parameter back to the scene's value").clicked() {
-            let away = list.iter().filter(|info| simulation.value(&info.parameter) != info.default);
+        if button
+            .on_hover_text("Every parameter back to the scene's value")
+            .clicked()
+        {
+            let away = list
+                .iter()
+                .filter(|info| simulation.value(&info.parameter) != info.default);
             out.extend(away.map(|info| Request::Command(set(info, info.default))));
         }
     }
@@ -122,9 +131,13 @@ impl Panel for Parameters {
 
 fn heading_ui(ui: &mut egui::Ui, group: Group, scene: &Scene) {
     let heading = ui.label(RichText::new(group.title()).strong());
-    let both = |m: &crate::scene::SceneMaterial| is_of_grains(scene, &m.name) && is_of_walls(scene, &m.name);
+    let both = |m: &crate::scene::SceneMaterial| {
+        is_of_grains(scene, &m.name) && is_of_walls(scene, &m.name)
+    };
     if group == Group::GrainGrain && scene.materials.iter().any(both) {
-        heading.on_hover_text("Walls are made of the grains' material: these values hold for them too.");
+        heading.on_hover_text(
+            "Walls are made of the grains' material: these values hold for them too.",
+        );
     }
 }
 
@@ -182,7 +195,9 @@ fn reset_ui(ui: &mut egui::Ui, info: &ParameterInfo, away: bool) -> bool {
         number::short(info.default * info.display.factor),
         suffix(info)
     );
-    let button = ui.add_enabled(away, egui::Button::new("↺").frame(false)).on_hover_text(hint);
+    let button = ui
+        .add_enabled(away, egui::Button::new("↺").frame(false))
+        .on_hover_text(hint);
     let name = format!("Reset {}", info.label);
     button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, away, &name));
     button.clicked()

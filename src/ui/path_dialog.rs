@@ -83,10 +83,14 @@ impl PathDialog {
         } else if self.typed.is_none() {
             let dialog = AsyncFileDialog::new().set_title(purpose.title());
             let answer = match purpose {
-                Purpose::Scene => IoTaskPool::get()
-                    .spawn(dialog.add_filter("Scenes", &["ron"]).pick_file()),
+                Purpose::Scene => {
+                    IoTaskPool::get().spawn(dialog.add_filter("Scenes", &["ron"]).pick_file())
+                }
                 Purpose::Picture => IoTaskPool::get().spawn(
-                    dialog.add_filter("Pictures", &["png"]).set_file_name("grainfall.png").save_file(),
+                    dialog
+                        .add_filter("Pictures", &["png"])
+                        .set_file_name("grainfall.png")
+                        .save_file(),
                 ),
             };
             self.asked = Some(Asked {
@@ -190,5 +194,8 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
 /// `grainfall-1.png` in the working folder, or the next number that is free.
 fn default_picture() -> PathBuf {
     let name = |number| PathBuf::from(format!("grainfall-{number}.png"));
-    (1..1000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(1000))
+    (1..1000)
+        .map(name)
+        .find(|path| !path.exists())
+        .unwrap_or_else(|| name(1000))
 }

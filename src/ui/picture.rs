@@ -36,21 +36,31 @@ impl Panel for Picture {
         cut_ui(ui, view, simulation.world().map(AsRef::as_ref));
         ui.horizontal(|ui| {
             ui.checkbox(&mut view.show_container, "Container");
-            let opacity = egui::Slider::new(&mut view.container_opacity, 0.0..=1.0).show_value(false);
+            let opacity =
+                egui::Slider::new(&mut view.container_opacity, 0.0..=1.0).show_value(false);
             let response = ui.add_enabled(view.show_container, opacity);
             let value = f64::from(view.container_opacity);
-            response.widget_info(|| WidgetInfo::slider(view.show_container, value, "Container opacity"));
+            response.widget_info(|| {
+                WidgetInfo::slider(view.show_container, value, "Container opacity")
+            });
             response.on_hover_text("How strongly the drum or box is drawn");
         });
         ui.checkbox(&mut view.show_overlay, "Scale bar, clock and legend");
-        choices_ui(ui, "Background", &mut view.background, &[
-            (Background::Dark, "Dark"),
-            (Background::Light, "Light"),
-        ]);
-        choices_ui(ui, "Depth", &mut view.projection, &[
-            (ProjectionKind::Perspective, "Perspective"),
-            (ProjectionKind::Orthographic, "Parallel"),
-        ]);
+        choices_ui(
+            ui,
+            "Background",
+            &mut view.background,
+            &[(Background::Dark, "Dark"), (Background::Light, "Light")],
+        );
+        choices_ui(
+            ui,
+            "Depth",
+            &mut view.projection,
+            &[
+                (ProjectionKind::Perspective, "Perspective"),
+                (ProjectionKind::Orthographic, "Parallel"),
+            ],
+        );
         camera_ui(ui, out);
     }
 }
@@ -68,7 +78,10 @@ fn colour_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
 }
 
 fn range_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
-    let shown = view.legend.as_ref().map_or((0.0, 1.0), |legend| (legend.min, legend.max));
+    let shown = view
+        .legend
+        .as_ref()
+        .map_or((0.0, 1.0), |legend| (legend.min, legend.max));
     ui.horizontal(|ui| {
         ui.label("Range");
         let automatic = view.range == ColourRange::Automatic;
@@ -83,13 +96,17 @@ fn range_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
         return;
     };
     let unit = view.colour_by.unit();
+    let (least, most) = (0.0..=high, low..=f64::INFINITY);
     ui.horizontal(|ui| {
         let speed = 0.005 * (high - low).abs().max(1e-6);
-        let field = |value| egui::DragValue::new(value).speed(speed).suffix(format!(" {unit}"));
-        let from = ui.label("from");
-        ui.add(field(&mut low).range(0.0..=high)).labelled_by(from.id);
-        let to = ui.label("to");
-        ui.add(field(&mut high).range(low..=f64::INFINITY)).labelled_by(to.id);
+        for (name, value, range) in [("from", &mut low, least), ("to", &mut high, most)] {
+            let label = ui.label(name);
+            let field = egui::DragValue::new(value)
+                .range(range)
+                .speed(speed)
+                .suffix(format!(" {unit}"));
+            ui.add(field).labelled_by(label.id);
+        }
     });
     view.range = ColourRange::Fixed(low, high);
 }
@@ -141,7 +158,9 @@ fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
     let extent = world.map_or(-1.0..=1.0, |world| extent(world, cut.axis));
     let mut shown = cut.position * MILLIMETRES;
     let range = extent.start() * MILLIMETRES..=extent.end() * MILLIMETRES;
-    let slider = egui::Slider::new(&mut shown, range).suffix(" mm").fixed_decimals(1);
+    let slider = egui::Slider::new(&mut shown, range)
+        .suffix(" mm")
+        .fixed_decimals(1);
     let response = ui.add(slider);
     response.widget_info(|| WidgetInfo::slider(true, shown, "Cut position"));
     if response.changed() {
@@ -159,9 +178,10 @@ fn extent(world: &World, axis: Axis) -> RangeInclusive<f64> {
         Shape::Box { min, max } => (min, max),
         Shape::Planes => {
             let grains = world.grains.position.iter().zip(&world.grains.radius);
-            grains.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (x, r)| {
-                (low.min(*x - *r), high.max(*x + *r))
-            })
+            grains.fold(
+                (DVec3::INFINITY, DVec3::NEG_INFINITY),
+                |(low, high), (x, r)| (low.min(*x - *r), high.max(*x + *r)),
+            )
         }
     };
     let (low, high) = (low.dot(axis.unit()), high.dot(axis.unit()));
@@ -180,16 +200,29 @@ fn camera_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
                 out.push(Request::Camera(CameraRequest::From(side)));
             }
         }
-        if ui.button("Fit").on_hover_text("Everything in view (F)").clicked() {
+        if ui
+            .button("Fit")
+            .on_hover_text("Everything in view (F)")
+            .clicked()
+        {
             out.push(Request::Camera(CameraRequest::Fit));
         }
-        if ui.button("Home").on_hover_text("As the scene opened (Home)").clicked() {
+        if ui
+            .button("Home")
+            .on_hover_text("As the scene opened (Home)")
+            .clicked()
+        {
             out.push(Request::Camera(CameraRequest::Home));
         }
     });
 }
 
-fn combo_ui<T: Copy + PartialEq>(ui: &mut egui::Ui, label: &str, value: &mut T, choices: &[(T, &str)]) {
+fn combo_ui<T: Copy + PartialEq>(
+    ui: &mut egui::Ui,
+    label: &str,
+    value: &mut T,
+    choices: &[(T, &str)],
+) {
     let present = choices.iter().find(|choice| choice.0 == *value);
     ui.horizontal(|ui| {
         ui.label(label);
@@ -206,7 +239,12 @@ fn combo_ui<T: Copy + PartialEq>(ui: &mut egui::Ui, label: &str, value: &mut T, 
     });
 }
 
-fn choices_ui<T: Copy + PartialEq>(ui: &mut egui::Ui, label: &str, value: &mut T, choices: &[(T, &str)]) {
+fn choices_ui<T: Copy + PartialEq>(
+    ui: &mut egui::Ui,
+    label: &str,
+    value: &mut T,
+    choices: &[(T, &str)],
+) {
     ui.horizontal(|ui| {
         ui.label(label);
         for (choice, name) in choices {

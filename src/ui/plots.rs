@@ -223,7 +223,10 @@ fn temperature_curve(
     });
     // The threshold is always in view.
     let seen: Vec<[f64; 2]> = (points.iter().copied())
-        .chain([[0.0, threshold], [0.0, if decades { threshold } else { 0.0 }]])
+        .chain([
+            [0.0, threshold],
+            [0.0, if decades { threshold } else { 0.0 }],
+        ])
         .collect();
     Curve {
         id: "temperature",
@@ -347,9 +350,17 @@ fn hover_label(hover: &HoverPosition, decades: bool, unit: &str) -> String {
         } => (*plot_name, *position),
         HoverPosition::Elsewhere { position } => ("", *position),
     };
-    let value = if decades { 10_f64.powf(position.y) } else { position.y };
+    let value = if decades {
+        10_f64.powf(position.y)
+    } else {
+        position.y
+    };
     let place = format!("{:.2} s\n{} {unit}", position.x, number::short(value));
-    if name.is_empty() { place } else { format!("{name}\n{place}") }
+    if name.is_empty() {
+        place
+    } else {
+        format!("{name}\n{place}")
+    }
 }
 
 impl<'a> Marks<'a> {
@@ -360,11 +371,13 @@ impl<'a> Marks<'a> {
         columns: usize,
         palette: Palette,
     ) -> Self {
-        let first = (curves.avalanches).partition_point(|avalanche| avalanche.end < *window.start());
+        let first =
+            (curves.avalanches).partition_point(|avalanche| avalanche.end < *window.start());
         let end = (curves.avalanches).partition_point(|avalanche| avalanche.start <= *window.end());
         let apart = (window.end() - window.start()) / columns.max(1) as f64;
-        let mut changes: Vec<f64> =
-            (curves.changes.iter().copied()).filter(|time| window.contains(time)).collect();
+        let mut changes: Vec<f64> = (curves.changes.iter().copied())
+            .filter(|time| window.contains(time))
+            .collect();
         changes.dedup_by(|later, earlier| *later - *earlier < apart);
         Self {
             palette,

@@ -57,27 +57,40 @@ pub fn profile_ui(ui: &mut egui::Ui, profile: &Profile) {
         rebuilds => format!("every {:.0} steps", profile.steps as f64 / rebuilds as f64),
     };
     let rows = [
-        ("Per grain and step", number::short_time(profile.per_grain_step())),
-        ("Steps per second", number::fixed(profile.steps as f64 / total, 0)),
+        (
+            "Per grain and step",
+            number::short_time(profile.per_grain_step()),
+        ),
+        (
+            "Steps per second",
+            number::fixed(profile.steps as f64 / total, 0),
+        ),
         ("Neighbour lists rebuilt", rebuilt_every),
         ("Listed pairs", profile.listed.to_string()),
         ("Grains", profile.grains.to_string()),
     ];
-    table_ui(ui, rows.into_iter().map(|(name, value)| Row {
-        name: name.into(),
-        value,
-        hint: String::new(),
-    }));
+    table_ui(
+        ui,
+        rows.into_iter().map(|(name, value)| Row {
+            name: name.into(),
+            value,
+            hint: String::new(),
+        }),
+    );
 }
 
 fn bar_ui(ui: &mut egui::Ui, name: &str, share: f32, colour: egui::Color32) {
     ui.horizontal(|ui| {
         let height = ui.text_style_height(&egui::TextStyle::Body);
-        ui.add_sized(vec2(92.0, height), egui::Label::new(name).halign(egui::Align::LEFT));
+        ui.add_sized(
+            vec2(92.0, height),
+            egui::Label::new(name).halign(egui::Align::LEFT),
+        );
         let width = (ui.available_width() - 52.0).max(20.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, 12.0), Sense::hover());
         let filled = rect.with_max_x(rect.left() + width * share.clamp(0.0, 1.0));
-        ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+        ui.painter()
+            .rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
         ui.painter().rect_filled(filled, 3.0, colour);
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(WidgetType::ProgressIndicator, true, name);
@@ -96,11 +109,14 @@ pub fn advice_ui(ui: &mut egui::Ui, advice: &TimeStepAdvice) {
     if let Some(warning) = &advice.warning {
         ui.colored_label(Palette::of(ui.visuals()).warning, warning);
     }
-    table_ui(ui, advice.limits.iter().map(|limit| Row {
-        name: number::capitalised(limit.name),
-        value: format!("≤ {}", number::short_time(limit.time_step)),
-        hint: limit.reason.clone(),
-    }));
+    table_ui(
+        ui,
+        advice.limits.iter().map(|limit| Row {
+            name: number::capitalised(limit.name),
+            value: format!("≤ {}", number::short_time(limit.time_step)),
+            hint: limit.reason.clone(),
+        }),
+    );
     if let Some(binding) = advice.limits.first() {
         ui.add(egui::Label::new(RichText::new(&binding.reason).weak().small()).wrap());
     }
@@ -111,11 +127,14 @@ fn commands_ui(ui: &mut egui::Ui, commands: &[StampedCommand], parameters: &[Par
     ui.label(RichText::new(format!("Commands ({})", commands.len())).strong())
         .on_hover_text("A run is its scene, its seed and these commands.");
     let shown = commands.iter().rev().take(COMMANDS_SHOWN);
-    table_ui(ui, shown.map(|stamped| Row {
-        name: describe(&stamped.command, parameters),
-        value: format!("{:.3} s", stamped.time),
-        hint: format!("before step {}", stamped.step + 1),
-    }));
+    table_ui(
+        ui,
+        shown.map(|stamped| Row {
+            name: describe(&stamped.command, parameters),
+            value: format!("{:.3} s", stamped.time),
+            hint: format!("before step {}", stamped.step + 1),
+        }),
+    );
 }
 
 /// A command in words: `friction glass – drum 0.25`.

@@ -99,18 +99,21 @@ impl Results {
             );
         });
         let summary = self.summary(title, series);
-        table_ui(ui, AVERAGES.iter().map(|&(key, name)| {
-            let entry = summary.entries.iter().find(|entry| entry.name == key);
-            let value = entry.and_then(|entry| entry.value).unwrap_or(f64::NAN);
-            Row {
-                name: name.into(),
-                value: match key {
-                    "avalanches" => number::fixed(value, 0),
-                    _ => number::with_unit(value, entry.map_or("1", |entry| entry.unit)),
-                },
-                hint: entry.map_or_else(String::new, |entry| entry.note.clone()),
-            }
-        }));
+        table_ui(
+            ui,
+            AVERAGES.iter().map(|&(key, name)| {
+                let entry = summary.entries.iter().find(|entry| entry.name == key);
+                let value = entry.and_then(|entry| entry.value).unwrap_or(f64::NAN);
+                Row {
+                    name: name.into(),
+                    value: match key {
+                        "avalanches" => number::fixed(value, 0),
+                        _ => number::with_unit(value, entry.map_or("1", |entry| entry.unit)),
+                    },
+                    hint: entry.map_or_else(String::new, |entry| entry.note.clone()),
+                }
+            }),
+        );
     }
 
     /// Averages over `series`, remade when enough has been added.
@@ -130,16 +133,22 @@ impl Results {
 
 fn latest_ui(ui: &mut egui::Ui, sample: &Sample) {
     ui.label(RichText::new(format!("At {:.2} s", sample.time)).strong());
-    table_ui(ui, LATEST.iter().map(|&measure| Row {
-        name: number::title(measure),
-        value: number::with_unit(sample.value(measure), measure.quantity().unit),
-        hint: measure.quantity().description.into(),
-    }));
+    table_ui(
+        ui,
+        LATEST.iter().map(|&measure| Row {
+            name: number::title(measure),
+            value: number::with_unit(sample.value(measure), measure.quantity().unit),
+            hint: measure.quantity().description.into(),
+        }),
+    );
 }
 
 /// The energy ledger with one prefix for all terms, so that they compare.
 fn energy_ui(ui: &mut egui::Ui, sample: &Sample) {
-    let largest = ENERGIES.iter().map(|(measure, _)| sample.value(*measure).abs()).fold(0.0, f64::max);
+    let largest = ENERGIES
+        .iter()
+        .map(|(measure, _)| sample.value(*measure).abs())
+        .fold(0.0, f64::max);
     let (prefix, factor) = number::prefix_for(largest);
     ui.label(RichText::new(format!("Energy since the start [{prefix}J]")).strong());
     let in_prefix = |measure| number::fixed(sample.value(measure) * factor, 3);

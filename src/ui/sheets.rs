@@ -17,19 +17,28 @@ pub fn sheet_ui(ctx: &egui::Context, sheet: Sheet) -> bool {
 pub fn scene_error_ui(ctx: &egui::Context, reason: &str) -> bool {
     modal_ui(ctx, "This scene cannot be opened", 720.0, |ui| {
         let palette = Palette::of(ui.visuals());
-        egui::Frame::new().fill(palette.error_fill).corner_radius(6).inner_margin(10).show(ui, |ui| {
-            let height = 0.5 * ui.ctx().content_rect().height();
-            ScrollArea::both().max_height(height).show(ui, |ui| {
-                let text = RichText::new(reason).monospace();
-                ui.add(egui::Label::new(text).selectable(true).extend());
+        egui::Frame::new()
+            .fill(palette.error_fill)
+            .corner_radius(6)
+            .inner_margin(10)
+            .show(ui, |ui| {
+                let height = 0.5 * ui.ctx().content_rect().height();
+                ScrollArea::both().max_height(height).show(ui, |ui| {
+                    let text = RichText::new(reason).monospace();
+                    ui.add(egui::Label::new(text).selectable(true).extend());
+                });
             });
-        });
         ui.label("What was open goes on. Correct the file and open it again.");
     })
 }
 
 /// A window that must be closed before anything else; false once it is.
-fn modal_ui(ctx: &egui::Context, title: &str, width: f32, content: impl FnOnce(&mut egui::Ui)) -> bool {
+fn modal_ui(
+    ctx: &egui::Context,
+    title: &str,
+    width: f32,
+    content: impl FnOnce(&mut egui::Ui),
+) -> bool {
     let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
     let modal = Modal::new(Id::new(title)).frame(frame).show(ctx, |ui| {
         ui.set_width(width.min(0.9 * ui.ctx().content_rect().width()));
@@ -43,18 +52,21 @@ fn modal_ui(ctx: &egui::Context, title: &str, width: f32, content: impl FnOnce(&
 }
 
 fn shortcuts_ui(ui: &mut egui::Ui) {
-    egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 5.0]).show(ui, |ui| {
-        for shortcut in SHORTCUTS {
-            ui.monospace(shortcut.keys(ui.ctx()));
-            ui.label(shortcut.name);
-            ui.end_row();
-        }
-        for (gesture, name) in MOUSE {
-            ui.monospace(gesture);
-            ui.label(name);
-            ui.end_row();
-        }
-    });
+    egui::Grid::new("shortcuts")
+        .num_columns(2)
+        .spacing([24.0, 5.0])
+        .show(ui, |ui| {
+            for shortcut in SHORTCUTS {
+                ui.monospace(shortcut.keys(ui.ctx()));
+                ui.label(shortcut.name);
+                ui.end_row();
+            }
+            for (gesture, name) in MOUSE {
+                ui.monospace(gesture);
+                ui.label(name);
+                ui.end_row();
+            }
+        });
 }
 
 fn about_ui(ui: &mut egui::Ui) {

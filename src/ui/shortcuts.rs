@@ -122,7 +122,11 @@ pub const MOUSE: [(&str, &str); 4] = [
 impl Shortcut {
     /// Its keys in words: `. or →`.
     pub fn keys(&self, ctx: &egui::Context) -> String {
-        let names: Vec<String> = self.keys.iter().map(|key| ctx.format_shortcut(key)).collect();
+        let names: Vec<String> = self
+            .keys
+            .iter()
+            .map(|key| ctx.format_shortcut(key))
+            .collect();
         names.join(" or ")
     }
 
@@ -155,5 +159,7 @@ pub fn pressed(ctx: &egui::Context, status: Option<&Status>) -> Vec<Request> {
         return Vec::new();
     }
     let pressed = SHORTCUTS.iter().filter(|shortcut| shortcut.is_pressed(ctx));
-    pressed.filter_map(|shortcut| shortcut.request(status)).collect()
+    pressed
+        .filter_map(|shortcut| shortcut.request(status))
+        .collect()
 }

@@ -17,8 +17,15 @@ pub fn table_ui(ui: &mut egui::Ui, rows: impl Iterator<Item = Row>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     for (index, row) in rows.enumerate() {
         let stripe = ui.visuals().faint_bg_color;
-        let fill = if index % 2 == 0 { stripe } else { Color32::TRANSPARENT };
-        let line = Frame::new().fill(fill).corner_radius(3).inner_margin(Margin::symmetric(5, 2));
+        let fill = if index % 2 == 0 {
+            stripe
+        } else {
+            Color32::TRANSPARENT
+        };
+        let line = Frame::new()
+            .fill(fill)
+            .corner_radius(3)
+            .inner_margin(Margin::symmetric(5, 2));
         let response = line
             .show(ui, |ui| {
                 Sides::new().shrink_left().truncate().show(

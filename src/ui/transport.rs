@@ -51,22 +51,32 @@ pub fn play_or_pause(status: &Status) -> Option<Command> {
 }
 
 fn buttons_ui(ui: &mut egui::Ui, status: &Status, out: &mut Vec<Request>) {
-    let mut button = |ui: &mut egui::Ui, face: &str, name: &str, hint: &str, command: Option<Command>| {
-        let face = RichText::new(face).size(19.0);
-        let button = egui::Button::new(face).min_size(vec2(40.0, 32.0));
-        let response = ui.add_enabled(command.is_some(), button).on_hover_text(hint);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, command.is_some(), name));
-        if response.clicked() {
-            out.extend(command.map(Request::Command));
-        }
-    };
+    let mut button =
+        |ui: &mut egui::Ui, face: &str, name: &str, hint: &str, command: Option<Command>| {
+            let face = RichText::new(face).size(19.0);
+            let button = egui::Button::new(face).min_size(vec2(40.0, 32.0));
+            let response = ui
+                .add_enabled(command.is_some(), button)
+                .on_hover_text(hint);
+            response
+                .widget_info(|| WidgetInfo::labeled(WidgetType::Button, command.is_some(), name));
+            if response.clicked() {
+                out.extend(command.map(Request::Command));
+            }
+        };
     let allowed = |command| Some(command).filter(|command| allows(status, command));
     let (face, name, hint) = match status {
         Status::Running => ("⏸", "Pause", "Pause (Space)"),
         _ => ("▶", "Play", "Play (Space)"),
     };
     button(ui, face, name, hint, play_or_pause(status));
-    button(ui, "⏭", "Single step", "One time step (. or →)", allowed(Command::Step(1)));
+    button(
+        ui,
+        "⏭",
+        "Single step",
+        "One time step (. or →)",
+        allowed(Command::Step(1)),
+    );
     button(
         ui,
         "⏮",
@@ -83,7 +93,11 @@ fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
         .height(320.0)
         .show_ui(ui, |ui| {
             for choice in SPEEDS {
-                if ui.selectable_label(choice == speed, speed_name(choice)).clicked() && choice != speed {
+                if ui
+                    .selectable_label(choice == speed, speed_name(choice))
+                    .clicked()
+                    && choice != speed
+                {
                     out.push(Request::Command(Command::Speed(choice)));
                 }
             }
@@ -95,7 +109,11 @@ fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
 
 /// `0.5×`, `max`.
 fn speed_name(speed: f64) -> String {
-    if speed.is_finite() { format!("{speed}×") } else { "max".into() }
+    if speed.is_finite() {
+        format!("{speed}×")
+    } else {
+        "max".into()
+    }
 }
 
 fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
@@ -105,15 +123,19 @@ fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     let palette = Palette::of(ui.visuals());
     let (factor, asked) = (simulation.real_time_factor(), simulation.speed());
     let slower = factor > 0.0 && asked.is_finite() && factor < KEEPING_UP * asked;
-    let time = RichText::new(format!("t = {:8.3} s", world.time())).monospace().size(17.0);
-    ui.label(time.strong()).on_hover_text(format!("Simulated time, step {}", world.clock.step));
+    let time = RichText::new(format!("t = {:8.3} s", world.time()))
+        .monospace()
+        .size(17.0);
+    ui.label(time.strong())
+        .on_hover_text(format!("Simulated time, step {}", world.clock.step));
     if factor > 0.0 {
         let text = RichText::new(format!("{factor:.2}× real time"));
         if slower {
             let hint = "This machine is slower than the speed asked for: simulated time slows down, nothing is skipped.";
             ui.label(text.color(palette.warning)).on_hover_text(hint);
         } else {
-            ui.label(text.weak()).on_hover_text("Simulated seconds per second, measured");
+            ui.label(text.weak())
+                .on_hover_text("Simulated seconds per second, measured");
         }
     }
 }
@@ -135,10 +157,13 @@ pub fn status_ui(ui: &mut egui::Ui, status: &Status, time_step: f64, out: &mut V
         Status::Running | Status::Paused => {}
         Status::Preparing { stage, progress } => {
             let text = format!("{} · {:.0} %", number::capitalised(stage), 100.0 * progress);
-            let bar = egui::ProgressBar::new(*progress).text(text).desired_height(24.0);
+            let bar = egui::ProgressBar::new(*progress)
+                .text(text)
+                .desired_height(24.0);
             let response = ui.add(bar);
             response.widget_info(|| {
-                let mut info = WidgetInfo::labeled(WidgetType::ProgressIndicator, true, "Preparing the bed");
+                let mut info =
+                    WidgetInfo::labeled(WidgetType::ProgressIndicator, true, "Preparing the bed");
                 info.value = Some(f64::from(*progress));
                 info
             });

@@ -35,7 +35,14 @@ impl Place {
 
     /// Runs the small drum into the folder `out`, which must work, and returns its summary.
     fn run_small_drum(&self, out: &str, more: &[&str]) -> Value {
-        let mut arguments = vec!["small-drum", "--no-render", "--duration", "200ms", "--out", out];
+        let mut arguments = vec![
+            "small-drum",
+            "--no-render",
+            "--duration",
+            "200ms",
+            "--out",
+            out,
+        ];
         arguments.extend(more);
         let output = self.run(&arguments);
         assert!(output.status.success(), "{}", text(&output.stderr));
@@ -68,10 +75,20 @@ fn names(folder: &Path) -> Vec<String> {
 
 fn series(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let mut reader = csv::Reader::from_path(folder.join("series.csv")).unwrap();
-    let head = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    let head = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
     let rows = reader
         .records()
-        .map(|row| row.unwrap().iter().map(|cell| cell.parse().unwrap()).collect())
+        .map(|row| {
+            row.unwrap()
+                .iter()
+                .map(|cell| cell.parse().unwrap())
+                .collect()
+        })
         .collect();
     (head, rows)
 }
@@ -81,7 +98,10 @@ fn run_leaves_series_grains_and_summary() {
     let place = Place::new();
     let summary = place.run_small_drum("out", &[]);
     let out = place.path("out");
-    assert_eq!(names(&out), ["grains", "grains.pvd", "series.csv", "summary.json"]);
+    assert_eq!(
+        names(&out),
+        ["grains", "grains.pvd", "series.csv", "summary.json"]
+    );
     // Every 0.05 s from 0 to 0.2 s.
     let frames: Vec<String> = (0..5).map(|k| format!("grains_{k:06}.vtp")).collect();
     assert_eq!(names(&out.join("grains")), frames);
@@ -97,7 +117,11 @@ fn run_leaves_series_grains_and_summary() {
     assert_eq!(summary["grains"], 100);
     assert_eq!(summary["state_hash"].as_str().unwrap().len(), 32);
     assert!(summary["time"].as_f64().unwrap() >= 0.2);
-    assert!(summary["time_step"]["limits"].as_array().is_some_and(|limits| !limits.is_empty()));
+    assert!(
+        summary["time_step"]["limits"]
+            .as_array()
+            .is_some_and(|limits| !limits.is_empty())
+    );
 }
 
 #[test]
@@ -125,8 +149,19 @@ fn grains_file_reads_back_as_the_grains() {
             Attribute::Field { .. } => panic!("a field"),
         })
         .collect();
-    let sizes: Vec<_> = arrays.iter().map(|(name, data)| (name.as_str(), data.len())).collect();
-    assert_eq!(sizes, [("radius", 100), ("velocity", 300), ("spin", 300), ("species", 100)]);
+    let sizes: Vec<_> = arrays
+        .iter()
+        .map(|(name, data)| (name.as_str(), data.len()))
+        .collect();
+    assert_eq!(
+        sizes,
+        [
+            ("radius", 100),
+            ("velocity", 300),
+            ("spin", 300),
+            ("species", 100)
+        ]
+    );
     assert!(arrays[0].1.iter().all(|radius| *radius == 0.003));
 }
 
@@ -146,10 +181,18 @@ fn summary_plays_its_run_again() {
         "commands.ron",
         r#"[(time: 0.1, command: Set(parameter: "friction.glass.glass", value: 0.1))]"#,
     );
-    let changes = ["--set", "drum-speed=3 rpm", "--commands", list.to_str().unwrap()];
+    let changes = [
+        "--set",
+        "drum-speed=3 rpm",
+        "--commands",
+        list.to_str().unwrap(),
+    ];
     let first = place.run_small_drum("first", &changes);
     assert_eq!(first["commands"].as_array().unwrap().len(), 2);
-    assert_ne!(first["state_hash"], place.run_small_drum("plain", &[])["state_hash"]);
+    assert_ne!(
+        first["state_hash"],
+        place.run_small_drum("plain", &[])["state_hash"]
+    );
     let again = place.run_small_drum("again", &["--commands", "first/summary.json"]);
     assert_eq!(again["state_hash"], first["state_hash"]);
     assert_eq!(again["commands"], first["commands"]);
@@ -187,10 +230,19 @@ fn bad_input_ends_with_2_and_says_what_was_expected() {
         (&["small-drum", "--seed", "-1"], "seed"),
         (&["small-drum", "--threads", "0"], "--threads"),
         (&["small-drum", "--set", "drum-speed"], "expected KEY=VALUE"),
-        (&["small-drum", "--set", "colour=red"], "no parameter is called `colour`"),
+        (
+            &["small-drum", "--set", "colour=red"],
+            "no parameter is called `colour`",
+        ),
         (&["small-drum", "--set", "drum-speed=fast"], "rpm"),
-        (&["small-drum", "--set", "friction.glass.gold=0.3"], "friction.glass.drum"),
-        (&["small-drum", "--set", "friction.glass.glass=-1"], "expected 0 … 1"),
+        (
+            &["small-drum", "--set", "friction.glass.gold=0.3"],
+            "friction.glass.drum",
+        ),
+        (
+            &["small-drum", "--set", "friction.glass.glass=-1"],
+            "expected 0 … 1",
+        ),
         (&["small-drum", "--commands", "list.ron"], "list.ron"),
         (&["small-drum", "--commands", "reset.ron"], "Reset"),
     ];
@@ -199,7 +251,11 @@ fn bad_input_ends_with_2_and_says_what_was_expected() {
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         assert!(message.contains(expected), "{arguments:?}: {message}");
-        assert_eq!(message.matches("error: ").count(), 1, "said once: {message}");
+        assert_eq!(
+            message.matches("error: ").count(),
+            1,
+            "said once: {message}"
+        );
         assert!(!message.contains("panicked"), "{arguments:?}: {message}");
     }
 }
@@ -208,7 +264,14 @@ fn bad_input_ends_with_2_and_says_what_was_expected() {
 fn fault_ends_with_3_and_keeps_the_files_until_then() {
     let place = Place::new();
     let output = place.run(&[
-        "small-drum", "--no-render", "--out", "out", "--time-step", "1e-3", "--duration", "1s",
+        "small-drum",
+        "--no-render",
+        "--out",
+        "out",
+        "--time-step",
+        "1e-3",
+        "--duration",
+        "1s",
     ]);
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     let summary = summary(&place.path("out"));
@@ -220,14 +283,31 @@ fn fault_ends_with_3_and_keeps_the_files_until_then() {
 #[test]
 fn interrupted_run_leaves_whole_files() {
     let place = Place::new();
-    let arguments = ["small-drum", "--no-render", "--duration", "1h", "--out", "out"];
-    let mut child = place.command(&arguments).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    let arguments = [
+        "small-drum",
+        "--no-render",
+        "--duration",
+        "1h",
+        "--out",
+        "out",
+    ];
+    let mut child = place
+        .command(&arguments)
+        .stderr(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
     wait_for(&place.path("out/grains/grains_000003.vtp"), &mut child);
-    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    let interrupt = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
     assert!(interrupt.unwrap().success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let out = place.path("out");
-    assert_eq!(names(&out), ["grains", "grains.pvd", "series.csv", "summary.json"]);
+    assert_eq!(
+        names(&out),
+        ["grains", "grains.pvd", "series.csv", "summary.json"]
+    );
     let summary = summary(&out);
     assert_eq!(summary["status"], "interrupted");
     let (_, rows) = series(&out);
@@ -244,7 +324,10 @@ fn wait_for(path: &Path, child: &mut Child) {
         if path.exists() {
             return;
         }
-        assert!(child.try_wait().unwrap().is_none(), "the run ended by itself");
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "the run ended by itself"
+        );
         std::thread::sleep(Duration::from_millis(10));
     }
     panic!("{} never came", path.display());

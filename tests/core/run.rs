@@ -128,7 +128,11 @@ fn reset_starts_the_command_list_with_the_present_values() {
     run.apply(Command::Pause).unwrap();
     run.advance_to(600).unwrap();
     run.apply(Command::Reset).unwrap();
-    let commands: Vec<_> = run.commands().iter().map(|c| (c.step, &c.command)).collect();
+    let commands: Vec<_> = run
+        .commands()
+        .iter()
+        .map(|c| (c.step, &c.command))
+        .collect();
     assert_eq!(commands, [(0, &friction(0.1))]);
     assert_eq!(run.world().hash(), start, "the bed is as it was");
     assert_eq!(run.series().len(), 1, "only the sample at time zero");
@@ -142,7 +146,10 @@ fn impossible_commands_are_refused_and_change_nothing() {
     assert!(message.contains("friction.glass.gold") && message.contains("friction.glass.drum"));
     for value in [-0.1, 7.0, f64::NAN, f64::INFINITY] {
         let refused = run.apply(friction(value)).unwrap_err();
-        assert!(matches!(refused, CommandError::OutOfRange { .. }), "{refused}");
+        assert!(
+            matches!(refused, CommandError::OutOfRange { .. }),
+            "{refused}"
+        );
     }
     assert!(run.commands().is_empty());
 }
@@ -196,11 +203,19 @@ fn every_parameter_reads_back_what_was_set_and_the_ledger_stays_closed() {
             _ => 1e-12 * value.abs(),
         };
         let found = info.parameter.read(run.world()).unwrap();
-        assert!((found - value).abs() <= tolerance, "{}: {found} for {value}", info.parameter);
+        assert!(
+            (found - value).abs() <= tolerance,
+            "{}: {found} for {value}",
+            info.parameter
+        );
         // A command takes no time: what it changes of stored energy is its own work. Rounding of sums of the ledger's terms.
         let turnover = before.gravity_work.abs() + before.kinetic + before.elastic + after.initial;
         let jump = (after.residual() - before.residual()).abs();
-        assert!(jump <= 1e-12 * turnover.max(1e-6), "{}: residual jumps by {jump} J", info.parameter);
+        assert!(
+            jump <= 1e-12 * turnover.max(1e-6),
+            "{}: residual jumps by {jump} J",
+            info.parameter
+        );
     }
 }
 
@@ -213,10 +228,17 @@ fn settled_bed_rests() {
     let mut run = run_of(&scene);
     let start = run.world().clone();
     run.advance_to(start.clock.step_at(0.5)).unwrap();
-    let moved = start.grains.position.iter().zip(&run.world().grains.position);
+    let moved = start
+        .grains
+        .position
+        .iter()
+        .zip(&run.world().grains.position);
     let furthest = moved.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     // Creep of a bed whose kinetic energy settled below 1e-9 m g r: far below the overlaps of about 1e-5 m.
-    assert!(furthest < 1e-6, "some grain crept {furthest:e} m in half a second");
+    assert!(
+        furthest < 1e-6,
+        "some grain crept {furthest:e} m in half a second"
+    );
 }
 
 #[test]
@@ -237,7 +259,12 @@ fn damaged_bed_is_settled_anew() {
     let scene = scene("small-drum");
     let beds = BedStore::at(folder.path());
     let (settled, _) = prepared(&scene, 1, beds.clone());
-    let path = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
+    let path = std::fs::read_dir(folder.path())
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap()
+        .path();
     let whole = std::fs::read(&path).unwrap();
     let mut flipped = whole.clone();
     flipped[whole.len() / 2] ^= 1;
@@ -245,7 +272,11 @@ fn damaged_bed_is_settled_anew() {
         std::fs::write(&path, damaged).unwrap();
         let (again, _) = prepared(&scene, 1, beds.clone());
         assert_eq!(again.world(), settled.world());
-        assert_eq!(std::fs::read(&path).unwrap(), whole, "the bed is kept whole again");
+        assert_eq!(
+            std::fs::read(&path).unwrap(),
+            whole,
+            "the bed is kept whole again"
+        );
     }
 }
 
@@ -257,12 +288,20 @@ fn bed_belongs_to_its_scene_alone() {
     prepared(&scene, 1, beds.clone());
     scene.seed += 1;
     prepared(&scene, 1, beds.clone());
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "another seed, another bed");
+    assert_eq!(
+        std::fs::read_dir(folder.path()).unwrap().count(),
+        2,
+        "another seed, another bed"
+    );
     if let SceneContainer::Drum { speed, .. } = &mut scene.container {
         *speed *= 2.0;
     }
     prepared(&scene, 1, beds);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "drums settle at rest");
+    assert_eq!(
+        std::fs::read_dir(folder.path()).unwrap().count(),
+        2,
+        "drums settle at rest"
+    );
 }
 
 #[test]
@@ -271,7 +310,10 @@ fn bed_that_cannot_be_kept_is_a_warning() {
     let file = folder.path().join("file");
     std::fs::write(&file, "in the way").unwrap();
     let (run, warnings) = prepared(&scene("small-drum"), 1, BedStore::at(file.join("beds")));
-    assert!(warnings[0].contains("cannot keep the settled bed"), "{warnings:?}");
+    assert!(
+        warnings[0].contains("cannot keep the settled bed"),
+        "{warnings:?}"
+    );
     assert_eq!(run.world().clock.step, 0);
 }
 
@@ -334,7 +376,9 @@ fn player_pauses_steps_and_goes_on() {
         tick_until(&mut simulation, |s| *s.status() == Status::Paused);
         let held = step(&simulation).unwrap();
         simulation.send(Command::Step(3));
-        tick_until(&mut simulation, |s| step(s) == Some(held + 3) && *s.status() == Status::Paused);
+        tick_until(&mut simulation, |s| {
+            step(s) == Some(held + 3) && *s.status() == Status::Paused
+        });
         simulation.send(Command::Play);
         tick_until(&mut simulation, |s| step(s) > Some(held + 100));
         assert_eq!(*simulation.status(), Status::Running);
@@ -351,7 +395,12 @@ fn value_asked_for_shows_before_it_is_carried_out() {
     assert_eq!(simulation.value(&parameter), 0.1);
     tick_until(&mut simulation, |s| !s.commands().is_empty());
     assert_eq!(simulation.value(&parameter), 0.1);
-    assert_eq!(simulation.value(&Parameter::Share("nobody".into())).to_bits(), f64::NAN.to_bits());
+    assert_eq!(
+        simulation
+            .value(&Parameter::Share("nobody".into()))
+            .to_bits(),
+        f64::NAN.to_bits()
+    );
 }
 
 #[test]
@@ -379,7 +428,9 @@ fn absurd_state_is_a_fault_and_the_last_good_state_stays() {
         fast.velocity.y = -1000.0;
     }
     let mut simulation = opened(scene, DriverKind::Inline);
-    tick_until(&mut simulation, |s| matches!(s.status(), Status::Faulted(_)));
+    tick_until(&mut simulation, |s| {
+        matches!(s.status(), Status::Faulted(_))
+    });
     let world = simulation.world().unwrap();
     assert!(world.grains.position.iter().all(|x| x.is_finite()));
     simulation.send(Command::Reset);
