@@ -29,6 +29,7 @@
 //! | [`measure`] | read-only numbers from a world |
 //! | [`simulation`] | the run (world, solver, commands, samples) and the Bevy plugin that steps it |
 //! | [`headless`] | the windowless runner and its output files |
+//! | [`files`] | files that appear whole or not at all |
 //! | `view` | a world as pixels: grains, container, camera, colours |
 //! | `ui` | the egui panels |
 //! | `window` | the app that opens them in a window, or draws them into a picture |
@@ -39,6 +40,7 @@
 //! drum speed turns anticlockwise as the viewer sees it. A contact's normal points from grain `i` to its partner `j`.
 //! State and forces are `f64`; `f32` only on the way to the screen.
 
+pub mod files;
 pub mod headless;
 pub mod measure;
 pub mod scene;

@@ -1,1 +1,230 @@
-fn main() {}
+//! The command line: what to open, what to change, and whether a window is wanted.
+//!
+//! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 130 interrupted.
+
+use clap::{Args, Parser, Subcommand};
+use grainfall::files::write_whole;
+use grainfall::headless::{self, HeadlessError, Job, read_commands};
+use grainfall::scene::{Scene, built_in};
+use grainfall::simulation::{BedStore, Command, Options, Parameter, ScriptedCommand, make_bed};
+use grainfall::solver::advise;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// An interactive laboratory for granular matter.
+///
+/// Opens a scene in a window, or runs it without one and writes its numbers to files.
+#[derive(Parser)]
+#[command(version, args_conflicts_with_subcommands = true, args_override_self = true, after_help = EXIT_CODES)]
+struct Arguments {
+    #[command(flatten)]
+    what: What,
+    /// Run without a window, as fast as the machine can, and write files
+    #[arg(long)]
+    no_render: bool,
+    /// Folder for the files of a run without a window [default: out/<scene>]
+    #[arg(long, value_name = "DIR", requires = "no_render")]
+    out: Option<PathBuf>,
+    #[command(subcommand)]
+    task: Option<Task>,
+}
+
+/// What to open and what to change about it.
+#[derive(Args)]
+struct What {
+    /// A scene file, or the name of a built-in scene
+    scene: Option<String>,
+    /// Simulated time of a run without a window: 10s, 500ms
+    #[arg(long, value_name = "TIME")]
+    duration: Option<String>,
+    /// Simulated time between two written states: 0.1s, 20ms
+    #[arg(long, value_name = "TIME")]
+    output_interval: Option<String>,
+    /// Length of a step: automatic, 10us
+    #[arg(long, value_name = "TIME")]
+    time_step: Option<String>,
+    /// Seed of everything random
+    #[arg(long, value_name = "N")]
+    seed: Option<String>,
+    /// Change a value: friction.glass.glass=0.3, drum-speed=1rpm, count=200 (may be repeated)
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Threads the solver works on [default: all cores, one less with a window]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
+    threads: Option<u16>,
+    /// Commands to carry out when their time comes: a list in RON or JSON, or a run's summary.json
+    #[arg(long, value_name = "FILE")]
+    commands: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Settle a scene's bed and write it to a file
+    #[command(hide = true)]
+    Bed {
+        /// A scene file, or the name of a built-in scene
+        scene: String,
+        /// The file
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 130 interrupted";
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match carry_out(arguments) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            print_chain(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
+    if let Some(Task::Bed { scene, out }) = arguments.task {
+        return write_bed(&scene, &out);
+    }
+    let what = arguments.what;
+    let name = what.scene.clone().unwrap_or_else(first_scene);
+    let (scene, script) = changed_scene(&name, &what)?;
+    if !arguments.no_render {
+        return open_window(scene, window_options(&what, script));
+    }
+    let name = short_name(&name);
+    let job = Job {
+        out: arguments
+            .out
+            .unwrap_or_else(|| Path::new("out").join(&name)),
+        scene,
+        name,
+        threads: what
+            .threads
+            .map_or(Options::headless().threads, usize::from),
+        script,
+        beds: BedStore::user(),
+    };
+    let ending = headless::run(&job, &*interruption()?)?;
+    Ok(ending.exit_code())
+}
+
+/// The built-in scene to open when none is asked for.
+fn first_scene() -> String {
+    built_in()
+        .first()
+        .map_or(String::new(), |scene| scene.name.to_owned())
+}
+
+/// The scene called `name` with the changes asked for, and the commands to carry out while it runs.
+fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>), HeadlessError> {
+    let mut scene = Scene::open(name)?;
+    let options = [
+        ("duration", &what.duration),
+        ("output-interval", &what.output_interval),
+        ("time-step", &what.time_step),
+        ("seed", &what.seed),
+    ];
+    for (key, value) in options {
+        if let Some(value) = value {
+            scene.set(key, value)?;
+        }
+    }
+    let mut script = Vec::new();
+    for setting in &what.set {
+        script.extend(set(&mut scene, setting)?);
+    }
+    if let Some(path) = &what.commands {
+        script.extend(read_commands(path)?);
+    }
+    Ok((scene, script))
+}
+
+/// Carries out one `--set`: at once where it is the scene's, as a command at step zero where it is a live parameter's.
+fn set(scene: &mut Scene, setting: &str) -> Result<Option<ScriptedCommand>, HeadlessError> {
+    let refuse = |reason: String| HeadlessError::Input(format!("--set {setting}: {reason}"));
+    let Some((key, text)) = setting.split_once('=') else {
+        return Err(refuse("expected KEY=VALUE, such as drum-speed=1rpm".into()));
+    };
+    if Scene::settings().any(|(known, _)| known == key) {
+        scene.set(key, text)?;
+        return Ok(None);
+    }
+    let parameter = Parameter::try_from(key.to_owned()).map_err(|reason| {
+        let known: Vec<&str> = Scene::settings().map(|(known, _)| known).collect();
+        refuse(format!("{reason}; or before a run: {}", known.join(", ")))
+    })?;
+    let value = parameter.parse_value(text).ok_or_else(|| {
+        let (unit, shown) = (parameter.unit(), parameter.display().name);
+        refuse(format!("`{text}` is no value; expected a number in SI units ({unit}), or one with its unit {shown}"))
+    })?;
+    Ok(Some(ScriptedCommand {
+        step: Some(0),
+        time: None,
+        command: Command::Set { parameter, value },
+    }))
+}
+
+/// `scenes/papers/kasper2021/dry-r3.ron` is called `dry-r3`.
+fn short_name(name: &str) -> String {
+    let file = name.strip_suffix(".ron").unwrap_or(name);
+    Path::new(file).file_name().map_or_else(
+        || "scene".into(),
+        |file| file.to_string_lossy().into_owned(),
+    )
+}
+
+fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
+    let options = Options::window();
+    Options {
+        threads: what.threads.map_or(options.threads, usize::from),
+        script,
+        ..options
+    }
+}
+
+#[cfg(not(feature = "desktop"))]
+fn open_window(_scene: Scene, _options: Options) -> Result<u8, HeadlessError> {
+    Err(HeadlessError::Input(
+        "this grainfall was built without a window: add --no-render, or build it with the feature `desktop`".into(),
+    ))
+}
+
+/// Becomes true when somebody asks the program to end; a second time ends it at once.
+fn interruption() -> Result<Arc<AtomicBool>, HeadlessError> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let shared = flag.clone();
+    ctrlc::set_handler(move || {
+        if shared.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })
+    .map_err(|error| HeadlessError::Input(format!("cannot listen to Ctrl-C: {error}")))?;
+    Ok(flag)
+}
+
+fn write_bed(name: &str, path: &Path) -> Result<u8, HeadlessError> {
+    let scene = Scene::open(name)?;
+    let threads = Options::headless().threads;
+    let bed = make_bed(&scene, advise(&scene).time_step, threads)
+        .map_err(|fault| HeadlessError::Input(format!("the bed cannot settle: {fault}")))?;
+    write_whole(path, |file| file.write_all(&bed)).map_err(|source| HeadlessError::Write {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(0)
+}
+
+/// Prints `error` and what led to it, once, for people.
+fn print_chain(error: &dyn Error) {
+    eprintln!("error: {error}");
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        eprintln!("  because: {error}");
+        cause = error.source();
+    }
+}

@@ -1,10 +1,70 @@
 //! What was asked for: a scene read from a RON file, every value checked.
 //!
-//! In: the text of a scene file. Out: a [`Scene`] in SI units, or an error that names file, line, key, value and what was
-//! expected. Nothing here places a grain: [`crate::world::build`] does.
+//! In: the text of a scene file. Out: a [`Scene`] in SI units, or a [`SceneError`] that names file, line, key, value and
+//! what was expected. Nothing here places a grain: [`crate::world::build`] does.
+//!
+//! # Scene files
+//! ```ron
+//! (
+//!     title: "A drum of glass and steel beads",
+//!     look_for: "How the mixture changes the angle of the surface.",
+//!     source: "Drum and glass of Kasper et al. 2021; the steel is made up.",
+//!     materials: {
+//!         "glass": (youngs_modulus: 63e6, poisson_ratio: 0.21, density: 2500, restitution: 0.95, friction: 0.4),
+//!         "steel": (youngs_modulus: 63e6, poisson_ratio: 0.3, density: 7800, friction: 0.2),
+//!         "drum": (youngs_modulus: 12e6, poisson_ratio: 0.35),
+//!     },
+//!     pairs: [(between: ("glass", "drum"), restitution: 0.72, friction: 0.3)],
+//!     container: Drum(radius_mm: 60.5, width_mm: 22, speed_rpm: 0.5, material: "drum"),
+//!     grains: Fill(
+//!         bulk_fraction: 0.35,
+//!         packing: 0.6,
+//!         species: [
+//!             (name: "glass", radius_mm: 3, material: "glass", share: 0.7),
+//!             (name: "steel", radius_mm: 3, material: "steel", share: 0.3),
+//!         ],
+//!     ),
+//!     duration: 10,
+//!     output_interval: 0.1,
+//! )
+//! ```
+//! **Units**: SI, save under a key that names its unit: `radius_mm`, `width_mm`, `speed_rpm`.
+//! **Defaults**: a material's values are those of the dry glass of Kasper et al. 2021, a drum's those of their drum (0.5
+//! rpm), a filling's 0.35 of the volume at a packing of 0.60; gravity (0, −9.81, 0), law `HertzMindlin`, time step
+//! `Automatic`, duration 50 s, an output each 0.1 s, seed 1. A species is called after its material. All else is required.
+//! **Containers**: `Drum(…)`, `Box(min: …, max: …, material: …)`, `Planes([(point: …, normal: …, material: …), …])`,
+//! `Nothing`. **Grains**: `Fill(…)` by `bulk_fraction` and `packing` or by `count`, from low y upwards, or
+//! `List([(position: …, velocity: …, spin: …, radius: …, material: …), …])`, of which nothing is settled.
+//! **Laws**: `HertzMindlin`, `Hooke(normal_stiffness: …, tangential_stiffness: …)`. **Time step**: `Automatic`,
+//! `Given(1e-5)`.
+//!
+//! `pairs` says how two different materials meet where that is not the harmonic mean of their own values.
 
+mod built_in;
+mod check;
+mod error;
+mod file;
+mod lattice;
+mod mixture;
+mod outline;
+mod set;
+mod syntax;
+
+pub use built_in::{BuiltIn, built_in};
+pub use error::SceneError;
+pub use lattice::Lattice;
+pub use mixture::{SizeClass, apportion, size_classes};
+pub use set::seconds;
+
+use file::SceneFile;
 use glam::DVec3;
+use ron::extensions::Extensions;
 use serde::{Deserialize, Serialize};
+use std::io::Read;
+use std::path::Path;
+
+/// Largest scene file that is read [bytes]: room for about half a million listed grains.
+const LARGEST_FILE: u64 = 64 << 20;
 
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +99,7 @@ pub struct Scene {
 
 /// How two bodies push each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum ContactLaw {
     /// Hertz–Mindlin from the materials' elastic constants, Eqs. 5–10 of Kasper et al. 2021.
     #[default]
@@ -53,9 +114,10 @@ pub enum ContactLaw {
 }
 
 /// How the time step is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum TimeStep {
     /// The largest stable step, as the solver's advice reasons it.
+    #[default]
     Automatic,
     /// This step [s].
     Given(f64),
@@ -83,6 +145,7 @@ pub struct SceneMaterial {
 /// What differs from the mixing rule (the harmonic mean of both materials' values, Eq. 3.7 of Man et al. 2023) when two
 /// materials meet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Pair", deny_unknown_fields)]
 pub struct PairOverride {
     /// The two materials' names.
     pub between: (String, String),
@@ -178,4 +241,122 @@ pub struct SceneGrain {
     pub radius: f64,
     /// Name of its material.
     pub material: String,
+}
+
+impl Scene {
+    /// The scene in the file at `path`.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no scene, or states something impossible.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        Self::parse(&name, &read(path, &name)?)
+    }
+
+    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name or path.
+    ///
+    /// # Errors
+    /// As [`Scene::load`], and when there is neither such a file nor such a scene.
+    pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = name.as_ref();
+        if path.exists() {
+            return Self::load(path);
+        }
+        let name = path.display().to_string();
+        let wanted = name.strip_suffix(".ron").unwrap_or(&name);
+        let mut known = built_in().iter();
+        if let Some(scene) = known.find(|scene| scene.name == wanted || scene.path == name) {
+            return Self::parse(scene.path, scene.text);
+        }
+        let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
+        Err(SceneError::unreadable(
+            &name,
+            "there is no such file, nor a built-in scene of that name",
+            &format!("a file, or {}", error::one_of(&names)),
+        )
+        .advise(error::suggestion(wanted, &names)))
+    }
+
+    /// The scene that `text` states; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// When the text is no scene, or states something impossible.
+    pub fn parse(file: &str, text: &str) -> Result<Self, SceneError> {
+        let text = text.trim_start_matches('\u{feff}');
+        if text.trim().is_empty() {
+            return Err(SceneError::unreadable(
+                file,
+                "the file is empty",
+                "a scene `(title: …, …)`",
+            ));
+        }
+        let refuse = |problem| SceneError::from_problem(file, text, problem);
+        let scene = ron::Options::default()
+            .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES)
+            .from_str::<SceneFile>(text)
+            .map_err(|error| syntax::explain(file, text, &error))?
+            .into_scene()
+            .map_err(refuse)?;
+        scene.problem().map_err(refuse)?;
+        Ok(scene)
+    }
+
+    /// Whether every value makes sense and all fit together, as a scene made by a program may not. Parsed scenes do.
+    ///
+    /// # Errors
+    /// When a value does not.
+    pub fn check(&self) -> Result<(), SceneError> {
+        self.problem()
+            .map_err(|problem| SceneError::outside_of_files(&self.title, problem))
+    }
+
+    /// The material called `name`, with its index in a world.
+    pub fn material(&self, name: &str) -> Option<(usize, &SceneMaterial)> {
+        let mut materials = self.materials.iter().enumerate();
+        materials.find(|(_, material)| material.name == name)
+    }
+
+    /// Indices of the species that share the radius of the one at `index`, itself included: their mixing ratio can change
+    /// while a run goes on. Empty for listed grains.
+    pub fn species_of_same_radius(&self, index: usize) -> Vec<usize> {
+        let SceneGrains::Fill { species, .. } = &self.grains else {
+            return Vec::new();
+        };
+        let Some(kind) = species.get(index) else {
+            return Vec::new();
+        };
+        (0..species.len())
+            .filter(|&other| species[other].radius == kind.radius)
+            .collect()
+    }
+}
+
+impl PairOverride {
+    /// Whether it says how `a` and `b`, in either order, meet.
+    pub fn is_between(&self, a: &str, b: &str) -> bool {
+        let (first, second) = (self.between.0.as_str(), self.between.1.as_str());
+        (first, second) == (a, b) || (first, second) == (b, a)
+    }
+}
+
+/// Text of the file at `path`, which errors call `name`.
+fn read(path: &Path, name: &str) -> Result<String, SceneError> {
+    let refuse = |fault: String| SceneError::unreadable(name, fault, "a scene file in RON");
+    if path.is_dir() {
+        return Err(refuse("this is a folder".to_owned()));
+    }
+    let unreadable = |error: std::io::Error| refuse(format!("cannot be read: {error}"));
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a file that is too large, even where its size is not known beforehand.
+    let read = file.take(LARGEST_FILE + 1).read_to_end(&mut bytes);
+    if read.map_err(unreadable)? as u64 > LARGEST_FILE {
+        return Err(refuse("is larger than 64 MiB".to_owned()));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
+        refuse("is not UTF-8 text".to_owned()).at_line(&text, good)
+    })
 }

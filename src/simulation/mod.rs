@@ -3,7 +3,35 @@
 //! [`Run`] is the trajectory: a scene, its world, the solver, the commands carried out and the samples taken. It knows
 //! nothing of wall-clock time, frames or threads: the same scene, seed and commands give the same bits. [`Simulation`] is
 //! what panels and views see of it; a driver moves the run on, inline or on its own thread.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `command` | everything a person can ask for |
+//! | `parameter`, `relabel` | the numbers that can change while a run goes on, and how they change a world |
+//! | `script` | commands that are carried out by themselves: replay |
+//! | `run` | the trajectory, samples, snapshots |
+//! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
+//! | `engine`, `driver` | who moves a run on, in short pieces, inline or on a thread |
+//! | `front`, `plugin` | what the outside sees, and the Bevy system that ticks it |
 
+mod bed;
 mod command;
+mod driver;
+mod engine;
+mod front;
+mod parameter;
+mod plugin;
+mod preparation;
+mod relabel;
+mod run;
+mod script;
+mod settling;
 
+pub use bed::BedStore;
 pub use command::{Command, Parameter, StampedCommand};
+pub use front::{DriverKind, Options, SMALLEST_DROP, Simulation, Status};
+pub use parameter::{DisplayUnit, ParameterInfo};
+pub use plugin::{SimulationPlugin, SimulationSystems, advance_simulation};
+pub use preparation::{Preparation, Prepared, make_bed};
+pub use run::{CommandError, Run, SAMPLE_INTERVAL, Snapshot};
+pub use script::{Script, ScriptError, ScriptedCommand};

@@ -1,27 +1,55 @@
 //! How the state advances.
 //!
 //! In: a [`World`]. Out: the same world some steps later, or a [`Fault`] and the world as it was. The solver keeps only
-//! caches of its own (neighbour list, lane buffers), so a world that was restored or changed from outside simply goes on.
+//! caches of its own (neighbour lists, lane buffers), so a world that was restored or changed from outside simply goes on,
+//! and neither the number of threads, nor the skins, nor how many steps a call takes show in a single bit of it.
+//!
+//! One step, in order: kick (half a step of velocity), drift (a step of position), refresh the lists if some grain has
+//! moved far, forces pair by pair, sum per grain, kick. [`Solver::march`] is that table of contents; the last kick of a
+//! step and the first of the next share one pass over the grains.
+//!
+//! What is not here: damping other than the contact laws', grains that are no spheres, periodic boundaries.
 
+mod contacts;
 mod fault;
+mod integrate;
+pub mod law;
+mod neighbours;
 mod profile;
+mod row;
+mod state;
+mod team;
 mod time_step;
 
 pub use fault::{Fault, FaultKind};
 pub use profile::{Profile, Stage};
 pub use time_step::{Limit, TimeStepAdvice, advise};
 
+use crate::scene::ContactLaw;
 use crate::world::World;
+use law::{HertzMindlin, Hooke, Law};
+use state::State;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use team::{Barrier, Team};
 
 /// Advances worlds.
 pub struct Solver {
+    team: Team,
+    state: State,
     profile: Profile,
 }
 
+/// The profile reads the clock in one step out of this many: reading it costs as much as a hundred grains.
+const STEPS_PER_TIMING: u64 = 16;
+
 impl Solver {
     /// A solver that works on `threads` threads (at least one).
-    pub fn new(_threads: usize) -> Self {
+    pub fn new(threads: usize) -> Self {
         Self {
+            team: Team::new(threads),
+            state: State::default(),
             profile: Profile::default(),
         }
     }
@@ -30,12 +58,122 @@ impl Solver {
     ///
     /// # Errors
     /// A [`Fault`] when a grain's state becomes absurd; `world` is then as it was before the call.
-    pub fn advance(&mut self, _world: &mut World, _steps: u64) -> Result<(), Fault> {
-        unimplemented!("solver")
+    pub fn advance(&mut self, world: &mut World, steps: u64) -> Result<(), Fault> {
+        if steps == 0 || world.grains.is_empty() {
+            world.clock.step += steps;
+            return Ok(());
+        }
+        let begin = Instant::now();
+        self.state.load(world);
+        self.profile.stages[Stage::Exchange as usize] += begin.elapsed();
+        let taken = match world.law {
+            ContactLaw::HertzMindlin => self.march(HertzMindlin, world, steps),
+            ContactLaw::Hooke { .. } => self.march(Hooke, world, steps),
+        };
+        let result = taken.map_err(|steps| self.state.diagnose(world, steps));
+        if result.is_ok() {
+            let storing = Instant::now();
+            self.state.store(world, steps);
+            self.profile.stages[Stage::Exchange as usize] += storing.elapsed();
+        }
+        self.profile.steps += steps;
+        self.profile.grains = world.grains.len();
+        self.profile.listed = self.state.listed();
+        self.profile.total += begin.elapsed();
+        result
     }
 
-    /// Where the time went since the last call of [`Solver::take_profile`].
+    /// Where the time went since the last call.
     pub fn take_profile(&mut self) -> Profile {
         std::mem::take(&mut self.profile)
     }
+
+    /// Takes `steps` steps; on a fault, says after how many.
+    fn march(&mut self, law: impl Law, world: &World, steps: u64) -> Result<(), u64> {
+        let mut done = 0;
+        let mut refresh = self.state.start();
+        while done < steps {
+            if refresh {
+                let begin = Instant::now();
+                self.profile.rebuilds += self.state.refresh();
+                self.state.compute_constants(world);
+                self.profile.stages[Stage::Neighbours as usize] += begin.elapsed();
+            }
+            let stretch = self.stretch(law, steps - done);
+            done += stretch.steps;
+            if stretch.fault {
+                return Err(done);
+            }
+            // The end of a call cuts a list's life short: it says nothing of how long the list would have lived.
+            if done < steps {
+                self.state.adapt(stretch.steps);
+                refresh = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes up to `remaining` steps on the lists as they are; the team stays in step from beginning to end.
+    #[expect(
+        unsafe_code,
+        reason = "the barriers here are what the phases' contracts ask for"
+    )]
+    fn stretch(&mut self, law: impl Law, remaining: u64) -> Stretch {
+        let size = self.team.size();
+        let barrier = Barrier::new(size);
+        let (refresh, fault) = (AtomicBool::new(false), AtomicBool::new(false));
+        let limit = remaining.min(self.state.steps_within_slack());
+        let result = Mutex::new((0, [Duration::ZERO; 2]));
+        let phase = self.state.phase();
+        self.team.run(|member| {
+            let mut timings = [Duration::ZERO; 2];
+            let mut walls = phase.walls().to_vec();
+            let mut steps = 0;
+            while steps < limit
+                && !refresh.load(Ordering::Relaxed)
+                && !fault.load(Ordering::Relaxed)
+            {
+                let begin = (member == 0 && steps % STEPS_PER_TIMING == 0).then(Instant::now);
+                // SAFETY: all members are between the same two barriers, each under its own number.
+                unsafe { phase.forces(law, &walls, member, size) };
+                barrier.wait();
+                let middle = begin.map(|begin| (begin.elapsed(), Instant::now()));
+                steps += 1;
+                let last = steps == remaining;
+                // SAFETY: likewise, one barrier further.
+                let outcome = unsafe { phase.finish(member, size, last) };
+                refresh.fetch_or(outcome.refresh, Ordering::Relaxed);
+                fault.fetch_or(outcome.fault, Ordering::Relaxed);
+                if !last {
+                    phase.step_walls(&mut walls);
+                }
+                barrier.wait();
+                if let Some((forces, middle)) = middle {
+                    timings[0] += forces;
+                    timings[1] += middle.elapsed();
+                }
+            }
+            if member == 0
+                && let Ok(mut result) = result.lock()
+            {
+                *result = (steps, timings);
+            }
+        });
+        let (steps, timings) = result.into_inner().unwrap_or_default();
+        let moves = if steps == remaining { steps - 1 } else { steps };
+        (0..moves).for_each(|_| self.state.move_walls());
+        let scale = STEPS_PER_TIMING.min(steps.max(1)) as u32;
+        self.profile.stages[Stage::Contacts as usize] += timings[0] * scale;
+        self.profile.stages[Stage::Integration as usize] += timings[1] * scale;
+        Stretch {
+            steps,
+            fault: fault.into_inner(),
+        }
+    }
+}
+
+/// What a stretch of steps came to.
+struct Stretch {
+    steps: u64,
+    fault: bool,
 }

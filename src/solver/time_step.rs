@@ -1,6 +1,22 @@
 //! How long a step may be, and why.
+//!
+//! In: a scene. Out: the step to take, every limit that was considered and the one that binds. A step given by the scene
+//! is taken as given, with a warning where it exceeds a limit.
 
-use crate::scene::Scene;
+use crate::scene::{ContactLaw, Scene, SceneGrains, SceneMaterial, TimeStep};
+use std::f64::consts::PI;
+
+/// Share of the Rayleigh time that a step may take (physics of Kasper et al. 2021 as run by its authors: at most 0.2).
+const RAYLEIGH_SHARE: f64 = 0.2;
+
+/// Steps that an elastic Hertz contact must last at least.
+const STEPS_PER_CONTACT: f64 = 15.0;
+
+/// Speed at which grains hit each other where a scene's listed speeds are smaller [m/s].
+const IMPACT_SPEED: f64 = 0.2;
+
+/// Steps that half a period of a linear contact must last at least.
+const STEPS_PER_HALF_PERIOD: f64 = 20.0;
 
 /// One limit on the time step.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -24,7 +40,148 @@ pub struct TimeStepAdvice {
     pub warning: Option<String>,
 }
 
+/// A kind of grain that the scene holds: what limits the step.
+struct Kind<'a> {
+    radius: f64,
+    material: &'a SceneMaterial,
+}
+
 /// The time step for `scene`: the one it gives, or the largest that every limit allows.
-pub fn advise(_scene: &Scene) -> TimeStepAdvice {
-    unimplemented!("time step advice")
+pub fn advise(scene: &Scene) -> TimeStepAdvice {
+    let kinds = kinds(scene);
+    let speed = impact_speed(scene);
+    let mut limits: Vec<Limit> = match scene.law {
+        ContactLaw::HertzMindlin => kinds
+            .iter()
+            .flat_map(|kind| [rayleigh_limit(kind), hertz_limit(kind, speed)])
+            .collect(),
+        ContactLaw::Hooke {
+            normal_stiffness,
+            tangential_stiffness,
+        } => {
+            let stiffness = normal_stiffness.max(tangential_stiffness);
+            kinds
+                .iter()
+                .map(|kind| hooke_limit(kind, stiffness))
+                .collect()
+        }
+    };
+    limits.sort_by(|a, b| a.time_step.total_cmp(&b.time_step));
+    limits.dedup_by(|later, earlier| later.name == earlier.name);
+    let largest = limits.first().map_or(1e-5, |limit| limit.time_step);
+    match scene.time_step {
+        TimeStep::Automatic => TimeStepAdvice {
+            time_step: largest,
+            limits,
+            warning: None,
+        },
+        TimeStep::Given(given) => TimeStepAdvice {
+            time_step: given,
+            warning: warning(given, &limits),
+            limits,
+        },
+    }
+}
+
+fn warning(given: f64, limits: &[Limit]) -> Option<String> {
+    let binding = limits.first().filter(|limit| given > limit.time_step)?;
+    Some(format!(
+        "the given time step of {given:.3e} s exceeds the limit of {:.3e} s set by the {}: {}. \
+         Give a smaller one, or `time_step: Automatic`",
+        binding.time_step, binding.name, binding.reason
+    ))
+}
+
+fn kinds(scene: &Scene) -> Vec<Kind<'_>> {
+    let material = |name: &str| {
+        scene
+            .materials
+            .iter()
+            .find(|material| material.name == name)
+    };
+    let mut kinds: Vec<Kind> = match &scene.grains {
+        SceneGrains::Fill { species, .. } => species
+            .iter()
+            .filter_map(|species| {
+                Some(Kind {
+                    radius: species.radius,
+                    material: material(&species.material)?,
+                })
+            })
+            .collect(),
+        SceneGrains::List(grains) => grains
+            .iter()
+            .filter_map(|grain| {
+                Some(Kind {
+                    radius: grain.radius,
+                    material: material(&grain.material)?,
+                })
+            })
+            .collect(),
+    };
+    // A limit grows with the radius and depends on nothing else that differs within a material.
+    kinds.sort_by(|a, b| {
+        a.material
+            .name
+            .cmp(&b.material.name)
+            .then(a.radius.total_cmp(&b.radius))
+    });
+    kinds.dedup_by(|later, earlier| later.material.name == earlier.material.name);
+    kinds
+}
+
+fn impact_speed(scene: &Scene) -> f64 {
+    match &scene.grains {
+        SceneGrains::Fill { .. } => IMPACT_SPEED,
+        SceneGrains::List(grains) => grains
+            .iter()
+            .map(|grain| 2.0 * grain.velocity.length())
+            .fold(IMPACT_SPEED, f64::max),
+    }
+}
+
+/// `T_R = π r √(ρ/G) / (0.1631 ν + 0.8766)`: a Rayleigh wave crosses the grain's half circumference.
+fn rayleigh_limit(kind: &Kind) -> Limit {
+    let material = kind.material;
+    let shear = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
+    let time = PI * kind.radius * (material.density / shear).sqrt()
+        / (0.1631 * material.poisson_ratio + 0.8766);
+    Limit {
+        name: "Rayleigh wave",
+        time_step: RAYLEIGH_SHARE * time,
+        reason: format!(
+            "{RAYLEIGH_SHARE} of the {time:.3e} s that a surface wave takes round a grain of {} with r = {:.3e} m",
+            material.name, kind.radius
+        ),
+    }
+}
+
+/// `T_H = 2.87 (m*² / (r* E*² v))^(1/5)`: an elastic Hertz impact of two equal grains.
+fn hertz_limit(kind: &Kind, speed: f64) -> Limit {
+    let material = kind.material;
+    let mass = 4.0 / 3.0 * PI * kind.radius.powi(3) * material.density / 2.0;
+    let modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio.powi(2)));
+    let time = 2.87 * (mass * mass / (0.5 * kind.radius * modulus * modulus * speed)).powf(0.2);
+    Limit {
+        name: "Hertz contact",
+        time_step: time / STEPS_PER_CONTACT,
+        reason: format!(
+            "1/{STEPS_PER_CONTACT} of the {time:.3e} s that an impact of two grains of {} at {speed:.3} m/s lasts",
+            material.name
+        ),
+    }
+}
+
+/// Half a period of two equal grains on a spring, `π √(m*/K)`.
+fn hooke_limit(kind: &Kind, stiffness: f64) -> Limit {
+    let mass = 4.0 / 3.0 * PI * kind.radius.powi(3) * kind.material.density;
+    let time = PI * (0.5 * mass / stiffness).sqrt();
+    Limit {
+        name: "linear contact",
+        time_step: time / STEPS_PER_HALF_PERIOD,
+        reason: format!(
+            "1/{STEPS_PER_HALF_PERIOD} of the {time:.3e} s that two grains of {} touch on a spring of {stiffness:.3e} N/m",
+            kind.material.name
+        ),
+    }
 }

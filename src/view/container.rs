@@ -66,19 +66,22 @@ fn grain_box(world: &World) -> Option<(DVec3, DVec3)> {
     let grains = &world.grains;
     let reach = |i: usize| DVec3::splat(grains.radius[i]);
     (!grains.is_empty()).then(|| {
-        (0..grains.len()).fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(min, max), i| {
-                let x = grains.position[i];
-                (min.min(x - reach(i)), max.max(x + reach(i)))
-            },
-        )
+        (0..grains.len()).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), i| {
+            let x = grains.position[i];
+            (min.min(x - reach(i)), max.max(x + reach(i)))
+        })
     })
 }
 
 fn corners(min: Vec3, max: Vec3) -> [Vec3; 8] {
     std::array::from_fn(|i| {
-        let pick = |axis: usize| if i >> axis & 1 == 0 { min[axis] } else { max[axis] };
+        let pick = |axis: usize| {
+            if i >> axis & 1 == 0 {
+                min[axis]
+            } else {
+                max[axis]
+            }
+        };
         Vec3::new(pick(0), pick(1), pick(2))
     })
 }
@@ -368,11 +371,7 @@ fn disc(radius: f32, z: f32, facing: f32) -> Mesh {
     builder.vertex(Vec3::Z * z, normal, [0.0, 0.0]);
     for i in 0..=SEGMENTS {
         let (sin, cos) = (TAU * i as f32 / SEGMENTS as f32).sin_cos();
-        builder.vertex(
-            Vec3::new(radius * cos, radius * sin, z),
-            normal,
-            [cos, sin],
-        );
+        builder.vertex(Vec3::new(radius * cos, radius * sin, z), normal, [cos, sin]);
     }
     for i in 1..=SEGMENTS {
         let outer = if facing > 0.0 { [i, i + 1] } else { [i + 1, i] };

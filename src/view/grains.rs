@@ -30,7 +30,10 @@ pub(super) fn plugin(app: &mut App) {
     );
     app.add_plugins(MaterialPlugin::<GrainMaterial>::default())
         .add_systems(Startup, spawn)
-        .add_systems(Update, (colour_and_place, cut).in_set(super::ViewSystems::Draw));
+        .add_systems(
+            Update,
+            (colour_and_place, cut).in_set(super::ViewSystems::Draw),
+        );
 }
 
 /// A grain as the shader reads it.

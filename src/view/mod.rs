@@ -58,7 +58,12 @@ pub enum ViewSystems {
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        load_internal_asset!(app, LIGHT, "../../assets/shaders/light.wgsl", Shader::from_wgsl);
+        load_internal_asset!(
+            app,
+            LIGHT,
+            "../../assets/shaders/light.wgsl",
+            Shader::from_wgsl
+        );
         app.init_resource::<ViewSettings>()
             .init_resource::<OrbitCamera>()
             .init_resource::<Shown>()

@@ -60,7 +60,12 @@ pub fn overlay(
     };
     let inner = rect.shrink(INSET);
     if let Some(world) = caption.world {
-        clock(&ink, inner.left_top(), world.time(), caption.real_time_factor);
+        clock(
+            &ink,
+            inner.left_top(),
+            world.time(),
+            caption.real_time_factor,
+        );
         if settings.legend.is_none() && world.species.len() > 1 {
             species(&ink, inner.right_bottom(), world);
         }
@@ -88,7 +93,13 @@ fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
     ink.write(at, Align2::LEFT_TOP, format!("{time:.2} s"), 24.0, ink.text);
     if let Some(factor) = real_time_factor {
         let text = format!("{factor:.2} × real time");
-        ink.write(at + vec2(1.0, 30.0), Align2::LEFT_TOP, text, 13.0, ink.faint);
+        ink.write(
+            at + vec2(1.0, 30.0),
+            Align2::LEFT_TOP,
+            text,
+            13.0,
+            ink.faint,
+        );
     }
 }
 
@@ -123,7 +134,13 @@ fn colour_bar(ink: &Ink, corner: Pos2, legend: &Legend, map: ColourMap) {
         let stroke = Stroke::new(1.0, ink.faint);
         ink.painter.line_segment([at - vec2(4.0, 0.0), at], stroke);
         let text = short_number(value);
-        ink.write(at + vec2(3.0, 0.0), Align2::LEFT_CENTER, text, 12.0, ink.text);
+        ink.write(
+            at + vec2(3.0, 0.0),
+            Align2::LEFT_CENTER,
+            text,
+            12.0,
+            ink.text,
+        );
     }
     let title = if scale.unit.is_empty() {
         legend.title.to_owned()
@@ -138,7 +155,8 @@ fn species(ink: &Ink, corner: Pos2, world: &World) {
     for (i, species) in world.species.iter().rev().enumerate() {
         let at = corner - vec2(8.0, 8.0 + 20.0 * i as f32);
         let index = world.species.len() - 1 - i;
-        ink.painter.circle_filled(at, 6.0, rgb(species_colour(index)));
+        ink.painter
+            .circle_filled(at, 6.0, rgb(species_colour(index)));
         let text_at = at - vec2(13.0, 0.0);
         ink.write(text_at, Align2::RIGHT_CENTER, &species.name, 13.0, ink.text);
     }
@@ -260,7 +278,13 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        for (x, text) in [(0.0, "0"), (12.5, "12.5"), (0.025, "0.025"), (1500.0, "1500"), (2.0, "2")] {
+        for (x, text) in [
+            (0.0, "0"),
+            (12.5, "12.5"),
+            (0.025, "0.025"),
+            (1500.0, "1500"),
+            (2.0, "2"),
+        ] {
             assert_eq!(short_number(x), text);
         }
     }

@@ -1,9 +1,280 @@
 //! From a scene to the world it starts with: grains placed without overlap, nothing settled yet.
+//!
+//! In: a checked scene. Out: its world at time zero. A filling is put on the scene's lattice from below: which size stands
+//! where, how far each grain is off its site and which species it is of come from the seed.
 
-use super::World;
-use crate::scene::Scene;
+use super::mixture::{assign_species, random};
+use super::{
+    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
+    Shape, Species, SpeciesId, Surface, Wall, World,
+};
+use crate::scene::{
+    Lattice, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
+    SceneSpecies, SizeClass, size_classes,
+};
+use glam::DVec3;
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 
-/// The world that `scene` asks for at time zero, with steps of `time_step` [s].
-pub fn build(_scene: &Scene, _time_step: f64) -> World {
-    unimplemented!("world::build")
+/// How far a grain may be off its site, in parts of the free width round it; below one half neighbours cannot touch.
+const JITTER: f64 = 0.45;
+/// Random stream of the places of the grains.
+const PLACES: u64 = 1;
+
+/// The world that `scene` asks for at time zero, with steps of `time_step` [s]. The scene is one that was parsed, or that
+/// [`Scene::check`] passed; of any other, what does not fit is left out.
+pub fn build(scene: &Scene, time_step: f64) -> World {
+    let (species, grains) = match &scene.grains {
+        SceneGrains::Fill { count, species } => fill(scene, *count, species),
+        SceneGrains::List(list) => listed(scene, list),
+    };
+    let mut world = World {
+        clock: Clock::new(time_step),
+        grains,
+        species,
+        materials: materials(scene),
+        container: container(scene),
+        gravity: scene.gravity,
+        law: scene.law,
+        contacts: Vec::new(),
+        ledger: Ledger::default(),
+    };
+    world.ledger = Ledger::starting_at(world.kinetic_energy(), world.potential_energy());
+    world
+}
+
+fn materials(scene: &Scene) -> Materials {
+    let list = scene.materials.iter().map(material).collect();
+    Materials::new(list, |a, b| {
+        let [a, b] = [a, b].map(|id| &scene.materials[usize::from(id.0)]);
+        pair_properties(scene, a, b)
+    })
+}
+
+fn material(material: &SceneMaterial) -> Material {
+    Material {
+        name: material.name.clone(),
+        youngs_modulus: material.youngs_modulus,
+        poisson_ratio: material.poisson_ratio,
+        density: material.density,
+    }
+}
+
+/// How `a` and `b` meet: as the scene says for this pair, else by the harmonic mean (Eq. 3.7 of Man et al. 2023).
+fn pair_properties(scene: &Scene, a: &SceneMaterial, b: &SceneMaterial) -> PairProperties {
+    let mut pairs = scene.pairs.iter();
+    let given = pairs.find(|pair| pair.is_between(&a.name, &b.name));
+    let mixed = |own: fn(&SceneMaterial) -> f64| harmonic_mean(own(a), own(b));
+    PairProperties {
+        restitution: given
+            .and_then(|pair| pair.restitution)
+            .unwrap_or_else(|| mixed(|m| m.restitution)),
+        friction: given
+            .and_then(|pair| pair.friction)
+            .unwrap_or_else(|| mixed(|m| m.friction)),
+        rolling_friction: given
+            .and_then(|pair| pair.rolling_friction)
+            .unwrap_or_else(|| mixed(|m| m.rolling_friction)),
+    }
+}
+
+/// `2 a b / (a + b)`, exactly `a` for equal values, zero where both are zero.
+fn harmonic_mean(a: f64, b: f64) -> f64 {
+    if a == b { a } else { 2.0 * a * b / (a + b) }
+}
+
+fn material_id(scene: &Scene, name: &str) -> MaterialId {
+    let index = scene.material(name).map_or(0, |(index, _)| index);
+    MaterialId(index as u16)
+}
+
+fn container(scene: &Scene) -> Container {
+    let (shape, walls) = match &scene.container {
+        SceneContainer::Nothing => (Shape::Planes, Vec::new()),
+        SceneContainer::Drum {
+            radius,
+            width,
+            speed,
+            material,
+        } => (
+            Shape::Drum {
+                radius: *radius,
+                width: *width,
+            },
+            drum_walls(*radius, *width, *speed, material_id(scene, material)),
+        ),
+        SceneContainer::Box { min, max, material } => (
+            Shape::Box {
+                min: *min,
+                max: *max,
+            },
+            box_walls(*min, *max, material_id(scene, material)),
+        ),
+        SceneContainer::Planes(planes) => (
+            Shape::Planes,
+            planes.iter().map(|plane| wall(scene, plane)).collect(),
+        ),
+    };
+    Container {
+        shape,
+        walls,
+        angle: 0.0,
+    }
+}
+
+/// Rim, back plate and front plate, turning as one body.
+fn drum_walls(radius: f64, width: f64, speed: f64, material: MaterialId) -> Vec<Wall> {
+    let plate = |normal: DVec3| Surface::Plane {
+        point: -0.5 * width * normal,
+        normal,
+    };
+    [
+        ("rim", Surface::Cylinder { radius }),
+        ("back plate", plate(DVec3::Z)),
+        ("front plate", plate(DVec3::NEG_Z)),
+    ]
+    .map(|(name, surface)| Wall {
+        name: name.to_owned(),
+        surface,
+        material,
+        motion: Motion {
+            velocity: DVec3::ZERO,
+            spin: DVec3::new(0.0, 0.0, speed),
+        },
+    })
+    .into()
+}
+
+fn box_walls(min: DVec3, max: DVec3, material: MaterialId) -> Vec<Wall> {
+    [
+        ("left", min, DVec3::X),
+        ("right", max, DVec3::NEG_X),
+        ("floor", min, DVec3::Y),
+        ("ceiling", max, DVec3::NEG_Y),
+        ("back", min, DVec3::Z),
+        ("front", max, DVec3::NEG_Z),
+    ]
+    .map(|(name, point, normal)| Wall {
+        name: name.to_owned(),
+        surface: Surface::Plane { point, normal },
+        material,
+        motion: Motion::default(),
+    })
+    .into()
+}
+
+fn wall(scene: &Scene, plane: &ScenePlane) -> Wall {
+    Wall {
+        name: plane.name.clone(),
+        surface: Surface::Plane {
+            point: plane.point,
+            normal: plane.normal,
+        },
+        material: material_id(scene, &plane.material),
+        motion: Motion {
+            velocity: plane.velocity,
+            spin: DVec3::ZERO,
+        },
+    }
+}
+
+/// One species for each material that a listed grain is made of, in the order of the materials.
+fn listed(scene: &Scene, list: &[SceneGrain]) -> (Vec<Species>, Grains) {
+    let used = |name: &str| list.iter().any(|grain| grain.material == name);
+    let materials = scene.materials.iter().filter(|m| used(&m.name));
+    let species: Vec<Species> = materials
+        .map(|material| Species {
+            name: material.name.clone(),
+            material: material_id(scene, &material.name),
+        })
+        .collect();
+    let mut grains = Grains::default();
+    for grain in list {
+        let made_of = |kind: &Species| kind.name == grain.material;
+        let id = species.iter().position(made_of).unwrap_or(0);
+        let density = scene.material(&grain.material).map_or(0.0, |m| m.1.density);
+        let place = grains.len();
+        grains.push_sphere(grain.position, grain.radius, density, SpeciesId(id as u16));
+        grains.velocity[place] = grain.velocity;
+        grains.spin[place] = grain.spin;
+    }
+    (species, grains)
+}
+
+/// The container filled from below.
+fn fill(scene: &Scene, count: usize, kinds: &[SceneSpecies]) -> (Vec<Species>, Grains) {
+    let classes = size_classes(count, kinds);
+    let places = places(scene, &classes);
+    let class_of: Vec<usize> = places.iter().map(|place| place.class).collect();
+    let labels = assign_species(scene.seed, &classes, &class_of);
+    let mut grains = Grains::default();
+    for (place, label) in places.iter().zip(labels) {
+        let kind = &kinds[usize::from(label.0)];
+        let density = scene.material(&kind.material).map_or(0.0, |m| m.1.density);
+        grains.push_sphere(place.position, kind.radius, density, label);
+    }
+    let species = kinds
+        .iter()
+        .map(|kind| Species {
+            name: kind.name.clone(),
+            material: material_id(scene, &kind.material),
+        })
+        .collect();
+    (species, grains)
+}
+
+/// Where a grain of a filling begins.
+struct Place {
+    position: DVec3,
+    class: usize,
+}
+
+/// Places for all grains of `classes`, cell by cell from below, so that grains near in number are near in space.
+fn places(scene: &Scene, classes: &[SizeClass]) -> Vec<Place> {
+    let Some(lattice) = Lattice::for_filling(&scene.container, classes) else {
+        return Vec::new();
+    };
+    let mut rng = random(scene.seed, PLACES);
+    let mut left: Vec<usize> = classes.iter().map(|class| class.count).collect();
+    let mut places = Vec::new();
+    for (cell, class) in lattice
+        .cells()
+        .zip(shuffled_blocks(&lattice, classes, &mut rng))
+    {
+        let size = lattice.cell / lattice.divisions[class] as f64;
+        let room = size - DVec3::splat(2.0 * classes[class].radius);
+        let take = lattice.block(class).min(left[class]);
+        left[class] -= take;
+        for site in block(lattice.divisions[class]).take(take) {
+            let corner = cell - 0.5 * lattice.cell;
+            let position = corner + (site + DVec3::splat(0.5)) * size + jitter(&mut rng, room);
+            places.push(Place { position, class });
+        }
+    }
+    places
+}
+
+/// The class of each cell's grains, in random order.
+fn shuffled_blocks(lattice: &Lattice, classes: &[SizeClass], rng: &mut ChaCha8Rng) -> Vec<usize> {
+    let mut blocks: Vec<usize> = classes
+        .iter()
+        .enumerate()
+        .flat_map(|(index, class)| std::iter::repeat_n(index, lattice.cells_for(index, class)))
+        .collect();
+    blocks.shuffle(rng);
+    blocks
+}
+
+/// Sites of a cubic block of `edge`³ grains in units of the site's size, lowest first.
+fn block(edge: usize) -> impl Iterator<Item = DVec3> {
+    (0..edge).flat_map(move |y| {
+        (0..edge)
+            .flat_map(move |x| (0..edge).map(move |z| DVec3::new(x as f64, y as f64, z as f64)))
+    })
+}
+
+fn jitter(rng: &mut ChaCha8Rng, room: DVec3) -> DVec3 {
+    let [x, y, z] = [(); 3].map(|()| rng.random_range(-JITTER..=JITTER));
+    room * DVec3::new(x, y, z)
 }

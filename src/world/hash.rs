@@ -43,7 +43,7 @@ impl World {
             number(grains.mass[i]);
             number(f64::from(grains.species[i].0));
             number(f64::from(grains.contact_count[i]));
-            grains.exchanged[i].map(&mut number);
+            grains.exchanged[i].into_iter().for_each(&mut number);
         }
         for contact in &self.contacts {
             number(f64::from(contact.grain));
@@ -59,6 +59,6 @@ impl World {
 
 fn vectors<const N: usize>(number: &mut impl FnMut(f64), vectors: [DVec3; N]) {
     for v in vectors {
-        v.to_array().map(&mut *number);
+        v.to_array().into_iter().for_each(&mut *number);
     }
 }

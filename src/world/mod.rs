@@ -11,6 +11,7 @@ mod grains;
 mod hash;
 mod ledger;
 mod material;
+mod mixture;
 
 pub use build::build;
 pub use contact::{Contact, Partner};
@@ -19,6 +20,7 @@ pub use grains::{Grains, Species, SpeciesId};
 pub use hash::StateHash;
 pub use ledger::Ledger;
 pub use material::{Material, MaterialId, Materials, PairProperties};
+pub use mixture::{label_order, set_share};
 
 use crate::scene::ContactLaw;
 use glam::DVec3;

@@ -1,0 +1,47 @@
+//! `--commands FILE`: commands to carry out when their time comes.
+//!
+//! In: a RON or JSON file with a list of `(time or step, command)`, or the `summary.json` of an earlier run, whose commands
+//! are then carried out again. Out: the list, or an error that says where it is wrong.
+
+use super::HeadlessError;
+use crate::simulation::ScriptedCommand;
+use ron::extensions::Extensions;
+use serde::Deserialize;
+use std::fs;
+use std::path::Path;
+
+/// What a JSON file may be.
+#[derive(Deserialize)]
+struct Recorded {
+    commands: Vec<ScriptedCommand>,
+}
+
+/// The commands in the file at `path`: JSON where its name ends so, RON otherwise.
+///
+/// # Errors
+/// When the file cannot be read or is no such list.
+pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, HeadlessError> {
+    let name = path.display();
+    let refuse = |reason: String| {
+        HeadlessError::Input(format!(
+            "{name}: {reason}; expected a list of commands such as \
+             [(time: 2.5, command: Set(parameter: \"drum-speed\", value: 0.1))], or a run's summary.json"
+        ))
+    };
+    let text =
+        fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
+    let json = path
+        .extension()
+        .is_some_and(|extension| extension == "json");
+    if !json {
+        return ron::Options::default()
+            .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES)
+            .from_str(&text)
+            .map_err(|error| refuse(error.to_string()));
+    }
+    let parsed = match text.trim_start().starts_with('[') {
+        true => serde_json::from_str(&text),
+        false => serde_json::from_str::<Recorded>(&text).map(|file| file.commands),
+    };
+    parsed.map_err(|error| refuse(error.to_string()))
+}

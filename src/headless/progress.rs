@@ -1,0 +1,72 @@
+//! How far a run has come: a bar on a terminal, a line now and then elsewhere. Everything goes to standard error.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Time between two lines where there is no terminal.
+const LINE_TIME: Duration = Duration::from_secs(5);
+/// Parts of a whole that a bar distinguishes.
+const PARTS: f64 = 10_000.0;
+
+/// Tells how far something has come.
+pub enum Progress {
+    /// On a terminal.
+    Bar(ProgressBar),
+    /// In a file or a pipe.
+    Lines {
+        /// When the last line was written.
+        told: Instant,
+    },
+}
+
+impl Progress {
+    /// For standard error as it is.
+    pub fn new() -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self::Lines {
+                told: Instant::now(),
+            };
+        }
+        let bar = ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
+            bar.set_style(style);
+        }
+        Self::Bar(bar)
+    }
+
+    /// Says that `share` (0 … 1) is done, and `what`.
+    pub fn tell(&mut self, share: f64, what: impl FnOnce() -> String) {
+        match self {
+            Self::Bar(bar) => {
+                bar.set_position((share * PARTS) as u64);
+                bar.set_message(what());
+            }
+            Self::Lines { told } if told.elapsed() < LINE_TIME => {}
+            Self::Lines { told } => {
+                *told = Instant::now();
+                eprintln!("{:3.0} %  {}", 100.0 * share, what());
+            }
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// `seconds` of wall-clock time as people say it.
+pub fn spoken(seconds: f64) -> String {
+    if !seconds.is_finite() {
+        return "unknown time".into();
+    }
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+    }
+}

@@ -1,0 +1,140 @@
+//! What a headless run leaves behind while it goes on.
+//!
+//! In: a [`Simulation`] that holds at each output time. Out: the files of the folder, each whole; whatever happens after a
+//! file was written, it stays.
+
+use super::folder::{OutputFolder, SUMMARY};
+use super::grains_file::{COLLECTION, write_collection, write_grains};
+use super::series_file::{SERIES, write_series};
+use super::summary_file::SummaryFile;
+use super::{Ending, HeadlessError, Job};
+use crate::measure::{Summary, summarise};
+use crate::simulation::{SMALLEST_DROP, Simulation};
+use crate::world::{Clock, World};
+use std::time::Instant;
+
+/// Share of a run, from its start, that results leave out: the paper averages over the last 30 of 50 s.
+const LEFT_OUT: f64 = 0.4;
+
+/// Writes a run's files.
+pub struct Recorder<'a> {
+    job: &'a Job,
+    folder: OutputFolder,
+    /// Times of the grains' files written [s].
+    times: Vec<f64>,
+    started: Instant,
+}
+
+impl<'a> Recorder<'a> {
+    /// Opens the folder of `job` and marks it as a run's.
+    ///
+    /// # Errors
+    /// When the folder holds other files or cannot be written.
+    pub fn open(job: &'a Job, simulation: &Simulation) -> Result<Self, HeadlessError> {
+        let recorder = Self {
+            job,
+            folder: OutputFolder::open(&job.out)?,
+            times: Vec::new(),
+            started: Instant::now(),
+        };
+        recorder.write_summary(simulation, "running", None)?;
+        Ok(recorder)
+    }
+
+    /// The step at which the run should hold next: an output time or the end.
+    pub fn next_stop(&self, clock: &Clock) -> u64 {
+        let output = self.times.len() as f64 * self.job.scene.output_interval;
+        clock.step_at(output.min(self.job.scene.duration))
+    }
+
+    /// Writes what is due at the present state and says whether the run is over.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn record(
+        &mut self,
+        simulation: &Simulation,
+        world: &World,
+    ) -> Result<bool, HeadlessError> {
+        let over = world.clock.step >= world.clock.step_at(self.job.scene.duration);
+        if over || world.clock.step >= self.next_stop(&world.clock) {
+            self.write_grains(world)?;
+            self.write_lists(simulation)?;
+        }
+        Ok(over)
+    }
+
+    /// Writes the last files of a run that ended as `ending` says, and returns its results.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn finish(
+        &mut self,
+        simulation: &Simulation,
+        ending: &Ending,
+    ) -> Result<Summary, HeadlessError> {
+        if let Some(world) = simulation.world() {
+            if self.times.last() != Some(&world.time()) {
+                self.write_grains(world)?;
+            }
+        }
+        self.write_lists(simulation)?;
+        let end = simulation.world().map_or(0.0, |world| world.time());
+        let results = summarise(simulation.series(), LEFT_OUT * end, SMALLEST_DROP);
+        self.write_summary(simulation, ending.name(), Some((ending, &results)))?;
+        Ok(results)
+    }
+
+    /// Wall-clock time since the run was opened [s].
+    pub fn wall_time(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Where the files are.
+    pub fn folder(&self) -> &OutputFolder {
+        &self.folder
+    }
+
+    fn write_grains(&mut self, world: &World) -> Result<(), HeadlessError> {
+        let name = OutputFolder::grains_name(self.times.len());
+        self.folder.write(&name, |file| write_grains(world, file))?;
+        self.times.push(world.time());
+        Ok(())
+    }
+
+    fn write_lists(&self, simulation: &Simulation) -> Result<(), HeadlessError> {
+        self.folder
+            .write(SERIES, |file| write_series(simulation.series(), file))?;
+        self.folder
+            .write(COLLECTION, |file| write_collection(&self.times, file))
+    }
+
+    fn write_summary(
+        &self,
+        simulation: &Simulation,
+        status: &'static str,
+        outcome: Option<(&Ending, &Summary)>,
+    ) -> Result<(), HeadlessError> {
+        let world = simulation.world();
+        let summary = SummaryFile {
+            program: "grainfall",
+            version: env!("CARGO_PKG_VERSION"),
+            status,
+            fault: outcome.and_then(|(ending, _)| ending.fault()),
+            name: &self.job.name,
+            seed: self.job.scene.seed,
+            scene: &self.job.scene,
+            commands: simulation.commands(),
+            time_step: simulation.advice(),
+            steps: world.map_or(0, |world| world.clock.step),
+            time: world.map_or(0.0, |world| world.time()),
+            grains: world.map_or(0, |world| world.grains.len()),
+            state_hash: world.map(|world| world.hash().to_string()),
+            results: outcome.map(|(_, results)| results),
+            wall_time: self.wall_time(),
+            threads: self.job.threads,
+            warnings: simulation.warnings(),
+        };
+        self.folder.write(SUMMARY, |file| summary.write(file))
+    }
+}

@@ -1,0 +1,112 @@
+//! The energy balance: what is stored, what came in, what was lost, and what remains unexplained.
+//!
+//! Stored energy is read from the world as it is, by the contact laws' own formulas ([`crate::solver::law`]); work and losses are read from the world's own books
+//! ([`crate::world::Ledger`], [`crate::world::Grains::exchanged`]), which the solver and the commands keep.
+
+use super::contacts::overlap;
+use crate::solver::law::Pairing;
+use crate::world::{Contact, World};
+use serde::Serialize;
+
+/// All terms of `kinetic + elastic − initial = gravity + walls + commands − dashpots − sliding − rolling + residual`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EnergyLedger {
+    /// Kinetic and elastic energy at the start [J].
+    pub initial: f64,
+    /// Kinetic energy now [J].
+    pub kinetic: f64,
+    /// Elastic energy now [J].
+    pub elastic: f64,
+    /// Work of gravity since the start [J].
+    pub gravity_work: f64,
+    /// Work of the moving walls since the start [J].
+    pub wall_work: f64,
+    /// Energy put in by commands that changed masses or stiffnesses [J].
+    pub command_work: f64,
+    /// Lost in dashpots since the start [J].
+    pub dashpot_loss: f64,
+    /// Lost in sliding since the start [J].
+    pub sliding_loss: f64,
+    /// Lost in rolling since the start [J].
+    pub rolling_loss: f64,
+}
+
+impl EnergyLedger {
+    /// The balance of `world` now.
+    pub fn of(world: &World) -> Self {
+        let [dashpot_loss, sliding_loss, rolling_loss, wall_work] = exchanged(world);
+        let ledger = &world.ledger;
+        Self {
+            initial: ledger.initial_energy,
+            kinetic: world.kinetic_energy(),
+            elastic: elastic_energy(world),
+            gravity_work: ledger.gravity_work + ledger.potential_reference
+                - world.potential_energy(),
+            wall_work,
+            command_work: ledger.command_work,
+            dashpot_loss,
+            sliding_loss,
+            rolling_loss,
+        }
+    }
+
+    /// What work and losses do not explain of the change of stored energy [J].
+    pub fn residual(&self) -> f64 {
+        let stored = self.kinetic + self.elastic - self.initial;
+        let supplied = self.gravity_work + self.wall_work + self.command_work;
+        let lost = self.dashpot_loss + self.sliding_loss + self.rolling_loss;
+        stored - supplied + lost
+    }
+
+    /// The residual relative to the largest term of the balance; zero where every term is.
+    pub fn relative_residual(&self) -> f64 {
+        let turnover = [
+            self.initial,
+            self.kinetic,
+            self.elastic,
+            self.gravity_work,
+            self.wall_work,
+            self.command_work,
+            self.dashpot_loss,
+            self.sliding_loss,
+            self.rolling_loss,
+        ]
+        .into_iter()
+        .map(f64::abs)
+        .fold(0.0, f64::max);
+        if turnover > 0.0 {
+            self.residual() / turnover
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Energy stored in the normal and tangential springs of all contacts [J]; one that has opened stores none.
+pub fn elastic_energy(world: &World) -> f64 {
+    let stored = |contact: &Contact| {
+        Pairing::of(world, contact.grain as usize, contact.partner).elastic_energy(
+            world.law,
+            &world.materials,
+            overlap(world, contact),
+            contact.spring.length(),
+        )
+    };
+    world
+        .contacts
+        .iter()
+        .filter(|contact| overlap(world, contact) > 0.0)
+        .map(stored)
+        .sum()
+}
+
+/// Sums of the grains' columns of exchanged energy [J].
+fn exchanged(world: &World) -> [f64; 4] {
+    let mut sums = [0.0; 4];
+    for terms in &world.grains.exchanged {
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum += term;
+        }
+    }
+    sums
+}

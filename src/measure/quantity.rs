@@ -1,0 +1,175 @@
+//! What a sample holds: one [`Measure`] per column and what people need to know of it.
+
+/// What one number is: its key in files, its name and symbol for people, its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// Name in files and on plots: `surface angle`.
+    pub name: &'static str,
+    /// The paper's symbol: `θ`.
+    pub symbol: &'static str,
+    /// SI unit, `1` for a pure number: `rad`.
+    pub unit: &'static str,
+    /// One sentence: what it is and by which method it is taken.
+    pub description: &'static str,
+}
+
+/// A number that every sample holds; `as usize` gives its column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Measure {
+    /// Slope of the free surface [rad].
+    SurfaceAngle,
+    /// Granular temperature in the laboratory frame [m²/s²].
+    GranularTemperature,
+    /// Granular temperature in the drum's frame [m²/s²].
+    CorotatingTemperature,
+    /// Grain volume per bed volume.
+    PackingFraction,
+    /// Touching grains per grain.
+    CoordinationNumber,
+    /// Kinetic energy [J].
+    KineticEnergy,
+    /// Largest overlap relative to the smaller radius.
+    LargestOverlap,
+    /// What the energy ledger leaves unexplained [J].
+    EnergyResidual,
+    /// Energy stored in the contacts [J].
+    ElasticEnergy,
+    /// Work of gravity since the start [J].
+    GravityWork,
+    /// Work of the moving walls since the start [J].
+    WallWork,
+    /// Energy lost in dashpots since the start [J].
+    DashpotLoss,
+    /// Energy lost in sliding since the start [J].
+    SlidingLoss,
+    /// Energy lost in rolling since the start [J].
+    RollingLoss,
+    /// Mean speed of the grains [m/s].
+    MeanSpeed,
+}
+
+impl Measure {
+    /// Number of measures in a sample.
+    pub const COUNT: usize = 15;
+
+    /// Every measure in the order of its column.
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::SurfaceAngle,
+        Self::GranularTemperature,
+        Self::CorotatingTemperature,
+        Self::PackingFraction,
+        Self::CoordinationNumber,
+        Self::KineticEnergy,
+        Self::LargestOverlap,
+        Self::EnergyResidual,
+        Self::ElasticEnergy,
+        Self::GravityWork,
+        Self::WallWork,
+        Self::DashpotLoss,
+        Self::SlidingLoss,
+        Self::RollingLoss,
+        Self::MeanSpeed,
+    ];
+
+    /// Name, symbol, unit and method.
+    pub fn quantity(self) -> &'static Quantity {
+        &QUANTITIES[self as usize]
+    }
+}
+
+/// What a sample holds, in the order of [`Measure::ALL`].
+pub const QUANTITIES: &[Quantity] = &[
+    Quantity {
+        name: "surface angle",
+        symbol: "θ",
+        unit: "rad",
+        description: "Slope of a straight line through the top grain of each bin over the middle 70 % of the free \
+                      surface, positive where the surface rises to the right.",
+    },
+    Quantity {
+        name: "granular temperature",
+        symbol: "Tg",
+        unit: "m²/s²",
+        description: "Mean square of the grains' velocity relative to the mean of their neighbours within 7r/3, per \
+                      direction, in the laboratory frame (Eqs. 21 and 22 of Kasper et al. 2021).",
+    },
+    Quantity {
+        name: "co-rotating temperature",
+        symbol: "Tg′",
+        unit: "m²/s²",
+        description: "The granular temperature of the velocities relative to the turning drum.",
+    },
+    Quantity {
+        name: "packing fraction",
+        symbol: "φ",
+        unit: "1",
+        description: "Grain volume per container volume in the part of the bed that lies deeper than two mean radii \
+                      below the surface line; layers at the walls are included.",
+    },
+    Quantity {
+        name: "coordination number",
+        symbol: "Z",
+        unit: "1",
+        description: "Mean number of other grains that a grain touches; walls do not count.",
+    },
+    Quantity {
+        name: "kinetic energy",
+        symbol: "E_kin",
+        unit: "J",
+        description: "Kinetic energy of translation and rotation of all grains.",
+    },
+    Quantity {
+        name: "largest overlap",
+        symbol: "δ_max/r",
+        unit: "1",
+        description: "Largest overlap of all contacts relative to the smaller grain's radius.",
+    },
+    Quantity {
+        name: "energy residual",
+        symbol: "ΔE",
+        unit: "J",
+        description: "Change of kinetic and elastic energy since the start that work and losses do not explain.",
+    },
+    Quantity {
+        name: "elastic energy",
+        symbol: "E_el",
+        unit: "J",
+        description: "Energy stored in the normal and tangential springs of all contacts.",
+    },
+    Quantity {
+        name: "gravity work",
+        symbol: "W_g",
+        unit: "J",
+        description: "Work of gravity on the grains since the start.",
+    },
+    Quantity {
+        name: "wall work",
+        symbol: "W_w",
+        unit: "J",
+        description: "Work of the moving walls on the grains since the start.",
+    },
+    Quantity {
+        name: "dashpot loss",
+        symbol: "D_d",
+        unit: "J",
+        description: "Energy lost in the normal and tangential dashpots since the start.",
+    },
+    Quantity {
+        name: "sliding loss",
+        symbol: "D_s",
+        unit: "J",
+        description: "Energy lost in sliding friction since the start.",
+    },
+    Quantity {
+        name: "rolling loss",
+        symbol: "D_r",
+        unit: "J",
+        description: "Energy lost in rolling friction since the start.",
+    },
+    Quantity {
+        name: "mean speed",
+        symbol: "⟨v⟩",
+        unit: "m/s",
+        description: "Mean speed of the grains' centres.",
+    },
+];

@@ -1,0 +1,93 @@
+//! Samples of a run, kept in columns so that a plot or an average can borrow one.
+
+use super::Measure;
+
+/// Every measure of a world at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Steps taken.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// One value per [`Measure`], in SI units; NaN where a measure is undefined.
+    pub values: [f64; Measure::COUNT],
+}
+
+impl Sample {
+    /// The value of one measure.
+    pub fn value(&self, measure: Measure) -> f64 {
+        self.values[measure as usize]
+    }
+}
+
+/// Samples in order of time, column by column.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    steps: Vec<u64>,
+    time: Vec<f64>,
+    columns: [Vec<f64>; Measure::COUNT],
+}
+
+impl Series {
+    /// Appends a sample.
+    pub fn push(&mut self, sample: Sample) {
+        self.steps.push(sample.step);
+        self.time.push(sample.time);
+        for (column, value) in self.columns.iter_mut().zip(sample.values) {
+            column.push(value);
+        }
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Steps taken at each sample.
+    pub fn steps(&self) -> &[u64] {
+        &self.steps
+    }
+
+    /// Time of each sample [s].
+    pub fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// One measure at each sample, in SI units.
+    pub fn column(&self, measure: Measure) -> &[f64] {
+        &self.columns[measure as usize]
+    }
+
+    /// The sample at `index`, if there is one.
+    pub fn get(&self, index: usize) -> Option<Sample> {
+        (index < self.len()).then(|| Sample {
+            step: self.steps[index],
+            time: self.time[index],
+            values: std::array::from_fn(|column| self.columns[column][index]),
+        })
+    }
+
+    /// The newest sample.
+    pub fn last(&self) -> Option<Sample> {
+        self.len().checked_sub(1).and_then(|index| self.get(index))
+    }
+
+    /// Index of the first sample at or after `time` [s].
+    pub fn first_at(&self, time: f64) -> usize {
+        self.time.partition_point(|&t| t < time)
+    }
+
+    /// Keeps the first `len` samples.
+    pub fn truncate(&mut self, len: usize) {
+        self.steps.truncate(len);
+        self.time.truncate(len);
+        for column in &mut self.columns {
+            column.truncate(len);
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! The scenes that come with the program, so that it can open them wherever it runs.
+
+/// A scene that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuiltIn {
+    /// What to call it: `dry-r3`.
+    pub name: &'static str,
+    /// Its file in the repository: `scenes/papers/kasper2021/dry-r3.ron`.
+    pub path: &'static str,
+    /// The file's text.
+    pub text: &'static str,
+}
+
+macro_rules! built_in {
+    ($($name:literal in $folder:literal),+ $(,)?) => {
+        &[$(BuiltIn {
+            name: $name,
+            path: concat!("scenes/", $folder, "/", $name, ".ron"),
+            text: include_str!(concat!("../../scenes/", $folder, "/", $name, ".ron")),
+        }),+]
+    };
+}
+
+const SCENES: &[BuiltIn] = built_in![
+    "dry-r3" in "papers/kasper2021",
+    "dry-r2" in "papers/kasper2021",
+    "dry-r1.25" in "papers/kasper2021",
+    "small-drum" in "gallery",
+    "two-frictions-drum" in "gallery",
+    "two-sizes-box" in "gallery",
+    "bouncing-grain" in "gallery",
+    "two-grains" in "gallery",
+];
+
+/// Every scene that comes with the program; the first is the one to open when none is asked for.
+pub fn built_in() -> &'static [BuiltIn] {
+    SCENES
+}

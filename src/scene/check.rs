@@ -1,0 +1,569 @@
+//! Which values make sense, each alone and all together.
+//!
+//! In: a [`Scene`] as a file or a program states it. Out: nothing, or the first mistake with the path of its key. A scene
+//! that passes can be built: its grains fit, its names exist, its numbers are finite and within what the solver can bear.
+
+use super::error::Problem;
+use super::lattice::Lattice;
+use super::mixture::size_classes;
+use super::{
+    ContactLaw, PairOverride, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial,
+    ScenePlane, SceneSpecies, TimeStep,
+};
+use glam::DVec3;
+use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::PI;
+
+type Checked = Result<(), Problem>;
+
+/// Grains a scene may have: about 2 kB each in memory.
+const MOST_GRAINS: usize = 1_000_000;
+/// Materials, species, planes or pairs a scene may have.
+const MOST_KINDS: usize = 200;
+/// States a run may write.
+const MOST_OUTPUTS: f64 = 1e6;
+/// Overlap of two listed grains, or of one with a wall, that is still a contact, in radii of the smaller grain.
+const LARGEST_OVERLAP: f64 = 0.1;
+
+/// Which numbers a key accepts, and how to say so.
+struct Rule {
+    accepts: fn(f64) -> bool,
+    expected: &'static str,
+}
+
+const LENGTH: Rule = Rule {
+    accepts: |x| (1e-6..=1000.0).contains(&x),
+    expected: "a length between 1e-6 m and 1000 m",
+};
+const RADIUS: Rule = Rule {
+    accepts: |x| (1e-6..=10.0).contains(&x),
+    expected: "a grain's radius between 1e-6 m and 10 m",
+};
+const DRUM_SPEED: Rule = Rule {
+    accepts: |x| x.abs() <= 1000.0,
+    expected: "a speed between -1000 and 1000 rad/s",
+};
+const YOUNGS_MODULUS: Rule = Rule {
+    accepts: |x| (1e3..=1e13).contains(&x),
+    expected: "a modulus between 1e3 Pa and 1e13 Pa",
+};
+const POISSON_RATIO: Rule = Rule {
+    accepts: |x| (0.0..0.5).contains(&x),
+    expected: "a number of at least 0 and below 0.5",
+};
+const DENSITY: Rule = Rule {
+    accepts: |x| (0.1..=1e6).contains(&x),
+    expected: "a density between 0.1 and 1e6 kg/m³",
+};
+const RESTITUTION: Rule = Rule {
+    accepts: |x| x > 0.0 && x <= 1.0,
+    expected: "a number above 0 and at most 1",
+};
+const FRICTION: Rule = Rule {
+    accepts: |x| (0.0..=10.0).contains(&x),
+    expected: "a number between 0 and 10",
+};
+const FRACTION: Rule = Rule {
+    accepts: |x| x > 0.0 && x <= 1.0,
+    expected: "a fraction above 0 and at most 1",
+};
+const SHARE: Rule = Rule {
+    accepts: |x| (0.0..=1.0).contains(&x),
+    expected: "a share between 0 and 1",
+};
+const STIFFNESS: Rule = Rule {
+    accepts: |x| (1e-3..=1e12).contains(&x),
+    expected: "a stiffness between 1e-3 N/m and 1e12 N/m",
+};
+const DURATION: Rule = Rule {
+    accepts: |x| x > 0.0 && x <= 1e6,
+    expected: "a time above 0 s and at most 1e6 s",
+};
+const STEP: Rule = Rule {
+    accepts: |x| (1e-12..=1.0).contains(&x),
+    expected: "`Automatic`, or `Given(…)` with a step between 1e-12 s and 1 s",
+};
+
+impl Rule {
+    fn check(&self, value: f64, path: impl FnOnce() -> String) -> Checked {
+        if (self.accepts)(value) {
+            Ok(())
+        } else {
+            Err(Problem::value(path(), format!("{value:?}"), self.expected))
+        }
+    }
+}
+
+impl Scene {
+    /// Whether every value is in range and all of them fit together.
+    pub(super) fn problem(&self) -> Checked {
+        check_title(&self.title)?;
+        check_materials(&self.materials)?;
+        check_pairs(&self.pairs, self)?;
+        check_container(&self.container)?;
+        self.check_container_materials()?;
+        match &self.grains {
+            SceneGrains::Fill { count, species } => self.check_filling(*count, species)?,
+            SceneGrains::List(grains) => self.check_list(grains)?,
+        }
+        vector(self.gravity, 1000.0, "m/s²", || "gravity".to_owned())?;
+        check_law(self.law)?;
+        self.check_times()
+    }
+
+    fn check_container_materials(&self) -> Checked {
+        match &self.container {
+            SceneContainer::Nothing => Ok(()),
+            SceneContainer::Drum { material, .. } | SceneContainer::Box { material, .. } => {
+                self.check_material(material, || "container.material".to_owned())
+            }
+            SceneContainer::Planes(planes) => {
+                planes.iter().enumerate().try_for_each(|(index, plane)| {
+                    self.check_material(&plane.material, || format!("container[{index}].material"))
+                })
+            }
+        }
+    }
+
+    fn check_material(&self, name: &str, path: impl FnOnce() -> String) -> Checked {
+        if self.materials.iter().any(|m| m.name == name) {
+            return Ok(());
+        }
+        let known = self.materials.iter().map(|m| m.name.as_str());
+        Err(Problem::unknown_name(path(), "a material", name, known))
+    }
+
+    fn check_filling(&self, count: usize, species: &[SceneSpecies]) -> Checked {
+        check_number("grains.species", "species", species.len())?;
+        for (index, kind) in species.iter().enumerate() {
+            let path = |key: &str| format!("grains.species[{index}].{key}");
+            check_name(&kind.name, || path("name"))?;
+            let twin = species[..index].iter().any(|other| other.name == kind.name);
+            if twin {
+                return Err(twice(path("name"), "a species", &kind.name)
+                    .advise("Species of one material need a `name` each"));
+            }
+            RADIUS.check(kind.radius, || path("radius"))?;
+            SHARE.check(kind.share, || path("share"))?;
+            self.check_material(&kind.material, || path("material"))?;
+        }
+        check_shares(species)?;
+        check_count(count)?;
+        self.check_room(count, species)
+    }
+
+    fn check_room(&self, count: usize, species: &[SceneSpecies]) -> Checked {
+        let room = volume(&self.container)?;
+        let narrowest = narrowest(&self.container);
+        for (index, kind) in species.iter().enumerate() {
+            if 2.0 * kind.radius > narrowest {
+                return Err(Problem::value(
+                    format!("grains.species[{index}].radius"),
+                    format!("{} m", kind.radius),
+                    format!(
+                        "at most {} m, half of the container's narrowest width",
+                        0.5 * narrowest
+                    ),
+                ));
+            }
+        }
+        let classes = size_classes(count, species);
+        if Lattice::for_filling(&self.container, &classes).is_some() {
+            return Ok(());
+        }
+        let solid: f64 = classes
+            .iter()
+            .map(|class| class.count as f64 * 4.0 / 3.0 * PI * class.radius.powi(3))
+            .sum();
+        Err(Problem::new(
+            "grains",
+            format!(
+                "do not fit into the container: {count} grains are {:.3} of its volume, before they settle",
+                solid / room
+            ),
+            "a filling that leaves the grains room to be placed apart, about 0.4 of the volume or less",
+        )
+        .advise("Take fewer or smaller grains or a larger container"))
+    }
+
+    fn check_list(&self, grains: &[SceneGrain]) -> Checked {
+        check_count(grains.len())?;
+        for (index, grain) in grains.iter().enumerate() {
+            let path = |key: &str| format!("grains[{index}].{key}");
+            RADIUS.check(grain.radius, || path("radius"))?;
+            vector(grain.position, 1e5, "m", || path("position"))?;
+            vector(grain.velocity, 1e5, "m/s", || path("velocity"))?;
+            vector(grain.spin, 1e7, "rad/s", || path("spin"))?;
+            self.check_material(&grain.material, || path("material"))?;
+            check_inside(&self.container, grain, || path("position"))?;
+        }
+        check_overlaps(grains)
+    }
+
+    fn check_times(&self) -> Checked {
+        DURATION.check(self.duration, || "duration".to_owned())?;
+        DURATION.check(self.output_interval, || "output_interval".to_owned())?;
+        if self.duration / self.output_interval > MOST_OUTPUTS {
+            return Err(Problem::value(
+                "output_interval",
+                format!("{} s", self.output_interval),
+                format!(
+                    "at least {} s, so that a run writes at most a million states",
+                    self.duration / MOST_OUTPUTS
+                ),
+            ));
+        }
+        let TimeStep::Given(step) = self.time_step else {
+            return Ok(());
+        };
+        STEP.check(step, || "time_step".to_owned())?;
+        if step > self.output_interval {
+            return Err(Problem::value(
+                "time_step",
+                format!("{step} s"),
+                format!("at most the output interval of {} s", self.output_interval),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Volume of a container that can be filled [m³].
+pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
+    match container {
+        SceneContainer::Drum { radius, width, .. } => Ok(PI * radius * radius * width),
+        SceneContainer::Box { min, max, .. } => Ok((*max - *min).element_product()),
+        SceneContainer::Nothing | SceneContainer::Planes(_) => Err(Problem::new(
+            "grains",
+            "is a `Fill`, but the container is open",
+            "a `Drum` or a `Box` to fill, or the grains as a `List`",
+        )),
+    }
+}
+
+pub(super) fn fraction(path: &str, value: f64) -> Checked {
+    FRACTION.check(value, || path.to_owned())
+}
+
+pub(super) fn check_container(container: &SceneContainer) -> Checked {
+    match container {
+        SceneContainer::Nothing => Ok(()),
+        SceneContainer::Drum {
+            radius,
+            width,
+            speed,
+            ..
+        } => {
+            LENGTH.check(*radius, || "container.radius".to_owned())?;
+            LENGTH.check(*width, || "container.width".to_owned())?;
+            DRUM_SPEED.check(*speed, || "container.speed".to_owned())
+        }
+        SceneContainer::Box { min, max, .. } => {
+            vector(*min, 1e4, "m", || "container.min".to_owned())?;
+            vector(*max, 1e4, "m", || "container.max".to_owned())?;
+            let size = (*max - *min).to_array();
+            if size.iter().all(|&length| (LENGTH.accepts)(length)) {
+                return Ok(());
+            }
+            Err(Problem::value(
+                "container.max",
+                shown(*max),
+                format!(
+                    "between 1e-6 m and 1000 m beyond `min` {} along each axis",
+                    shown(*min)
+                ),
+            ))
+        }
+        SceneContainer::Planes(planes) => check_planes(planes),
+    }
+}
+
+fn check_planes(planes: &[ScenePlane]) -> Checked {
+    check_number("container", "planes", planes.len())?;
+    for (index, plane) in planes.iter().enumerate() {
+        let path = |key: &str| format!("container[{index}].{key}");
+        check_name(&plane.name, || path("name"))?;
+        if planes[..index].iter().any(|other| other.name == plane.name) {
+            return Err(twice(path("name"), "a plane", &plane.name));
+        }
+        vector(plane.point, 1e5, "m", || path("point"))?;
+        vector(plane.velocity, 1e5, "m/s", || path("velocity"))?;
+        if !plane.normal.is_normalized() {
+            return Err(Problem::value(
+                path("normal"),
+                shown(plane.normal),
+                "a direction towards the grains; its length does not matter, but must not be zero",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check_title(title: &str) -> Checked {
+    let length = title.trim().chars().count();
+    if (1..=200).contains(&length) && !title.contains('\n') {
+        return Ok(());
+    }
+    Err(Problem::value(
+        "title",
+        format!("{length} characters long"),
+        "one line of 1 to 200 characters",
+    ))
+}
+
+fn check_materials(materials: &[SceneMaterial]) -> Checked {
+    check_number("materials", "materials", materials.len())?;
+    for (index, material) in materials.iter().enumerate() {
+        let name = &material.name;
+        let path = |key: &str| format!("materials.{name}.{key}");
+        check_name(name, || format!("materials.{name}"))?;
+        if materials[..index].iter().any(|other| other.name == *name) {
+            return Err(twice(format!("materials.{name}"), "a material", name));
+        }
+        YOUNGS_MODULUS.check(material.youngs_modulus, || path("youngs_modulus"))?;
+        POISSON_RATIO.check(material.poisson_ratio, || path("poisson_ratio"))?;
+        DENSITY.check(material.density, || path("density"))?;
+        RESTITUTION.check(material.restitution, || path("restitution"))?;
+        FRICTION.check(material.friction, || path("friction"))?;
+        FRICTION.check(material.rolling_friction, || path("rolling_friction"))?;
+    }
+    Ok(())
+}
+
+fn check_pairs(pairs: &[PairOverride], scene: &Scene) -> Checked {
+    if pairs.len() > MOST_KINDS {
+        return check_number("pairs", "pairs", pairs.len());
+    }
+    for (index, pair) in pairs.iter().enumerate() {
+        let path = |key: &str| format!("pairs[{index}].{key}");
+        let (a, b) = &pair.between;
+        scene.check_material(a, || path("between"))?;
+        scene.check_material(b, || path("between"))?;
+        if a == b {
+            return Err(Problem::new(
+                path("between"),
+                format!("names `{a}` twice"),
+                "two different materials",
+            )
+            .advise(format!(
+                "How two bodies of `{a}` meet stands in `materials.{a}`"
+            )));
+        }
+        if pairs[..index].iter().any(|other| other.is_between(a, b)) {
+            return Err(Problem::new(
+                path("between"),
+                format!("gives `{a}` and `{b}` a second time"),
+                "each pair once",
+            ));
+        }
+        check_pair_values(pair, path)?;
+    }
+    Ok(())
+}
+
+fn check_pair_values(pair: &PairOverride, path: impl Fn(&str) -> String) -> Checked {
+    if let Some(restitution) = pair.restitution {
+        RESTITUTION.check(restitution, || path("restitution"))?;
+    }
+    if let Some(friction) = pair.friction {
+        FRICTION.check(friction, || path("friction"))?;
+    }
+    if let Some(rolling_friction) = pair.rolling_friction {
+        FRICTION.check(rolling_friction, || path("rolling_friction"))?;
+    }
+    Ok(())
+}
+
+fn check_law(law: ContactLaw) -> Checked {
+    match law {
+        ContactLaw::HertzMindlin => Ok(()),
+        ContactLaw::Hooke {
+            normal_stiffness,
+            tangential_stiffness,
+        } => {
+            STIFFNESS.check(normal_stiffness, || "law.normal_stiffness".to_owned())?;
+            if tangential_stiffness == 0.0 {
+                return Ok(());
+            }
+            STIFFNESS.check(tangential_stiffness, || {
+                "law.tangential_stiffness".to_owned()
+            })
+        }
+    }
+}
+
+fn check_shares(species: &[SceneSpecies]) -> Checked {
+    let sum: f64 = species.iter().map(|kind| kind.share).sum();
+    if (sum - 1.0).abs() <= 1e-6 {
+        return Ok(());
+    }
+    Err(Problem::new(
+        "grains.species",
+        format!("has shares that add up to {sum}"),
+        "shares that add up to 1",
+    ))
+}
+
+fn check_count(count: usize) -> Checked {
+    if (1..=MOST_GRAINS).contains(&count) {
+        return Ok(());
+    }
+    Err(Problem::new(
+        "grains",
+        format!("are {count} in number"),
+        format!("between 1 and {MOST_GRAINS} grains, which take about 2 kB of memory each"),
+    ))
+}
+
+fn check_number(path: &str, what: &str, number: usize) -> Checked {
+    if (1..=MOST_KINDS).contains(&number) {
+        return Ok(());
+    }
+    Err(Problem::new(
+        path,
+        format!("has {number} {what}"),
+        format!("between 1 and {MOST_KINDS} {what}"),
+    ))
+}
+
+/// Names become parts of keys such as `friction.glass.drum`.
+fn check_name(name: &str, path: impl FnOnce() -> String) -> Checked {
+    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    if (1..=40).contains(&name.chars().count()) && name.chars().all(fits) {
+        return Ok(());
+    }
+    Err(Problem::new(
+        path(),
+        format!("is not a usable name: {name:?}"),
+        "1 to 40 letters, digits, `-` or `_`",
+    ))
+}
+
+fn twice(path: String, what: &str, name: &str) -> Problem {
+    Problem::new(
+        path,
+        format!("gives {what} called `{name}` a second time"),
+        "each name once",
+    )
+}
+
+/// A vector whose components are numbers no larger than `largest`.
+fn vector(v: DVec3, largest: f64, unit: &str, path: impl FnOnce() -> String) -> Checked {
+    if v.to_array().iter().all(|x| x.abs() <= largest) {
+        return Ok(());
+    }
+    Err(Problem::value(
+        path(),
+        shown(v),
+        format!("three numbers between -{largest} and {largest} {unit}"),
+    ))
+}
+
+fn shown(v: DVec3) -> String {
+    format!("({}, {}, {})", v.x, v.y, v.z)
+}
+
+/// Width of the widest grain that the container takes [m].
+fn narrowest(container: &SceneContainer) -> f64 {
+    match container {
+        SceneContainer::Drum { radius, width, .. } => width.min(2.0 * radius),
+        SceneContainer::Box { min, max, .. } => (*max - *min).min_element(),
+        SceneContainer::Nothing | SceneContainer::Planes(_) => f64::INFINITY,
+    }
+}
+
+/// A listed grain lies on the grains' side of every wall, but for a contact.
+fn check_inside(
+    container: &SceneContainer,
+    grain: &SceneGrain,
+    path: impl FnOnce() -> String,
+) -> Checked {
+    let room = clearance(container, grain.position);
+    let least = (1.0 - LARGEST_OVERLAP) * grain.radius;
+    if room >= least {
+        return Ok(());
+    }
+    Err(Problem::value(
+        path(),
+        shown(grain.position),
+        format!(
+            "a place inside of the container, {} m or more from every wall (a touch may be {:.0} % of the radius deep)",
+            least,
+            100.0 * LARGEST_OVERLAP
+        ),
+    )
+    .advise(format!("It is {room} m from the nearest one")))
+}
+
+/// Distance of `x` from the nearest wall, negative behind it [m].
+fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
+    match container {
+        SceneContainer::Nothing => f64::INFINITY,
+        SceneContainer::Drum { radius, width, .. } => {
+            (radius - x.truncate().length()).min(0.5 * width - x.z.abs())
+        }
+        SceneContainer::Box { min, max, .. } => (x - *min).min(*max - x).min_element(),
+        SceneContainer::Planes(planes) => planes
+            .iter()
+            .map(|plane| (x - plane.point).dot(plane.normal))
+            .fold(f64::INFINITY, f64::min),
+    }
+}
+
+/// No two listed grains overlap by more than a contact does.
+///
+/// Grains lie in grids of cells, one grid for each power of two of the diameter, so that a few large grains among many
+/// small ones cost no more than equal ones.
+fn check_overlaps(grains: &[SceneGrain]) -> Checked {
+    let mut grids: BTreeMap<i32, HashMap<[i64; 3], Vec<usize>>> = BTreeMap::new();
+    for (index, grain) in grains.iter().enumerate() {
+        let level = level_of(grain.radius);
+        let cell = cell_of(grain.position, level);
+        let grid = grids.entry(level).or_default();
+        grid.entry(cell).or_default().push(index);
+    }
+    for (index, grain) in grains.iter().enumerate() {
+        for (&level, grid) in grids.range(level_of(grain.radius)..) {
+            let near = neighbourhood(cell_of(grain.position, level))
+                .filter_map(|cell| grid.get(&cell))
+                .flatten();
+            for &other in near.filter(|&&other| other != index) {
+                check_pair_overlap(grains, index.min(other), index.max(other))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_pair_overlap(grains: &[SceneGrain], first: usize, second: usize) -> Checked {
+    let (a, b) = (&grains[first], &grains[second]);
+    let overlap = a.radius + b.radius - a.position.distance(b.position);
+    let most = LARGEST_OVERLAP * a.radius.min(b.radius);
+    if overlap <= most {
+        return Ok(());
+    }
+    Err(Problem::new(
+        format!("grains[{second}].position"),
+        format!("makes it overlap the grain `grains[{first}]` by {overlap:.4e} m"),
+        format!("at most {most:.4e} m, a tenth of the smaller radius"),
+    ))
+}
+
+/// The power of two that is just not below the diameter.
+fn level_of(radius: f64) -> i32 {
+    (2.0 * radius).log2().ceil() as i32
+}
+
+fn cell_of(position: DVec3, level: i32) -> [i64; 3] {
+    let size = f64::from(level).exp2();
+    position.to_array().map(|x| (x / size).floor() as i64)
+}
+
+fn neighbourhood(cell: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
+    let around = |x: i64| [x - 1, x, x + 1];
+    around(cell[0]).into_iter().flat_map(move |x| {
+        around(cell[1])
+            .into_iter()
+            .flat_map(move |y| around(cell[2]).into_iter().map(move |z| [x, y, z]))
+    })
+}

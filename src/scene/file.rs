@@ -1,0 +1,411 @@
+//! The keys of a scene file, with their defaults and units.
+//!
+//! In: RON. Out: a [`Scene`] whose values are not yet checked. This is the only place that knows how a file spells
+//! things; [`super::check`] is the only one that knows which values make sense.
+//!
+//! Every number is in SI units, save under a key that names its unit: `radius_mm`, `width_mm`, `speed_rpm`. A default is
+//! the value of the dry grains or the drum of Kasper et al. 2021.
+
+use super::check::{check_container, fraction, volume};
+use super::error::Problem;
+use super::{
+    ContactLaw, PairOverride, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial,
+    ScenePlane, SceneSpecies, TimeStep,
+};
+use glam::DVec3;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::f64::consts::PI;
+use std::fmt;
+
+/// A whole file.
+#[derive(Deserialize)]
+#[serde(rename = "Scene", deny_unknown_fields)]
+pub(super) struct SceneFile {
+    title: String,
+    #[serde(default)]
+    look_for: String,
+    #[serde(default)]
+    source: String,
+    materials: NamedMaterials,
+    #[serde(default)]
+    pairs: Vec<PairOverride>,
+    container: ContainerFile,
+    grains: GrainsFile,
+    #[serde(default = "earth_gravity")]
+    gravity: DVec3,
+    #[serde(default)]
+    law: ContactLaw,
+    #[serde(default)]
+    time_step: TimeStep,
+    #[serde(default = "paper_duration")]
+    duration: f64,
+    #[serde(default = "paper_output_interval")]
+    output_interval: f64,
+    #[serde(default = "first_seed")]
+    seed: u64,
+}
+
+fn earth_gravity() -> DVec3 {
+    DVec3::new(0.0, -9.81, 0.0)
+}
+
+fn paper_duration() -> f64 {
+    50.0
+}
+
+fn paper_output_interval() -> f64 {
+    0.1
+}
+
+fn first_seed() -> u64 {
+    1
+}
+
+/// A material, by default the paper's dry glass.
+#[derive(Deserialize)]
+#[serde(rename = "Material", default, deny_unknown_fields)]
+struct MaterialFile {
+    youngs_modulus: f64,
+    poisson_ratio: f64,
+    density: f64,
+    restitution: f64,
+    friction: f64,
+    rolling_friction: f64,
+}
+
+impl Default for MaterialFile {
+    fn default() -> Self {
+        Self {
+            youngs_modulus: 63e6,
+            poisson_ratio: 0.21,
+            density: 2500.0,
+            restitution: 0.95,
+            friction: 0.40,
+            rolling_friction: 0.01,
+        }
+    }
+}
+
+/// Materials in the order of the file, which is the order of their indices.
+struct NamedMaterials(Vec<(String, MaterialFile)>);
+
+impl<'de> Deserialize<'de> for NamedMaterials {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(InOrder)
+    }
+}
+
+struct InOrder;
+
+impl<'de> Visitor<'de> for InOrder {
+    type Value = NamedMaterials;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a map from names to materials")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut materials = Vec::new();
+        while let Some(entry) = map.next_entry()? {
+            materials.push(entry);
+        }
+        Ok(NamedMaterials(materials))
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Container", deny_unknown_fields)]
+enum ContainerFile {
+    Nothing,
+    Drum {
+        radius: Option<f64>,
+        radius_mm: Option<f64>,
+        width: Option<f64>,
+        width_mm: Option<f64>,
+        speed: Option<f64>,
+        speed_rpm: Option<f64>,
+        material: String,
+    },
+    Box {
+        min: DVec3,
+        max: DVec3,
+        material: String,
+    },
+    Planes(Vec<PlaneFile>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Plane", deny_unknown_fields)]
+struct PlaneFile {
+    name: Option<String>,
+    point: DVec3,
+    normal: DVec3,
+    #[serde(default)]
+    velocity: DVec3,
+    material: String,
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Grains", deny_unknown_fields)]
+enum GrainsFile {
+    Fill {
+        count: Option<u64>,
+        bulk_fraction: Option<f64>,
+        packing: Option<f64>,
+        species: Vec<SpeciesFile>,
+    },
+    List(Vec<GrainFile>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Species", deny_unknown_fields)]
+struct SpeciesFile {
+    name: Option<String>,
+    radius: Option<f64>,
+    radius_mm: Option<f64>,
+    material: String,
+    share: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Grain", deny_unknown_fields)]
+struct GrainFile {
+    position: DVec3,
+    #[serde(default)]
+    velocity: DVec3,
+    #[serde(default)]
+    spin: DVec3,
+    radius: Option<f64>,
+    radius_mm: Option<f64>,
+    material: String,
+}
+
+impl SceneFile {
+    /// The scene it states. Numbers are as the file gives them, sensible or not.
+    pub fn into_scene(self) -> Result<Scene, Problem> {
+        let container = self.container.into_container()?;
+        let grains = self.grains.into_grains(&container)?;
+        Ok(Scene {
+            title: self.title,
+            look_for: self.look_for,
+            source: self.source,
+            materials: self.materials.into_list(),
+            pairs: self.pairs,
+            container,
+            grains,
+            gravity: self.gravity,
+            law: self.law,
+            time_step: self.time_step,
+            duration: self.duration,
+            output_interval: self.output_interval,
+            seed: self.seed,
+        })
+    }
+}
+
+impl NamedMaterials {
+    fn into_list(self) -> Vec<SceneMaterial> {
+        let with_name = |(name, file): (String, MaterialFile)| SceneMaterial {
+            name,
+            youngs_modulus: file.youngs_modulus,
+            poisson_ratio: file.poisson_ratio,
+            density: file.density,
+            restitution: file.restitution,
+            friction: file.friction,
+            rolling_friction: file.rolling_friction,
+        };
+        self.0.into_iter().map(with_name).collect()
+    }
+}
+
+impl ContainerFile {
+    fn into_container(self) -> Result<SceneContainer, Problem> {
+        Ok(match self {
+            Self::Nothing => SceneContainer::Nothing,
+            Self::Drum {
+                radius,
+                radius_mm,
+                width,
+                width_mm,
+                speed,
+                speed_rpm,
+                material,
+            } => SceneContainer::Drum {
+                radius: either("container.radius", radius, "_mm", radius_mm.map(metres))?
+                    .unwrap_or(0.0605),
+                width: either("container.width", width, "_mm", width_mm.map(metres))?
+                    .unwrap_or(0.022),
+                speed: either("container.speed", speed, "_rpm", speed_rpm.map(per_second))?
+                    .unwrap_or(per_second(0.5)),
+                material,
+            },
+            Self::Box { min, max, material } => SceneContainer::Box { min, max, material },
+            Self::Planes(planes) => SceneContainer::Planes(
+                planes
+                    .into_iter()
+                    .enumerate()
+                    .map(|(index, plane)| plane.into_plane(index))
+                    .collect(),
+            ),
+        })
+    }
+}
+
+impl PlaneFile {
+    fn into_plane(self, index: usize) -> ScenePlane {
+        ScenePlane {
+            name: self.name.unwrap_or_else(|| format!("plane-{}", index + 1)),
+            point: self.point,
+            normal: self.normal.try_normalize().unwrap_or(self.normal),
+            velocity: self.velocity,
+            material: self.material,
+        }
+    }
+}
+
+impl GrainsFile {
+    fn into_grains(self, container: &SceneContainer) -> Result<SceneGrains, Problem> {
+        match self {
+            Self::Fill {
+                count,
+                bulk_fraction,
+                packing,
+                species,
+            } => {
+                let alone = species.len() == 1;
+                let species = species
+                    .into_iter()
+                    .enumerate()
+                    .map(|(index, species)| species.into_species(index, alone))
+                    .collect::<Result<Vec<_>, _>>()?;
+                let count = match count {
+                    Some(count) => given_count(count, bulk_fraction, packing)?,
+                    None => count_for(
+                        container,
+                        bulk_fraction.unwrap_or(0.35),
+                        packing.unwrap_or(0.60),
+                        &species,
+                    )?,
+                };
+                Ok(SceneGrains::Fill { count, species })
+            }
+            Self::List(grains) => Ok(SceneGrains::List(
+                grains
+                    .into_iter()
+                    .enumerate()
+                    .map(|(index, grain)| grain.into_grain(index))
+                    .collect::<Result<_, _>>()?,
+            )),
+        }
+    }
+}
+
+impl SpeciesFile {
+    fn into_species(self, index: usize, alone: bool) -> Result<SceneSpecies, Problem> {
+        let path = format!("grains.species[{index}]");
+        let radius = required_radius(&path, self.radius, self.radius_mm)?;
+        let Some(share) = self.share.or(alone.then_some(1.0)) else {
+            return Err(Problem::new(
+                path,
+                "has no `share`",
+                "its share of the grains by number, 0 to 1, as there are several species",
+            ));
+        };
+        Ok(SceneSpecies {
+            name: self.name.unwrap_or_else(|| self.material.clone()),
+            radius,
+            material: self.material,
+            share,
+        })
+    }
+}
+
+impl GrainFile {
+    fn into_grain(self, index: usize) -> Result<SceneGrain, Problem> {
+        Ok(SceneGrain {
+            position: self.position,
+            velocity: self.velocity,
+            spin: self.spin,
+            radius: required_radius(&format!("grains[{index}]"), self.radius, self.radius_mm)?,
+            material: self.material,
+        })
+    }
+}
+
+fn metres(millimetres: f64) -> f64 {
+    millimetres / 1000.0
+}
+
+/// [rad/s]
+fn per_second(turns_per_minute: f64) -> f64 {
+    turns_per_minute * 2.0 * PI / 60.0
+}
+
+/// The value that one of two keys gives, in SI units.
+fn either(
+    path: &str,
+    si: Option<f64>,
+    suffix: &str,
+    converted: Option<f64>,
+) -> Result<Option<f64>, Problem> {
+    if si.is_some() && converted.is_some() {
+        let key = path.rsplit('.').next().unwrap_or(path);
+        return Err(Problem::new(
+            path,
+            format!("is given twice, as `{key}` and as `{key}{suffix}`"),
+            "one of the two",
+        ));
+    }
+    Ok(si.or(converted))
+}
+
+fn required_radius(holder: &str, si: Option<f64>, mm: Option<f64>) -> Result<f64, Problem> {
+    either(&format!("{holder}.radius"), si, "_mm", mm.map(metres))?.ok_or_else(|| {
+        Problem::new(
+            holder,
+            "has no `radius`",
+            "a length in m, or in mm as `radius_mm`",
+        )
+    })
+}
+
+fn given_count(
+    count: u64,
+    bulk_fraction: Option<f64>,
+    packing: Option<f64>,
+) -> Result<usize, Problem> {
+    for (key, value) in [("bulk_fraction", bulk_fraction), ("packing", packing)] {
+        if value.is_some() {
+            return Err(Problem::new(
+                format!("grains.{key}"),
+                "contradicts `count`, which is given too",
+                "either `count`, or `bulk_fraction` and `packing`",
+            ));
+        }
+    }
+    Ok(usize::try_from(count).unwrap_or(usize::MAX))
+}
+
+/// Number of grains whose bed, packed at `packing`, takes `bulk_fraction` of the container's volume.
+fn count_for(
+    container: &SceneContainer,
+    bulk_fraction: f64,
+    packing: f64,
+    species: &[SceneSpecies],
+) -> Result<usize, Problem> {
+    check_container(container)?;
+    fraction("grains.bulk_fraction", bulk_fraction)?;
+    fraction("grains.packing", packing)?;
+    let grain_volume: f64 = species
+        .iter()
+        .map(|s| s.share * 4.0 / 3.0 * PI * s.radius.powi(3))
+        .sum();
+    let count = volume(container)? * bulk_fraction * packing / grain_volume;
+    // A nonsensical radius or share gives a nonsensical number here; their own checks say so.
+    Ok(if count.is_finite() {
+        count.round().max(0.0) as usize
+    } else {
+        1
+    })
+}

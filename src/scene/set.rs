@@ -1,0 +1,146 @@
+//! Values of a scene that a command line can replace before anything is built.
+//!
+//! In: a key and the text of its value (`--set duration=10s`). Out: the scene with that value, checked again. What can
+//! change while a run goes on is a [`crate::simulation::Parameter`] instead.
+
+use super::error::{Problem, SceneError, suggestion};
+use super::{Scene, SceneGrains, TimeStep};
+
+/// One value that can be replaced.
+struct Setting {
+    key: &'static str,
+    /// What it takes.
+    expected: &'static str,
+    /// Puts the value in place; `None` where the text is not such a value.
+    apply: fn(&mut Scene, &str) -> Option<()>,
+}
+
+const SETTINGS: [Setting; 5] = [
+    Setting {
+        key: "seed",
+        expected: "a whole number of at least 0",
+        apply: |scene, text| {
+            scene.seed = text.parse().ok()?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "duration",
+        expected: "a time such as `10s`, `250ms` or `2min`",
+        apply: |scene, text| {
+            scene.duration = seconds(text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "output-interval",
+        expected: "a time such as `0.1s` or `20ms`",
+        apply: |scene, text| {
+            scene.output_interval = seconds(text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "time-step",
+        expected: "`automatic`, or a time such as `1e-5s` or `10us`",
+        apply: |scene, text| {
+            scene.time_step = match text {
+                "automatic" => TimeStep::Automatic,
+                time => TimeStep::Given(seconds(time)?),
+            };
+            Some(())
+        },
+    },
+    Setting {
+        key: "count",
+        expected: "a whole number of grains, in a scene that fills its container",
+        apply: |scene, text| match &mut scene.grains {
+            SceneGrains::Fill { count, .. } => {
+                *count = text.parse().ok()?;
+                Some(())
+            }
+            SceneGrains::List(_) => None,
+        },
+    },
+];
+
+impl Scene {
+    /// Keys that [`Scene::set`] takes, each with what it expects.
+    pub fn settings() -> impl Iterator<Item = (&'static str, &'static str)> {
+        SETTINGS
+            .iter()
+            .map(|setting| (setting.key, setting.expected))
+    }
+
+    /// Replaces one value before anything is built: `seed`, `duration`, `output-interval`, `time-step`, `count`.
+    ///
+    /// # Errors
+    /// When there is no such key, the text is no such value, or the scene does not hold together with it; the scene is
+    /// then as it was.
+    pub fn set(&mut self, key: &str, text: &str) -> Result<(), SceneError> {
+        let origin = format!("{key}={text}");
+        let refuse = |problem| SceneError::outside_of_files(&origin, problem);
+        let setting = SETTINGS
+            .iter()
+            .find(|setting| setting.key == key)
+            .ok_or_else(|| refuse(unknown(key)))?;
+        let mut changed = self.clone();
+        (setting.apply)(&mut changed, text.trim())
+            .ok_or_else(|| refuse(Problem::value(key, format!("`{text}`"), setting.expected)))?;
+        changed.problem().map_err(refuse)?;
+        *self = changed;
+        Ok(())
+    }
+}
+
+fn unknown(key: &str) -> Problem {
+    let known: Vec<&str> = SETTINGS.iter().map(|setting| setting.key).collect();
+    let mut problem = Problem::new(
+        key,
+        "cannot be set before a run",
+        super::error::one_of(&known),
+    );
+    problem.advice = suggestion(key, &known);
+    problem
+}
+
+/// The time that `text` states, a number of seconds or one with the unit `us`, `ms`, `s`, `min` or `h` [s].
+pub fn seconds(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (number, unit) = text
+        .find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E')
+        .map_or((text, "s"), |at| text.split_at(at));
+    let number: f64 = number.trim().parse().ok()?;
+    let time = match unit {
+        "us" | "µs" => number / 1e6,
+        "ms" => number / 1e3,
+        "s" => number,
+        "min" => number * 60.0,
+        "h" => number * 3600.0,
+        _ => return None,
+    };
+    time.is_finite().then_some(time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_carry_their_unit() {
+        let times = [
+            ("10s", 10.0),
+            ("250 ms", 0.25),
+            ("2min", 120.0),
+            ("1e-5", 1e-5),
+            ("10us", 1e-5),
+            ("1e1s", 10.0),
+        ];
+        for (text, time) in times {
+            assert_eq!(seconds(text), Some(time), "{text}");
+        }
+        for text in ["", "s", "ten", "10 parsecs", "NaN", "inf", "1e999"] {
+            assert_eq!(seconds(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,366 @@
+//! What panels, views and the headless runner see of a run, and how they change it.
+//!
+//! In: a scene, then [`Command`]s and ticks. Out: the newest state, the samples so far, what the run is doing. The run
+//! itself is moved by a driver, inline or on a thread of its own; which one does not show in the trajectory.
+
+use super::bed::BedStore;
+use super::driver::Driver;
+use super::engine::{Engine, Order, Update};
+use super::parameter::ParameterInfo;
+use super::preparation::Preparation;
+use super::{Command, Parameter, ScriptedCommand, StampedCommand};
+use crate::measure::{Avalanche, Measure, Series, avalanches};
+use crate::scene::Scene;
+use crate::solver::{Fault, Profile, TimeStepAdvice, advise};
+use crate::world::World;
+use bevy::ecs::resource::Resource;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Smallest drop of the surface that counts as an avalanche [rad], 1°.
+pub const SMALLEST_DROP: f64 = std::f64::consts::PI / 180.0;
+
+/// Wall-clock time over which the real-time factor is measured.
+const RATE_TIME: Duration = Duration::from_millis(400);
+
+/// How a simulation is opened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Who moves the run.
+    pub driver: DriverKind,
+    /// Threads the solver works on.
+    pub threads: usize,
+    /// Whether the run starts by itself.
+    pub autoplay: bool,
+    /// Simulated seconds per wall-clock second to aim for; infinity for as fast as the machine can.
+    pub speed: f64,
+    /// Where settled beds are looked for and kept.
+    pub beds: BedStore,
+    /// Commands carried out by themselves when their time comes.
+    pub script: Vec<ScriptedCommand>,
+}
+
+/// Who moves a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriverKind {
+    /// The caller of [`Simulation::tick`], within the call.
+    Inline,
+    /// A thread of its own; no call ever waits for it.
+    Thread,
+}
+
+impl Options {
+    /// For a window: a thread of its own that leaves one core to the picture, in real time.
+    pub fn window() -> Self {
+        Self {
+            driver: DriverKind::Thread,
+            threads: available_threads().saturating_sub(1).max(1),
+            autoplay: true,
+            speed: 1.0,
+            beds: BedStore::user(),
+            script: Vec::new(),
+        }
+    }
+
+    /// Without a window: inline, all cores, as fast as the machine can.
+    pub fn headless() -> Self {
+        Self {
+            driver: DriverKind::Inline,
+            threads: available_threads(),
+            speed: f64::INFINITY,
+            ..Self::window()
+        }
+    }
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::window()
+    }
+}
+
+fn available_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// What a simulation does now.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// The run is not at time zero yet.
+    Preparing {
+        /// What is being done.
+        stage: String,
+        /// How far it has come, 0 … 1.
+        progress: f32,
+    },
+    /// It holds.
+    Paused,
+    /// It goes on.
+    Running,
+    /// The solver met an absurd state; the last good one is shown.
+    Faulted(Fault),
+    /// There is no run, for the reason given.
+    Failed(String),
+}
+
+/// A simulation as the outside sees it.
+#[derive(Resource)]
+pub struct Simulation {
+    scene: Arc<Scene>,
+    advice: TimeStepAdvice,
+    driver: Option<Driver>,
+    speed: f64,
+    world: Option<Arc<World>>,
+    parameters: Arc<[ParameterInfo]>,
+    series: Series,
+    avalanches: Avalanches,
+    commands: Vec<StampedCommand>,
+    /// Values asked for and not yet carried out.
+    asked: BTreeMap<Parameter, f64>,
+    /// Commands sent so far.
+    sent: u64,
+    status: Status,
+    profile: Profile,
+    rate: Rate,
+    warnings: Vec<String>,
+    generation: u64,
+}
+
+impl Simulation {
+    /// Opens `scene`. On a thread this returns at once and the run is prepared there; inline it is prepared by ticks.
+    pub fn open(scene: Scene, options: Options) -> Self {
+        let scene = Arc::new(scene);
+        let advice = advise(&scene);
+        let speed = options.speed;
+        let driver = drive(scene.clone(), advice.time_step, options);
+        let mut simulation = Self {
+            scene,
+            speed,
+            world: None,
+            parameters: Arc::new([]),
+            series: Series::default(),
+            avalanches: Avalanches::default(),
+            commands: Vec::new(),
+            asked: BTreeMap::new(),
+            sent: 0,
+            status: Status::Preparing {
+                stage: "starting".into(),
+                progress: 0.0,
+            },
+            profile: Profile::default(),
+            rate: Rate::default(),
+            warnings: advice.warning.iter().cloned().collect(),
+            advice,
+            generation: 0,
+            driver: None,
+        };
+        match driver {
+            Ok(driver) => simulation.driver = Some(driver),
+            Err(error) => {
+                simulation.status =
+                    Status::Failed(format!("the system gives the solver no thread: {error}"));
+            }
+        }
+        simulation
+    }
+
+    /// What was asked for.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The newest state; none while the run is prepared.
+    pub fn world(&self) -> Option<&Arc<World>> {
+        self.world.as_ref()
+    }
+
+    /// Changes whenever [`Simulation::world`] is another state.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// The samples so far, one every [`super::SAMPLE_INTERVAL`].
+    pub fn series(&self) -> &Series {
+        &self.series
+    }
+
+    /// The avalanches so far, of [`SMALLEST_DROP`] at least.
+    pub fn avalanches(&self) -> &[Avalanche] {
+        &self.avalanches.list
+    }
+
+    /// What it does now.
+    pub fn status(&self) -> &Status {
+        &self.status
+    }
+
+    /// The parameters that can change while it goes on; none while the run is prepared.
+    pub fn parameters(&self) -> &[ParameterInfo] {
+        &self.parameters
+    }
+
+    /// Present value of `parameter` in SI units, or the value asked for where that is still to be carried out; NaN where
+    /// the scene has no such parameter.
+    pub fn value(&self, parameter: &Parameter) -> f64 {
+        let asked = self.asked.get(parameter).copied();
+        let present = || parameter.read(self.world.as_ref()?);
+        asked.or_else(present).unwrap_or(f64::NAN)
+    }
+
+    /// Asks for `command`; it is carried out before the next slice of steps, stamped and kept.
+    pub fn send(&mut self, command: Command) {
+        match &command {
+            Command::Set { parameter, value } => {
+                self.asked.insert(parameter.clone(), *value);
+            }
+            Command::Speed(speed) => self.speed = *speed,
+            _ => {}
+        }
+        self.sent += 1;
+        self.order(Order::Command(command));
+    }
+
+    /// Lets the run go no further than `step` for now, or as far as it will.
+    pub fn hold_at(&mut self, step: Option<u64>) {
+        self.order(Order::Hold(step));
+    }
+
+    /// The commands carried out since time zero.
+    pub fn commands(&self) -> &[StampedCommand] {
+        &self.commands
+    }
+
+    /// Simulated seconds per wall-clock second that were asked for.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Simulated seconds per wall-clock second lately; zero while it holds.
+    pub fn real_time_factor(&self) -> f64 {
+        match self.status {
+            Status::Running => self.rate.value,
+            _ => 0.0,
+        }
+    }
+
+    /// Where the solver's time went lately.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// The time step and its reasons.
+    pub fn advice(&self) -> &TimeStepAdvice {
+        &self.advice
+    }
+
+    /// What people should know, in sentences: refused commands, a bed that could not be kept …
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Lets `passed` wall-clock time pass: hands the next slice of steps over and takes in what is new.
+    pub fn tick(&mut self, passed: Duration) {
+        let Some(driver) = &mut self.driver else {
+            return;
+        };
+        let update = driver.tick(passed);
+        if update.is_none() && driver.has_died() {
+            self.driver = None;
+            self.status =
+                Status::Failed("the solver's thread ended; this is a mistake in Grainfall".into());
+        }
+        if let Some(update) = update {
+            self.take(update);
+        }
+    }
+
+    fn order(&mut self, order: Order) {
+        if let Some(driver) = &mut self.driver {
+            driver.order(order);
+        }
+    }
+
+    fn take(&mut self, update: Update) {
+        if update.restarted {
+            self.series.truncate(0);
+            self.commands.clear();
+            self.avalanches = Avalanches::default();
+        }
+        for sample in update.samples {
+            self.series.push(sample);
+        }
+        self.commands.extend(update.commands);
+        self.warnings.extend(update.warnings);
+        if update.answered == self.sent {
+            self.asked.clear();
+        }
+        self.status = update.status.unwrap_or(self.status.clone());
+        self.parameters = update.parameters.unwrap_or(self.parameters.clone());
+        self.profile = update.profile.unwrap_or(std::mem::take(&mut self.profile));
+        if let Some(world) = update.world {
+            self.rate.follow(world.time());
+            self.world = Some(world);
+            self.generation += 1;
+        }
+        self.avalanches.follow(&self.series);
+    }
+}
+
+/// The driver that `options` ask for, with an engine for `scene`.
+fn drive(scene: Arc<Scene>, time_step: f64, options: Options) -> std::io::Result<Driver> {
+    let kind = options.driver;
+    let make = move || {
+        let preparation = Preparation::new(scene, time_step, options.threads, options.beds);
+        Engine::new(preparation, options.script, options.autoplay, options.speed)
+    };
+    match kind {
+        DriverKind::Inline => Ok(Driver::inline(make())),
+        DriverKind::Thread => Driver::thread(make),
+    }
+}
+
+/// The avalanches of a growing series.
+#[derive(Default)]
+struct Avalanches {
+    list: Vec<Avalanche>,
+    samples: usize,
+    due: Option<Instant>,
+}
+
+impl Avalanches {
+    /// Looks through `series` again where it has grown, spending a twentieth of the time at most.
+    fn follow(&mut self, series: &Series) {
+        let started = Instant::now();
+        if series.len() == self.samples || self.due.is_some_and(|due| due > started) {
+            return;
+        }
+        self.list = avalanches(
+            series.time(),
+            series.column(Measure::SurfaceAngle),
+            SMALLEST_DROP,
+        );
+        self.samples = series.len();
+        self.due = Some(started + 20 * started.elapsed());
+    }
+}
+
+/// Simulated time per wall-clock time, measured over [`RATE_TIME`].
+#[derive(Default)]
+struct Rate {
+    value: f64,
+    since: Option<(Instant, f64)>,
+}
+
+impl Rate {
+    fn follow(&mut self, time: f64) {
+        let (since, from) = *self.since.get_or_insert((Instant::now(), time));
+        let passed = since.elapsed();
+        if time < from {
+            self.since = None;
+        } else if passed >= RATE_TIME {
+            self.value = (time - from) / passed.as_secs_f64();
+            self.since = Some((Instant::now(), time));
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Which numbers of a scene can change while it runs, and how each is read from a world and written to it.
+//!
+//! In: a scene. Out: a list of [`ParameterInfo`], one per live parameter. Writing a value keeps the energy ledger
+//! honest: what a change of mass or stiffness puts in is booked as a command's work.
+
+use super::{Parameter, relabel};
+use crate::measure::elastic_energy;
+use crate::scene::{Scene, SceneContainer, SceneGrains, SceneSpecies};
+use crate::world::{MaterialId, Materials, PairProperties, World};
+use glam::DVec3;
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+
+/// How a value is shown to people: `shown = factor × SI`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisplayUnit {
+    /// Name of the unit, empty for a pure number.
+    pub name: &'static str,
+    /// Shown value per SI value.
+    pub factor: f64,
+}
+
+/// A live parameter and all that a slider needs to know of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterInfo {
+    /// Which one.
+    pub parameter: Parameter,
+    /// What people call it: `friction glass – drum`.
+    pub label: String,
+    /// The paper's symbol.
+    pub symbol: &'static str,
+    /// SI unit, `1` for a pure number.
+    pub unit: &'static str,
+    /// Values it can take, in SI units.
+    pub range: RangeInclusive<f64>,
+    /// The scene's value, in SI units.
+    pub default: f64,
+    /// One sentence: what it does.
+    pub description: &'static str,
+    /// The unit it is shown in.
+    pub display: DisplayUnit,
+}
+
+const PURE: DisplayUnit = DisplayUnit {
+    name: "",
+    factor: 1.0,
+};
+const RPM: DisplayUnit = DisplayUnit {
+    name: "rpm",
+    factor: 30.0 / std::f64::consts::PI,
+};
+const PERCENT: DisplayUnit = DisplayUnit {
+    name: "%",
+    factor: 100.0,
+};
+const METRES_PER_SECOND_SQUARED: DisplayUnit = DisplayUnit {
+    name: "m/s²",
+    factor: 1.0,
+};
+
+impl Parameter {
+    /// Its present value in SI units; `None` where `world` has no such parameter.
+    pub fn read(&self, world: &World) -> Option<f64> {
+        let pair = |a: &String, b: &String| {
+            let materials = &world.materials;
+            Some(materials.pair(materials.find(a)?, materials.find(b)?))
+        };
+        match self {
+            Self::Friction(a, b) => Some(pair(a, b)?.friction),
+            Self::Restitution(a, b) => Some(pair(a, b)?.restitution),
+            Self::RollingFriction(a, b) => Some(pair(a, b)?.rolling_friction),
+            Self::DrumSpeed => Some(world.container.drum_speed()),
+            Self::Gravity => Some(world.gravity.length()),
+            Self::Share(species) => relabel::share(world, species),
+        }
+    }
+
+    /// Its SI unit, `1` for a pure number.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::DrumSpeed => "rad/s",
+            Self::Gravity => "m/s²",
+            _ => "1",
+        }
+    }
+
+    /// The unit it is shown in.
+    pub fn display(&self) -> DisplayUnit {
+        match self {
+            Self::DrumSpeed => RPM,
+            Self::Gravity => METRES_PER_SECOND_SQUARED,
+            Self::Share(_) => PERCENT,
+            Self::Friction(..) | Self::Restitution(..) | Self::RollingFriction(..) => PURE,
+        }
+    }
+
+    /// The value that `text` states, a number alone (SI) or with its unit, in SI units: `0.1`, `0.5 rpm`.
+    pub fn parse_value(&self, text: &str) -> Option<f64> {
+        let (text, display) = (text.trim(), self.display());
+        let bare = |unit: &str| text.strip_suffix(unit).map(str::trim_end);
+        let number = |text: &str| text.parse().ok().filter(|value: &f64| value.is_finite());
+        let si = || number(bare(self.unit()).unwrap_or(text));
+        let shown = || Some(number(bare(display.name)?)? / display.factor);
+        number(text).or_else(shown).or_else(si)
+    }
+}
+
+/// Fastest drum a slider offers [rad/s], 10 rpm.
+const FASTEST_DRUM: f64 = 10.0 / RPM.factor;
+/// Strongest gravity a slider offers [m/s²].
+const STRONGEST_GRAVITY: f64 = 20.0;
+
+/// The live parameters of `scene`, whose world at time zero is `world`.
+pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
+    let mut list = Vec::new();
+    if let SceneContainer::Drum { speed, .. } = scene.container {
+        list.push(drum_speed(speed));
+    }
+    list.push(gravity(scene.gravity.length()));
+    list.extend(meeting_pairs(world).into_iter().flat_map(|(a, b)| {
+        let names = [a, b].map(|id| world.materials.get(id).name.clone());
+        pair_parameters(names, world.materials.pair(a, b))
+    }));
+    list.extend(shares(scene));
+    list
+}
+
+/// Gives `parameter` of `world`, a world of `scene`, the `value` in SI units. A parameter that the world does not have is
+/// left alone.
+pub fn write(parameter: &Parameter, value: f64, scene: &Scene, world: &mut World) {
+    match parameter {
+        Parameter::Friction(a, b) => change_pair(world, a, b, |pair| pair.friction = value),
+        Parameter::Restitution(a, b) => change_pair(world, a, b, |pair| pair.restitution = value),
+        Parameter::RollingFriction(a, b) => {
+            change_pair(world, a, b, |pair| pair.rolling_friction = value);
+        }
+        Parameter::DrumSpeed => world.container.set_drum_speed(value),
+        Parameter::Gravity => world.set_gravity(value * down(scene)),
+        Parameter::Share(species) => booked(world, |world| {
+            relabel::set_share(scene, world, species, value);
+        }),
+    }
+}
+
+/// Direction of gravity, downwards where the scene has none.
+fn down(scene: &Scene) -> DVec3 {
+    scene.gravity.try_normalize().unwrap_or(DVec3::NEG_Y)
+}
+
+fn change_pair(world: &mut World, a: &str, b: &str, change: impl FnOnce(&mut PairProperties)) {
+    let materials = &mut world.materials;
+    if let (Some(a), Some(b)) = (materials.find(a), materials.find(b)) {
+        change(materials.pair_mut(a, b));
+    }
+}
+
+/// Makes a change of masses or stiffnesses and books the energy it puts in as the command's work.
+fn booked(world: &mut World, change: impl FnOnce(&mut World)) {
+    let stored = |world: &World| world.kinetic_energy() + elastic_energy(world);
+    let (energy, potential) = (stored(world), world.potential_energy());
+    change(world);
+    world.ledger.command_work += stored(world) - energy;
+    let changed = world.potential_energy();
+    world.ledger.close_gravity_segment(potential, changed);
+}
+
+fn drum_speed(speed: f64) -> ParameterInfo {
+    let fastest = FASTEST_DRUM.max(2.0 * speed.abs());
+    ParameterInfo {
+        parameter: Parameter::DrumSpeed,
+        label: "drum speed".into(),
+        symbol: "Ω",
+        unit: "rad/s",
+        range: -fastest..=fastest,
+        default: speed,
+        description: "How fast the drum turns; positive is anticlockwise as you see it.",
+        display: RPM,
+    }
+}
+
+fn gravity(magnitude: f64) -> ParameterInfo {
+    ParameterInfo {
+        parameter: Parameter::Gravity,
+        label: "gravity".into(),
+        symbol: "g",
+        unit: "m/s²",
+        range: 0.0..=STRONGEST_GRAVITY.max(2.0 * magnitude),
+        default: magnitude,
+        description: "Strength of gravity; its direction stays.",
+        display: METRES_PER_SECOND_SQUARED,
+    }
+}
+
+fn pair_parameters(names: [String; 2], pair: PairProperties) -> [ParameterInfo; 3] {
+    let [a, b] = names;
+    let info = |parameter, name, symbol, range, default, description| ParameterInfo {
+        parameter,
+        label: format!("{name} {a} – {b}"),
+        symbol,
+        unit: "1",
+        range,
+        default,
+        description,
+        display: PURE,
+    };
+    [
+        info(
+            Parameter::Friction(a.clone(), b.clone()),
+            "friction",
+            "μ",
+            0.0..=pair.friction.max(1.0),
+            pair.friction,
+            "Sliding starts when the tangential force reaches this share of the normal force.",
+        ),
+        info(
+            Parameter::RollingFriction(a.clone(), b.clone()),
+            "rolling friction",
+            "μ_R",
+            0.0..=pair.rolling_friction.max(0.2),
+            pair.rolling_friction,
+            "Rolling is opposed by a torque of this share of the normal force times the effective radius.",
+        ),
+        info(
+            Parameter::Restitution(a.clone(), b.clone()),
+            "restitution",
+            "e",
+            pair.restitution.min(0.05)..=1.0,
+            pair.restitution,
+            "Rebound speed over impact speed of a head-on impact.",
+        ),
+    ]
+}
+
+/// The pairs of materials that can touch: grain with grain and grain with wall, each once, in the scene's order.
+fn meeting_pairs(world: &World) -> BTreeSet<(MaterialId, MaterialId)> {
+    let grains: BTreeSet<MaterialId> = world.species.iter().map(|s| s.material).collect();
+    let walls = world.container.walls.iter().map(|wall| wall.material);
+    let partners: BTreeSet<MaterialId> = grains.iter().copied().chain(walls).collect();
+    grains
+        .iter()
+        .flat_map(|&a| partners.iter().map(move |&b| (a.min(b), a.max(b))))
+        .collect()
+}
+
+/// Index of the first and second material that a pair parameter names, for comparing pairs whatever their order.
+fn ids(materials: &Materials, a: &str, b: &str) -> Option<(MaterialId, MaterialId)> {
+    let (a, b) = (materials.find(a)?, materials.find(b)?);
+    Some((a.min(b), a.max(b)))
+}
+
+/// `parameter` with its materials in the scene's order, so that a pair has one name.
+pub fn canonical(parameter: &Parameter, materials: &Materials) -> Parameter {
+    let ordered = |a: &str, b: &str| {
+        ids(materials, a, b).map_or_else(
+            || (a.to_owned(), b.to_owned()),
+            |(a, b)| (materials.get(a).name.clone(), materials.get(b).name.clone()),
+        )
+    };
+    match parameter {
+        Parameter::Friction(a, b) => {
+            let (a, b) = ordered(a, b);
+            Parameter::Friction(a, b)
+        }
+        Parameter::Restitution(a, b) => {
+            let (a, b) = ordered(a, b);
+            Parameter::Restitution(a, b)
+        }
+        Parameter::RollingFriction(a, b) => {
+            let (a, b) = ordered(a, b);
+            Parameter::RollingFriction(a, b)
+        }
+        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => parameter.clone(),
+    }
+}
+
+/// A share for each species that shares its radius with another.
+fn shares(scene: &Scene) -> Vec<ParameterInfo> {
+    let SceneGrains::Fill { species, .. } = &scene.grains else {
+        return Vec::new();
+    };
+    let of_radius = |radius: f64| species.iter().filter(move |s| s.radius == radius);
+    species
+        .iter()
+        .filter(|s| of_radius(s.radius).count() > 1)
+        .map(|s| share(s, of_radius(s.radius).map(|s| s.share).sum()))
+        .collect()
+}
+
+fn share(species: &SceneSpecies, most: f64) -> ParameterInfo {
+    ParameterInfo {
+        parameter: Parameter::Share(species.name.clone()),
+        label: format!("share {}", species.name),
+        symbol: "P",
+        unit: "1",
+        range: 0.0..=most,
+        default: species.share,
+        description: "Share of the grains by number; the next species of the same radius gives or takes the difference.",
+        display: PERCENT,
+    }
+}

@@ -1,0 +1,129 @@
+//! From a scene to a run at time zero: build, then a kept bed or settling.
+//!
+//! In: a scene, its time step, where beds are kept. Out: a [`Run`]. The work comes in short slices, so that whoever does it
+//! can show progress and stop.
+
+use super::bed::{BedKey, BedStore};
+use super::settling::{Settling, needs_settling};
+use super::{Run, bed};
+use crate::scene::Scene;
+use crate::solver::Fault;
+use crate::world::{self, World};
+use std::sync::Arc;
+
+/// A run that is being prepared.
+pub struct Preparation {
+    scene: Arc<Scene>,
+    time_step: f64,
+    threads: usize,
+    beds: BedStore,
+    stage: Stage,
+    warnings: Vec<String>,
+}
+
+enum Stage {
+    Placing,
+    Settling {
+        key: BedKey,
+        settling: Box<Settling>,
+    },
+}
+
+/// What a slice of preparation led to.
+pub enum Prepared {
+    /// There is more to do.
+    NotYet,
+    /// The run stands at time zero.
+    Ready(Box<Run>),
+}
+
+impl Preparation {
+    /// Prepares `scene` for steps of `time_step` [s] on `threads` threads.
+    pub fn new(scene: Arc<Scene>, time_step: f64, threads: usize, beds: BedStore) -> Self {
+        Self {
+            scene,
+            time_step,
+            threads,
+            beds,
+            stage: Stage::Placing,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Does the next short slice.
+    ///
+    /// # Errors
+    /// The solver's [`Fault`] while the grains settle.
+    pub fn advance(&mut self) -> Result<Prepared, Fault> {
+        let Stage::Settling { settling, .. } = &mut self.stage else {
+            return Ok(self.place());
+        };
+        let at_rest = settling.advance()?;
+        Ok(if at_rest {
+            self.finish()
+        } else {
+            Prepared::NotYet
+        })
+    }
+
+    /// What is being done, for people.
+    pub fn name(&self) -> &'static str {
+        match self.stage {
+            Stage::Placing => "placing the grains",
+            Stage::Settling { .. } => "settling the bed",
+        }
+    }
+
+    /// How far it has come, 0 … 1.
+    pub fn progress(&self) -> f32 {
+        match &self.stage {
+            Stage::Placing => 0.0,
+            Stage::Settling { settling, .. } => settling.progress(),
+        }
+    }
+
+    /// What people should know, in sentences.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn place(&mut self) -> Prepared {
+        let built = world::build(&self.scene, self.time_step);
+        if !needs_settling(&self.scene) {
+            return self.ready(built);
+        }
+        let key = BedKey::of(&built);
+        if let Some(settled) = self.beds.find(key, &built) {
+            return self.ready(settled);
+        }
+        let settling = Box::new(Settling::new(built, self.threads));
+        self.stage = Stage::Settling { key, settling };
+        Prepared::NotYet
+    }
+
+    fn finish(&mut self) -> Prepared {
+        let Stage::Settling { key, settling } = std::mem::replace(&mut self.stage, Stage::Placing)
+        else {
+            return Prepared::NotYet;
+        };
+        let settled = settling.finish();
+        self.warnings.extend(self.beds.keep(key, &settled).err());
+        self.ready(settled)
+    }
+
+    fn ready(&self, bed: World) -> Prepared {
+        Prepared::Ready(Box::new(Run::new(self.scene.clone(), bed, self.threads)))
+    }
+}
+
+/// The file of the settled bed of `scene`, made anew: what `assets/beds` holds.
+///
+/// # Errors
+/// The solver's [`Fault`] while the grains settle.
+pub fn make_bed(scene: &Scene, time_step: f64, threads: usize) -> Result<Vec<u8>, Fault> {
+    let built = world::build(scene, time_step);
+    let key = BedKey::of(&built);
+    let mut settling = Settling::new(built, threads);
+    while !settling.advance()? {}
+    Ok(bed::encode(key, &settling.finish()))
+}

@@ -1,0 +1,274 @@
+//! The trajectory of a scene: its world, the commands carried out and the samples taken.
+//!
+//! In: a scene and its settled bed, then commands and step numbers to advance to. Out: the world at that step and a
+//! [`Sample`] every [`SAMPLE_INTERVAL`] of simulated time. Nothing here knows of wall-clock time, ticks or threads:
+//! however a run is sliced, the same scene, seed and commands give the same bits.
+
+use super::parameter::{self, ParameterInfo};
+use super::script::Script;
+use super::{Command, Parameter, StampedCommand};
+use crate::measure::{Series, sample};
+use crate::scene::Scene;
+use crate::solver::{Fault, Profile, Solver};
+use crate::world::World;
+use std::sync::Arc;
+
+/// Simulated time between two samples [s].
+pub const SAMPLE_INTERVAL: f64 = 0.02;
+
+/// A run from time zero to now.
+pub struct Run {
+    scene: Arc<Scene>,
+    parameters: Arc<[ParameterInfo]>,
+    bed: Arc<World>,
+    world: World,
+    solver: Solver,
+    commands: Vec<StampedCommand>,
+    script: Script,
+    series: Series,
+    next_sample: u64,
+}
+
+/// Where a run stood: all it takes to go on from there.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    world: World,
+    commands: usize,
+    script: Script,
+    samples: usize,
+    next_sample: u64,
+}
+
+/// Why a command was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CommandError {
+    /// The scene has no such live parameter.
+    #[error("the scene has no parameter `{parameter}`; it has {}", .known.join(", "))]
+    Unknown {
+        /// The key that was given.
+        parameter: String,
+        /// The keys there are.
+        known: Vec<String>,
+    },
+    /// The value lies outside the parameter's range.
+    #[error("`{parameter}` cannot be {value} {unit}; expected {low} … {high} {unit}")]
+    OutOfRange {
+        /// Which parameter.
+        parameter: Parameter,
+        /// The value asked for.
+        value: f64,
+        /// Smallest value it can take.
+        low: f64,
+        /// Largest value it can take.
+        high: f64,
+        /// SI unit of the three.
+        unit: &'static str,
+    },
+}
+
+impl Run {
+    /// A run of `scene` that starts from `bed`, its world at time zero, on `threads` threads.
+    pub fn new(scene: Arc<Scene>, bed: World, threads: usize) -> Self {
+        let mut run = Self {
+            parameters: parameter::live_parameters(&scene, &bed).into(),
+            scene,
+            world: bed.clone(),
+            bed: Arc::new(bed),
+            solver: Solver::new(threads),
+            commands: Vec::new(),
+            script: Script::default(),
+            series: Series::default(),
+            next_sample: 0,
+        };
+        run.take_due_sample();
+        run
+    }
+
+    /// What was asked for.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The state now.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The state at time zero, before any command.
+    pub fn bed(&self) -> &Arc<World> {
+        &self.bed
+    }
+
+    /// The samples so far.
+    pub fn series(&self) -> &Series {
+        &self.series
+    }
+
+    /// The commands carried out since time zero.
+    pub fn commands(&self) -> &[StampedCommand] {
+        &self.commands
+    }
+
+    /// The parameters that can change while the run goes on.
+    pub fn parameters(&self) -> &Arc<[ParameterInfo]> {
+        &self.parameters
+    }
+
+    /// Where the solver's time went since this was last called.
+    pub fn take_profile(&mut self) -> Profile {
+        self.solver.take_profile()
+    }
+
+    /// Commands to carry out by themselves when their steps come, in order of their steps.
+    ///
+    /// # Errors
+    /// A [`CommandError`] when one of them cannot be carried out in this scene; none is taken then.
+    pub fn schedule(&mut self, script: Script) -> Result<(), CommandError> {
+        for command in script.commands() {
+            check(&self.parameters, &self.world, command)?;
+        }
+        self.script = script;
+        self.carry_out_due();
+        Ok(())
+    }
+
+    /// Carries out `command` now and keeps it. What concerns the player alone (play, pause, step, speed) is only kept.
+    ///
+    /// # Errors
+    /// A [`CommandError`] when the scene has no such parameter or the value is out of its range; nothing changes then.
+    pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        check(&self.parameters, &self.world, &command)?;
+        self.carry_out(command);
+        Ok(())
+    }
+
+    /// Advances to `step`, sampling on the way; does nothing when that step is past.
+    ///
+    /// # Errors
+    /// The solver's [`Fault`]; the world is then a good state some steps before the fault.
+    pub fn advance_to(&mut self, step: u64) -> Result<(), Fault> {
+        while self.world.clock.step < step {
+            let sample_step = self.sample_step(self.next_sample);
+            let script_step = self.script.next_step().unwrap_or(u64::MAX);
+            let stop = step.min(sample_step).min(script_step);
+            let steps = stop - self.world.clock.step;
+            self.solver.advance(&mut self.world, steps)?;
+            self.take_due_sample();
+            self.carry_out_due();
+        }
+        Ok(())
+    }
+
+    /// All it takes to come back to this moment.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            world: self.world.clone(),
+            commands: self.commands.len(),
+            script: self.script.clone(),
+            samples: self.series.len(),
+            next_sample: self.next_sample,
+        }
+    }
+
+    /// Goes back to a `snapshot` of this run, forgetting what came after it.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.world.clone_from(&snapshot.world);
+        self.commands.truncate(snapshot.commands);
+        self.script.clone_from(&snapshot.script);
+        self.series.truncate(snapshot.samples);
+        self.next_sample = snapshot.next_sample;
+    }
+
+    fn carry_out_due(&mut self) {
+        while let Some(command) = self.script.take_due(self.world.clock.step) {
+            self.carry_out(command);
+        }
+    }
+
+    fn carry_out(&mut self, command: Command) {
+        match command {
+            Command::Reset => self.reset(),
+            Command::Set { parameter, value } => self.set(&parameter, value),
+            kept => self.keep(kept),
+        }
+    }
+
+    fn set(&mut self, parameter: &Parameter, value: f64) {
+        let parameter = parameter::canonical(parameter, &self.world.materials);
+        parameter::write(&parameter, value, &self.scene, &mut self.world);
+        self.keep(Command::Set { parameter, value });
+    }
+
+    fn keep(&mut self, command: Command) {
+        self.commands.push(StampedCommand {
+            step: self.world.clock.step,
+            time: self.world.time(),
+            command,
+        });
+    }
+
+    /// Back to the bed. Present values that differ from the bed's become commands at step zero.
+    fn reset(&mut self) {
+        let present: Vec<_> = self
+            .parameters
+            .iter()
+            .map(|info| info.parameter.clone())
+            .map(|parameter| (parameter.read(&self.world), parameter))
+            .collect();
+        self.world.clone_from(&self.bed);
+        self.commands.clear();
+        self.script = Script::default();
+        self.series.truncate(0);
+        self.next_sample = 0;
+        self.take_due_sample();
+        for (value, parameter) in present {
+            let Some(value) = value.filter(|_| value != parameter.read(&self.world)) else {
+                continue;
+            };
+            self.set(&parameter, value);
+        }
+    }
+
+    fn sample_step(&self, sample: u64) -> u64 {
+        let time = sample as f64 * SAMPLE_INTERVAL;
+        self.world.clock.step_at(time)
+    }
+
+    fn take_due_sample(&mut self) {
+        if self.sample_step(self.next_sample) > self.world.clock.step {
+            return;
+        }
+        self.series.push(sample(&self.world));
+        while self.sample_step(self.next_sample) <= self.world.clock.step {
+            self.next_sample += 1;
+        }
+    }
+}
+
+/// Refuses a command that cannot be carried out in `world`.
+pub(super) fn check(
+    parameters: &[ParameterInfo],
+    world: &World,
+    command: &Command,
+) -> Result<(), CommandError> {
+    let Command::Set { parameter, value } = command else {
+        return Ok(());
+    };
+    let parameter = parameter::canonical(parameter, &world.materials);
+    let Some(info) = parameters.iter().find(|info| info.parameter == parameter) else {
+        return Err(CommandError::Unknown {
+            parameter: parameter.to_string(),
+            known: parameters.iter().map(|i| i.parameter.to_string()).collect(),
+        });
+    };
+    if info.range.contains(value) {
+        return Ok(());
+    }
+    Err(CommandError::OutOfRange {
+        low: *info.range.start(),
+        high: *info.range.end(),
+        unit: info.unit,
+        value: *value,
+        parameter,
+    })
+}

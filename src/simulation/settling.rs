@@ -1,0 +1,181 @@
+//! From grains placed in a container to a bed at rest.
+//!
+//! In: a scene whose container is to be filled, with its time step. Out: a world at time zero in which every grain rests
+//! on others under the scene's own gravity, contacts with their histories included. The walls stand still meanwhile.
+//!
+//! The grains fall freely, then lose a share of their velocity between slices of steps until they creep, then relax with
+//! nothing but the contact laws, so that the end is a true equilibrium. All stages are counted in steps: the same scene
+//! gives the same bits.
+
+use crate::measure::elastic_energy;
+use crate::scene::{Scene, SceneContainer, SceneGrains};
+use crate::solver::{Fault, Solver};
+use crate::world::{Motion, World};
+use glam::DVec3;
+
+/// Share of its velocity that a grain keeps from one slice of the calming stage to the next.
+const KEPT: f64 = 0.9;
+/// Kinetic energy over `Σ m g r` at which calming ends.
+const CREEPING: f64 = 1e-6;
+/// Kinetic energy over `Σ m g r` of a bed at rest; rms speeds are then near 1e-5 m/s for millimetres.
+const QUIET: f64 = 1e-9;
+/// Shortest relaxation, in units of `√(r/g)`.
+const RELAXATION: f64 = 5.0;
+/// Longest settling, in units of `√(r/g)`, after which a bed is taken as it is.
+const PATIENCE: f64 = 500.0;
+/// Slices in `√(r/g)`.
+const SLICES: f64 = 8.0;
+
+/// Whether the grains of `scene` have to settle before time zero.
+pub fn needs_settling(scene: &Scene) -> bool {
+    let filled = matches!(scene.grains, SceneGrains::Fill { count, .. } if count > 0);
+    filled && scene.container != SceneContainer::Nothing && scene.gravity.length() > 0.0
+}
+
+/// A bed on its way to rest.
+pub struct Settling {
+    world: World,
+    solver: Solver,
+    motions: Vec<Motion>,
+    stage: Stage,
+    slice: u64,
+    /// `Σ m g r` [J].
+    energy_scale: f64,
+    /// Steps of the free fall, of the shortest relaxation, and of everything at most.
+    fall: u64,
+    relaxation: u64,
+    patience: u64,
+    progress: f32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    Falling,
+    Calming,
+    Relaxing { since: u64 },
+    AtRest,
+}
+
+impl Settling {
+    /// Starts from `world`, its grains placed and at rest, on `threads` threads.
+    pub fn new(world: World, threads: usize) -> Self {
+        let motions = motions(&world);
+        let world = standing(world);
+        let gravity = world.gravity.length();
+        let radius = mean(&world.grains.radius);
+        let steps = |time: f64| (time / world.clock.time_step).ceil().max(1.0) as u64;
+        let unit = (radius / gravity).sqrt();
+        Self {
+            slice: steps(unit / SLICES),
+            fall: steps((2.0 * extent(&world) / gravity).sqrt()),
+            relaxation: steps(RELAXATION * unit),
+            patience: steps(PATIENCE * unit),
+            energy_scale: energy_scale(&world),
+            motions,
+            world,
+            solver: Solver::new(threads),
+            stage: Stage::Falling,
+            progress: 0.0,
+        }
+    }
+
+    /// Moves the grains on by one short slice and says whether they are at rest.
+    ///
+    /// # Errors
+    /// The solver's [`Fault`].
+    pub fn advance(&mut self) -> Result<bool, Fault> {
+        self.solver.advance(&mut self.world, self.slice)?;
+        let step = self.world.clock.step;
+        let agitation = self.world.kinetic_energy() / self.energy_scale;
+        self.stage = match self.stage {
+            _ if step >= self.patience => Stage::AtRest,
+            Stage::Falling if step >= self.fall => Stage::Calming,
+            Stage::Calming if agitation < CREEPING => Stage::Relaxing { since: step },
+            Stage::Relaxing { since } if agitation < QUIET && step - since >= self.relaxation => {
+                Stage::AtRest
+            }
+            unchanged => unchanged,
+        };
+        if self.stage == Stage::Calming {
+            self.calm();
+        }
+        self.progress = self.progress.max(self.estimate(agitation));
+        Ok(self.stage == Stage::AtRest)
+    }
+
+    /// How far settling has come, 0 … 1.
+    pub fn progress(&self) -> f32 {
+        self.progress
+    }
+
+    /// The settled world at time zero, the walls moving as the scene says.
+    pub fn finish(self) -> World {
+        start(self.world, &self.motions)
+    }
+
+    fn calm(&mut self) {
+        let grains = &mut self.world.grains;
+        for moving in grains.velocity.iter_mut().chain(&mut grains.spin) {
+            *moving *= KEPT;
+        }
+    }
+
+    fn estimate(&self, agitation: f64) -> f32 {
+        let decades = |from: f64, to: f64| {
+            ((from / agitation.max(1e-300)).ln() / (from / to).ln()).clamp(0.0, 1.0) as f32
+        };
+        match self.stage {
+            Stage::Falling => 0.3 * (self.world.clock.step as f32 / self.fall as f32).min(1.0),
+            Stage::Calming => 0.3 + 0.5 * decades(1.0, CREEPING),
+            Stage::Relaxing { .. } => 0.8 + 0.2 * decades(CREEPING, QUIET),
+            Stage::AtRest => 1.0,
+        }
+    }
+}
+
+/// `world` with walls that stand still.
+pub fn standing(mut world: World) -> World {
+    for wall in &mut world.container.walls {
+        wall.motion = Motion::default();
+    }
+    world
+}
+
+/// Puts `world` at rest at time zero, its walls moving as `motions` say.
+pub fn start(mut world: World, motions: &[Motion]) -> World {
+    world.grains.velocity.fill(DVec3::ZERO);
+    world.grains.spin.fill(DVec3::ZERO);
+    let elastic = elastic_energy(&world);
+    world.restart_clock(elastic);
+    for (wall, motion) in world.container.walls.iter_mut().zip(motions) {
+        wall.motion = *motion;
+    }
+    world
+}
+
+/// How the walls of `world` move.
+pub fn motions(world: &World) -> Vec<Motion> {
+    let walls = world.container.walls.iter();
+    walls.map(|wall| wall.motion).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Extent of the grains along gravity, twice a radius at least [m].
+fn extent(world: &World) -> f64 {
+    let down = world.gravity.normalize();
+    let depths = world.grains.position.iter().map(|x| x.dot(down));
+    let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), depth| {
+        (low.min(depth), high.max(depth))
+    });
+    (high - low).max(2.0 * mean(&world.grains.radius))
+}
+
+/// `Σ m g r` [J].
+fn energy_scale(world: &World) -> f64 {
+    let grains = &world.grains;
+    let moments = grains.mass.iter().zip(&grains.radius).map(|(m, r)| m * r);
+    moments.sum::<f64>() * world.gravity.length()
+}

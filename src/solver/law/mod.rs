@@ -1,0 +1,141 @@
+//! Contact laws, one file each.
+//!
+//! A law turns the constants of a pair ([`PairConstants`], computed once per kind of pair) and the overlap into
+//! stiffnesses and dashpots, and says how the normal force and the Coulomb bound come from them. All laws share the
+//! tangential spring, the rolling friction and the geometry in [`super::contacts`]. A wall is a partner of infinite mass
+//! and radius, so no law asks whether there is one.
+
+mod hertz_mindlin;
+mod hooke;
+mod rolling;
+
+pub use hertz_mindlin::HertzMindlin;
+pub use hooke::Hooke;
+pub use rolling::rolling_gain;
+
+use super::row::Row;
+use crate::scene::ContactLaw;
+use crate::world::{MaterialId, Materials, Partner, World};
+
+/// What a pair's force depends on beside geometry and motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct PairConstants {
+    /// The law's own constants, in the order of its [`Coefficients`].
+    pub coefficients: Row,
+    /// Coefficient of sliding friction μ.
+    pub friction: f64,
+    /// `μ_R r*`, the arm of rolling friction [m].
+    pub rolling_arm: f64,
+    _padding: [f64; 2],
+}
+
+/// Stiffnesses and dashpots of a contact at some overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// `k_n`, normal force over overlap [N/m].
+    pub normal_stiffness: f64,
+    /// `η_n` [N s/m].
+    pub normal_damping: f64,
+    /// `k_t` [N/m].
+    pub tangential_stiffness: f64,
+    /// `η_t` [N s/m].
+    pub tangential_damping: f64,
+}
+
+/// A contact law: a plain value whose functions the pair loop inlines.
+pub trait Law: Copy + Send + Sync {
+    /// Stiffnesses and dashpots at the overlap `δ > 0` [m].
+    fn coefficients(self, constants: Row, overlap: f64) -> Coefficients;
+
+    /// Repulsive normal force [N] from its elastic part and the dashpot's part.
+    fn normal_force(self, elastic: f64, damping: f64) -> f64;
+
+    /// The normal force that bounds the tangential one [N].
+    fn coulomb_force(self, elastic: f64, normal: f64) -> f64;
+}
+
+/// Effective (reduced) quantities of two partners, which an infinite partner leaves at the other's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pairing {
+    /// `r* = r_i r_j / (r_i + r_j)` [m].
+    pub effective_radius: f64,
+    /// `m* = m_i m_j / (m_i + m_j)` [kg].
+    pub effective_mass: f64,
+    /// Materials of both sides.
+    pub materials: (MaterialId, MaterialId),
+}
+
+impl Pairing {
+    /// Grain `i` and its partner.
+    pub fn of(world: &World, grain: usize, partner: Partner) -> Self {
+        let grains = &world.grains;
+        let material = |i: usize| world.species[usize::from(grains.species[i].0)].material;
+        match partner {
+            Partner::Grain(j) => {
+                let j = j as usize;
+                Self {
+                    effective_radius: reduced(grains.radius[grain], grains.radius[j]),
+                    effective_mass: reduced(grains.mass[grain], grains.mass[j]),
+                    materials: (material(grain), material(j)),
+                }
+            }
+            Partner::Wall(w) => Self {
+                effective_radius: grains.radius[grain],
+                effective_mass: grains.mass[grain],
+                materials: (material(grain), world.container.walls[w as usize].material),
+            },
+        }
+    }
+
+    /// Constants of the pair under the world's contact law.
+    pub fn constants(&self, law: ContactLaw, materials: &Materials) -> PairConstants {
+        let pair = materials.pair(self.materials.0, self.materials.1);
+        let coefficients = match law {
+            ContactLaw::HertzMindlin => HertzMindlin::constants(self, materials),
+            ContactLaw::Hooke {
+                normal_stiffness,
+                tangential_stiffness,
+            } => Hooke::constants(
+                self,
+                normal_stiffness,
+                tangential_stiffness,
+                pair.restitution,
+            ),
+        };
+        PairConstants {
+            coefficients,
+            friction: pair.friction,
+            rolling_arm: pair.rolling_friction * self.effective_radius,
+            _padding: [0.0; 2],
+        }
+    }
+
+    /// Elastic energy stored at the overlap [m] with a tangential spring of the given length [m], in J.
+    pub fn elastic_energy(
+        &self,
+        law: ContactLaw,
+        materials: &Materials,
+        overlap: f64,
+        spring: f64,
+    ) -> f64 {
+        let constants = self.constants(law, materials).coefficients;
+        let (normal, tangential) = match law {
+            // ∫ k_n δ dδ with k_n ∝ √δ.
+            ContactLaw::HertzMindlin => {
+                let k = HertzMindlin.coefficients(constants, overlap);
+                (0.4 * k.normal_stiffness, k.tangential_stiffness)
+            }
+            ContactLaw::Hooke { .. } => {
+                let k = Hooke.coefficients(constants, overlap);
+                (0.5 * k.normal_stiffness, k.tangential_stiffness)
+            }
+        };
+        normal * overlap * overlap + 0.5 * tangential * spring * spring
+    }
+}
+
+/// `a b / (a + b)`.
+fn reduced(a: f64, b: f64) -> f64 {
+    a * b / (a + b)
+}

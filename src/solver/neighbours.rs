@@ -1,0 +1,368 @@
+//! Who may touch whom.
+//!
+//! Two lists, both pure caches that never change a result. The *near* list, from a cell grid, holds pairs closer than a
+//! wide skin; the *active* list, filtered from it, holds pairs closer than a narrow skin and is what the pair loop runs
+//! over. Each list is good until some grain has moved by half its skin. Pairs are kept sorted by grain and partner and
+//! forces are summed in that order; a listed pair that does not touch adds exact zeros, so the sums do not depend on the
+//! skins. Tangential springs follow their pair from list to list.
+
+use super::contacts::{Action, Body, Pair, WallBody};
+use super::row::{Row, length_squared, sub, vector};
+use crate::world::{Contact, Partner, Surface};
+
+/// Pairs with what they remember and what they do.
+#[derive(Default)]
+pub struct PairList {
+    /// The pairs, sorted by grain and partner.
+    pub pairs: Vec<Pair>,
+    /// Tangential spring of each [m].
+    pub springs: Vec<Row>,
+    /// What each does to its partners.
+    pub actions: Vec<Action>,
+    /// Where the pairs of grain `i` as first partner begin; one more entry at the end.
+    pub first: Vec<u32>,
+}
+
+/// Both lists.
+#[derive(Default)]
+pub struct Neighbours {
+    /// Active pairs of grains.
+    pub grains: PairList,
+    /// Active pairs of a grain and a wall.
+    pub walls: PairList,
+    /// Where in `as_second` the pairs of grain `i` as second partner begin; one more entry at the end.
+    pub second_first: Vec<u32>,
+    /// Indices of active pairs by their second grain, ascending for each.
+    pub as_second: Vec<u32>,
+    near_grains: Vec<Pair>,
+    near_walls: Vec<Pair>,
+    near_reference: Vec<Row>,
+    near_surfaces: Vec<Surface>,
+    skins: Skins,
+    /// Grain positions when the active list was filtered.
+    pub reference: Vec<Row>,
+    /// Near lists built since the start.
+    pub rebuilds: u64,
+}
+
+/// Widths of the skins [m].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Skins {
+    active: f64,
+    near: f64,
+}
+
+/// Bounds of the active skin relative to the smallest radius: below the lower one refreshing costs more than the pairs
+/// it saves, above the upper one the list holds more strangers than neighbours.
+const ACTIVE_SKIN: std::ops::RangeInclusive<f64> = 0.01..=0.12;
+
+/// Width of the near skin relative to the smallest radius.
+const NEAR_SKIN: f64 = 0.35;
+
+/// Active lists that live shorter than this many steps want a wider skin, longer than the second a narrower one.
+const WANTED_STEPS: (u64, u64) = (25, 250);
+
+impl Neighbours {
+    /// How far a grain may move from [`Neighbours::reference`] before the active list must be refreshed [m].
+    pub fn slack(&self) -> f64 {
+        0.5 * self.skins.active
+    }
+
+    /// Whether the active list still covers these bodies and walls.
+    pub fn active_covers(&self, bodies: &[Body], walls: &[WallBody]) -> bool {
+        let slack = self.slack();
+        self.covers(bodies, walls)
+            && self.reference.len() == bodies.len()
+            && bodies
+                .iter()
+                .zip(&self.reference)
+                .all(|(body, old)| length_squared(sub(body.position, *old)) <= slack * slack)
+    }
+
+    /// Whether the near list was built for these bodies and walls and still covers them.
+    fn covers(&self, bodies: &[Body], walls: &[WallBody]) -> bool {
+        let slack = 0.5 * (self.skins.near - self.skins.active);
+        self.near_reference.len() == bodies.len()
+            && walls
+                .iter()
+                .map(|wall| wall.surface)
+                .eq(self.near_surfaces.iter().copied())
+            && bodies.iter().zip(&self.near_reference).all(|(body, old)| {
+                length_squared(sub(body.position, *old)) < slack * slack && body.spin[3] == old[3]
+            })
+    }
+
+    /// Forgets the near list, for bodies or walls that are not those it was built for.
+    pub fn forget(&mut self) {
+        self.near_reference.clear();
+    }
+
+    /// Makes the skin suit lists that live for `steps` steps.
+    pub fn adapt(&mut self, steps: u64) {
+        let factor = match steps {
+            _ if steps < WANTED_STEPS.0 => 1.4,
+            _ if steps > WANTED_STEPS.1 => 0.8,
+            _ => 1.0,
+        };
+        let radius = self.skins.near / NEAR_SKIN;
+        self.skins.active = (self.skins.active * factor)
+            .clamp(ACTIVE_SKIN.start() * radius, ACTIVE_SKIN.end() * radius);
+    }
+
+    /// Brings both lists up to date; springs follow their pairs. `kind(grain, partner)` and `wall_kind(grain, wall)` name a pair's constants.
+    pub fn refresh(
+        &mut self,
+        bodies: &[Body],
+        walls: &[WallBody],
+        mut kind: impl FnMut(u32, u32) -> u32,
+        mut wall_kind: impl FnMut(u32, u32) -> u32,
+    ) {
+        if !self.covers(bodies, walls) {
+            self.rebuild(bodies, walls, &mut kind, &mut wall_kind);
+        }
+        let skin = self.skins.active;
+        let close = |pair: &&Pair| {
+            let (a, b) = (&bodies[pair.grain as usize], &bodies[pair.partner as usize]);
+            let reach = a.spin[3] + b.spin[3] + skin;
+            length_squared(sub(b.position, a.position)) < reach * reach
+        };
+        let at_wall = |pair: &&Pair| {
+            let body = &bodies[pair.grain as usize];
+            let (distance, _) = walls[pair.partner as usize]
+                .surface
+                .distance(vector(body.position));
+            distance < body.spin[3] + skin
+        };
+        self.grains.replace(
+            self.near_grains.iter().filter(close).copied().collect(),
+            bodies.len(),
+        );
+        self.walls.replace(
+            self.near_walls.iter().filter(at_wall).copied().collect(),
+            bodies.len(),
+        );
+        self.index_seconds(bodies.len());
+        self.reference.clear();
+        self.reference
+            .extend(bodies.iter().map(|body| body.position));
+    }
+
+    fn index_seconds(&mut self, count: usize) {
+        let first = &mut self.second_first;
+        first.clear();
+        first.resize(count + 1, 0);
+        for pair in &self.grains.pairs {
+            first[pair.partner as usize + 1] += 1;
+        }
+        for i in 0..count {
+            first[i + 1] += first[i];
+        }
+        let mut next = first.clone();
+        self.as_second.resize(self.grains.pairs.len(), 0);
+        for (index, pair) in self.grains.pairs.iter().enumerate() {
+            let place = &mut next[pair.partner as usize];
+            self.as_second[*place as usize] = index as u32;
+            *place += 1;
+        }
+    }
+
+    fn rebuild(
+        &mut self,
+        bodies: &[Body],
+        walls: &[WallBody],
+        kind: &mut impl FnMut(u32, u32) -> u32,
+        wall_kind: &mut impl FnMut(u32, u32) -> u32,
+    ) {
+        self.rebuilds += 1;
+        let smallest = bodies
+            .iter()
+            .map(|body| body.spin[3])
+            .fold(f64::INFINITY, f64::min);
+        let near = NEAR_SKIN * smallest;
+        let active = if self.skins.near == near {
+            self.skins.active
+        } else {
+            0.03 * smallest
+        };
+        self.skins = Skins { active, near };
+
+        self.near_grains.clear();
+        let grid = CellGrid::new(bodies, near);
+        let mut partners = Vec::new();
+        for (i, body) in bodies.iter().enumerate() {
+            partners.clear();
+            grid.for_near(body.position, |j| {
+                let other = &bodies[j as usize];
+                let reach = body.spin[3] + other.spin[3] + near;
+                if j as usize > i
+                    && length_squared(sub(other.position, body.position)) < reach * reach
+                {
+                    partners.push(j);
+                }
+            });
+            partners.sort_unstable();
+            let grain = i as u32;
+            self.near_grains
+                .extend(partners.iter().map(|&partner| Pair {
+                    grain,
+                    partner,
+                    kind: kind(grain, partner),
+                }));
+        }
+
+        self.near_walls.clear();
+        for (i, body) in bodies.iter().enumerate() {
+            for (w, wall) in walls.iter().enumerate() {
+                if wall.surface.distance(vector(body.position)).0 < body.spin[3] + near {
+                    let (grain, partner) = (i as u32, w as u32);
+                    self.near_walls.push(Pair {
+                        grain,
+                        partner,
+                        kind: wall_kind(grain, partner),
+                    });
+                }
+            }
+        }
+        self.near_surfaces.clear();
+        self.near_surfaces
+            .extend(walls.iter().map(|wall| wall.surface));
+        self.near_reference.clear();
+        self.near_reference.extend(bodies.iter().map(|body| {
+            let p = body.position;
+            [p[0], p[1], p[2], body.spin[3]]
+        }));
+    }
+}
+
+impl PairList {
+    /// The pair at `index` as a contact, if it touches.
+    pub fn contact(&self, index: usize, partner: fn(u32) -> Partner) -> Option<Contact> {
+        let (pair, action) = (self.pairs[index], self.actions[index]);
+        (action.rolling[3] > 0.0).then(|| Contact {
+            grain: pair.grain,
+            partner: partner(pair.partner),
+            spring: vector(self.springs[index]),
+            force: vector(action.force),
+        })
+    }
+
+    /// Takes over `pairs`; those that were listed before keep their springs.
+    fn replace(&mut self, pairs: Vec<Pair>, count: usize) {
+        let mut springs = vec![[0.0; 4]; pairs.len()];
+        carry_springs(&self.pairs, &self.springs, &pairs, &mut springs);
+        self.first.clear();
+        self.first.resize(count + 1, 0);
+        for pair in &pairs {
+            self.first[pair.grain as usize + 1] += 1;
+        }
+        for i in 0..count {
+            self.first[i + 1] += self.first[i];
+        }
+        self.actions.resize(pairs.len(), Action::default());
+        self.springs = springs;
+        self.pairs = pairs;
+    }
+
+    /// Sets the springs of the listed pairs from `known` pairs with their springs, both sorted; others are unloaded.
+    pub fn load_springs(&mut self, known: &[Pair], springs: &[Row]) {
+        self.springs.fill([0.0; 4]);
+        carry_springs(known, springs, &self.pairs, &mut self.springs);
+    }
+}
+
+/// Copies the springs of pairs that stand in both sorted lists.
+fn carry_springs(old: &[Pair], old_springs: &[Row], new: &[Pair], new_springs: &mut [Row]) {
+    let key = |pair: &Pair| (pair.grain, pair.partner);
+    let mut known = old.iter().zip(old_springs).peekable();
+    for (pair, spring) in new.iter().zip(new_springs) {
+        while known.next_if(|(old, _)| key(old) < key(pair)).is_some() {}
+        if let Some((_, old_spring)) = known.next_if(|(old, _)| key(old) == key(pair)) {
+            *spring = *old_spring;
+        }
+    }
+}
+
+/// Grains sorted into cubic cells at least one interaction length wide.
+struct CellGrid {
+    origin: [f64; 3],
+    inverse_size: f64,
+    cells: [usize; 3],
+    first: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl CellGrid {
+    fn new(bodies: &[Body], skin: f64) -> Self {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        let mut radius: f64 = 0.0;
+        for body in bodies {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(body.position[axis]);
+                high[axis] = high[axis].max(body.position[axis]);
+            }
+            radius = radius.max(body.spin[3]);
+        }
+        let mut size = 2.0 * radius + skin;
+        let limit = 8 * bodies.len() + 64;
+        let count = |size: f64| [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / size).max(0.0));
+        // Grains scattered far apart would need a grid larger than memory: wider cells are still right.
+        while count(size).iter().map(|n| n + 1.0).product::<f64>() > limit as f64 {
+            size *= 1.5;
+        }
+        let cells = count(size).map(|n| n as usize + 1);
+        let mut grid = Self {
+            origin: low,
+            inverse_size: 1.0 / size,
+            cells,
+            first: Vec::new(),
+            members: Vec::new(),
+        };
+        grid.fill(bodies);
+        grid
+    }
+
+    fn fill(&mut self, bodies: &[Body]) {
+        let cells: Vec<usize> = bodies
+            .iter()
+            .map(|body| self.index(self.cell(body.position)))
+            .collect();
+        self.first = vec![0; self.cells.iter().product::<usize>() + 1];
+        for &cell in &cells {
+            self.first[cell + 1] += 1;
+        }
+        for cell in 1..self.first.len() {
+            self.first[cell] += self.first[cell - 1];
+        }
+        let mut next = self.first.clone();
+        self.members = vec![0; bodies.len()];
+        for (i, &cell) in cells.iter().enumerate() {
+            self.members[next[cell] as usize] = i as u32;
+            next[cell] += 1;
+        }
+    }
+
+    fn cell(&self, position: Row) -> [usize; 3] {
+        [0, 1, 2].map(|axis| {
+            let place = (position[axis] - self.origin[axis]) * self.inverse_size;
+            (place.max(0.0) as usize).min(self.cells[axis] - 1)
+        })
+    }
+
+    fn index(&self, cell: [usize; 3]) -> usize {
+        (cell[2] * self.cells[1] + cell[1]) * self.cells[0] + cell[0]
+    }
+
+    fn for_near(&self, position: Row, mut visit: impl FnMut(u32)) {
+        let [cx, cy, cz] = self.cell(position);
+        let span = |c: usize, axis: usize| c.saturating_sub(1)..=(c + 1).min(self.cells[axis] - 1);
+        for z in span(cz, 2) {
+            for y in span(cy, 1) {
+                let xs = span(cx, 0);
+                let from = self.first[self.index([*xs.start(), y, z])] as usize;
+                let to = self.first[self.index([*xs.end(), y, z]) + 1] as usize;
+                self.members[from..to].iter().for_each(|&j| visit(j));
+            }
+        }
+    }
+}

@@ -1,0 +1,491 @@
+//! The solver's working copy of a world: rows, lists and the constants of each kind of pair.
+//!
+//! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
+
+use super::contacts::{self, Action, Body, Pair, WallBody};
+use super::integrate::{self, Incidence, Load, Motion, Outcome};
+use super::law::{Law, PairConstants, Pairing};
+use super::neighbours::Neighbours;
+use super::row::{Row, length_squared, row, vector};
+use super::team::{Shared, share};
+use super::{Fault, FaultKind};
+use crate::world::{Contact, Partner, Surface, World};
+use std::collections::HashMap;
+
+/// A grain that moves by more than this share of its radius in one step is lost.
+const LARGEST_MOVE: f64 = 0.1;
+
+/// The working copy.
+#[derive(Default)]
+pub struct State {
+    bodies: Vec<Body>,
+    loads: Vec<Load>,
+    walls: Vec<WallBody>,
+    neighbours: Neighbours,
+    kinds: Kinds,
+    motion: Motion,
+}
+
+/// Kinds of pairs: grains of one class (radius, mass, material) are alike to every law.
+#[derive(Default)]
+struct Kinds {
+    class_of: Vec<u32>,
+    wall_materials: Vec<u16>,
+    index: HashMap<(u32, Side), u32>,
+    /// A pair of each kind, to compute its constants from.
+    examples: Vec<(usize, Partner)>,
+    constants: Vec<PairConstants>,
+}
+
+/// The second side of a kind of pair.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Side {
+    Class(u32),
+    Wall(u32),
+}
+
+impl Kinds {
+    /// Sorts the grains into classes; false when they are not those known before.
+    fn classify(&mut self, world: &World) -> bool {
+        let grains = &world.grains;
+        let mut classes = HashMap::new();
+        let class_of: Vec<u32> = (0..grains.len())
+            .map(|i| {
+                let material = world.species[usize::from(grains.species[i].0)].material;
+                let key = (
+                    grains.radius[i].to_bits(),
+                    grains.mass[i].to_bits(),
+                    material,
+                );
+                let next = classes.len() as u32;
+                *classes.entry(key).or_insert(next)
+            })
+            .collect();
+        let wall_materials: Vec<u16> = world
+            .container
+            .walls
+            .iter()
+            .map(|wall| wall.material.0)
+            .collect();
+        let known = self.class_of == class_of && self.wall_materials == wall_materials;
+        if !known {
+            *self = Self {
+                class_of,
+                wall_materials,
+                ..Self::default()
+            };
+        }
+        known
+    }
+
+    /// Computes the constants of every kind from the world's present materials.
+    fn compute(&mut self, world: &World) {
+        self.constants.clear();
+        self.constants
+            .extend(self.examples.iter().map(|(grain, partner)| {
+                Pairing::of(world, *grain, *partner).constants(world.law, &world.materials)
+            }));
+    }
+
+    fn of(&mut self, grain: u32, partner: Partner) -> u32 {
+        let class = self.class_of[grain as usize];
+        let side = match partner {
+            Partner::Grain(j) => Side::Class(self.class_of[j as usize]),
+            Partner::Wall(w) => Side::Wall(w),
+        };
+        let next = self.examples.len() as u32;
+        *self.index.entry((class, side)).or_insert_with(|| {
+            self.examples.push((grain as usize, partner));
+            next
+        })
+    }
+}
+
+impl State {
+    /// Takes `world` in.
+    pub fn load(&mut self, world: &World) {
+        let (grains, dt) = (&world.grains, world.clock.time_step);
+        if !self.kinds.classify(world) {
+            self.neighbours.forget();
+        }
+        self.kinds.compute(world);
+        self.walls.clear();
+        self.walls
+            .extend(world.container.walls.iter().map(|wall| WallBody {
+                surface: wall.surface,
+                motion: wall.motion,
+            }));
+        self.motion = Motion {
+            dt,
+            gravity: row(world.gravity, 0.0),
+            slack_squared: 0.0,
+        };
+        self.bodies.clear();
+        self.loads.clear();
+        for i in 0..grains.len() {
+            let radius = grains.radius[i];
+            self.bodies.push(Body {
+                position: row(grains.position[i], 1.0 / grains.mass[i]),
+                velocity: row(grains.velocity[i], 1.0 / grains.inertia[i]),
+                spin: row(grains.spin[i], radius),
+                free_spin: [0.0; 4],
+            });
+            let speed_limit = LARGEST_MOVE * radius / dt;
+            self.loads.push(Load {
+                total: contacts::Total {
+                    force: row(grains.force[i], 0.0),
+                    torque: row(grains.torque[i], 0.0),
+                    rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
+                    exchanged: [0.0; 4],
+                },
+                exchanged: grains.exchanged[i],
+                stopping: grains.inertia[i] / dt,
+                speed_limit_squared: speed_limit * speed_limit,
+            });
+        }
+        self.refresh_lists(world);
+        self.load_springs(&world.contacts);
+    }
+
+    /// Makes the lists fit the positions that were just loaded.
+    fn refresh_lists(&mut self, world: &World) {
+        if !self.neighbours.active_covers(&self.bodies, &self.walls) {
+            self.refresh();
+        }
+        self.kinds.compute(world);
+        self.motion.slack_squared = self.neighbours.slack().powi(2);
+    }
+
+    fn load_springs(&mut self, contacts: &[Contact]) {
+        let (mut grain_pairs, mut grain_springs) = (Vec::new(), Vec::new());
+        let (mut wall_pairs, mut wall_springs) = (Vec::new(), Vec::new());
+        for contact in contacts {
+            let (pairs, springs, partner) = match contact.partner {
+                Partner::Grain(j) => (&mut grain_pairs, &mut grain_springs, j),
+                Partner::Wall(w) => (&mut wall_pairs, &mut wall_springs, w),
+            };
+            pairs.push(Pair {
+                grain: contact.grain,
+                partner,
+                kind: 0,
+            });
+            springs.push(row(contact.spring, 0.0));
+        }
+        self.neighbours
+            .grains
+            .load_springs(&grain_pairs, &grain_springs);
+        self.neighbours
+            .walls
+            .load_springs(&wall_pairs, &wall_springs);
+    }
+
+    /// Puts the state, `steps` steps on, back into `world`.
+    pub fn store(&self, world: &mut World, steps: u64) {
+        let grains = &mut world.grains;
+        for (i, (body, load)) in self.bodies.iter().zip(&self.loads).enumerate() {
+            grains.position[i] = vector(body.position);
+            grains.velocity[i] = vector(body.velocity);
+            grains.spin[i] = vector(body.spin);
+            grains.force[i] = vector(load.total.force);
+            grains.torque[i] = vector(load.total.torque);
+            grains.rolling_torque[i] = vector(load.total.rolling);
+            grains.contact_count[i] = load.total.rolling[3] as u32;
+            grains.exchanged[i] = load.exchanged;
+        }
+        world.clock.step += steps;
+        let container = &mut world.container;
+        let turn = container.drum_speed() * self.motion.dt;
+        // Added step by step, so that the angle does not depend on how many steps a call takes.
+        (0..steps).for_each(|_| container.angle += turn);
+        for (wall, body) in container.walls.iter_mut().zip(&self.walls) {
+            wall.surface = body.surface;
+        }
+        world.contacts.clear();
+        self.collect_contacts(&mut world.contacts);
+    }
+
+    fn collect_contacts(&self, contacts: &mut Vec<Contact>) {
+        let (grains, walls) = (&self.neighbours.grains, &self.neighbours.walls);
+        for i in 0..self.bodies.len() {
+            let own = grains.first[i] as usize..grains.first[i + 1] as usize;
+            let at_walls = walls.first[i] as usize..walls.first[i + 1] as usize;
+            contacts.extend(own.filter_map(|k| grains.contact(k, Partner::Grain)));
+            contacts.extend(at_walls.filter_map(|k| walls.contact(k, Partner::Wall)));
+        }
+    }
+
+    /// Number of active pairs.
+    pub fn listed(&self) -> usize {
+        self.neighbours.grains.pairs.len() + self.neighbours.walls.pairs.len()
+    }
+
+    /// Starts the first step of a call; true when the active list must be refreshed before forces.
+    pub fn start(&mut self) -> bool {
+        self.move_walls();
+        integrate::start(
+            &self.motion,
+            &mut self.bodies,
+            &self.loads,
+            &self.neighbours.reference,
+        )
+        .refresh
+    }
+
+    /// Brings the lists up to date with the positions; returns how often the near list was built.
+    pub fn refresh(&mut self) -> u64 {
+        let Self {
+            bodies,
+            walls,
+            neighbours,
+            kinds,
+            ..
+        } = self;
+        let before = neighbours.rebuilds;
+        let kinds = std::cell::RefCell::new(kinds);
+        neighbours.refresh(
+            bodies,
+            walls,
+            |i, j| kinds.borrow_mut().of(i, Partner::Grain(j)),
+            |i, w| kinds.borrow_mut().of(i, Partner::Wall(w)),
+        );
+        self.motion.slack_squared = self.neighbours.slack().powi(2);
+        self.neighbours.rebuilds - before
+    }
+
+    /// Makes the active skin suit lists that live for `steps` steps.
+    pub fn adapt(&mut self, steps: u64) {
+        self.neighbours.adapt(steps);
+    }
+
+    /// Constants for kinds of pairs that a refresh has met for the first time.
+    pub fn compute_constants(&mut self, world: &World) {
+        if self.kinds.constants.len() < self.kinds.examples.len() {
+            self.kinds.compute(world);
+        }
+    }
+
+    /// Steps after which a moving plane may have used up its half of the active skin.
+    pub fn steps_within_slack(&self) -> u64 {
+        let speed = self.walls.iter().map(WallBody::speed).fold(0.0, f64::max);
+        if speed > 0.0 {
+            (self.neighbours.slack() / (speed * self.motion.dt)).max(1.0) as u64
+        } else {
+            u64::MAX
+        }
+    }
+
+    /// Moves the walls by one step.
+    pub fn move_walls(&mut self) {
+        move_walls(&mut self.walls, self.motion.dt);
+    }
+
+    /// Lends the state to a team.
+    pub fn phase(&mut self) -> Phase<'_> {
+        let Self {
+            bodies,
+            loads,
+            walls,
+            neighbours,
+            kinds,
+            motion,
+        } = self;
+        let Neighbours {
+            grains,
+            walls: at_walls,
+            second_first,
+            as_second,
+            reference,
+            ..
+        } = neighbours;
+        Phase {
+            bodies: Shared::new(bodies),
+            loads: Shared::new(loads),
+            grain_springs: Shared::new(&mut grains.springs),
+            grain_actions: Shared::new(&mut grains.actions),
+            wall_springs: Shared::new(&mut at_walls.springs),
+            wall_actions: Shared::new(&mut at_walls.actions),
+            grain_pairs: &grains.pairs,
+            grain_first: &grains.first,
+            wall_pairs: &at_walls.pairs,
+            wall_first: &at_walls.first,
+            second_first,
+            as_second,
+            reference,
+            constants: &kinds.constants,
+            walls,
+            motion: *motion,
+        }
+    }
+
+    /// What went wrong with which grain, `steps` steps after `world`.
+    pub fn diagnose(&self, world: &World, steps: u64) -> Fault {
+        let found = self
+            .bodies
+            .iter()
+            .zip(&self.loads)
+            .enumerate()
+            .find_map(|(i, (body, load))| self.judge(body, load).map(|kind| (i, kind)));
+        let (grain, kind) = found.unwrap_or((0, FaultKind::NotFinite("state")));
+        Fault {
+            grain,
+            kind,
+            time: world.clock.time_at(world.clock.step + steps),
+            good_time: world.time(),
+        }
+    }
+
+    fn judge(&self, body: &Body, load: &Load) -> Option<FaultKind> {
+        let position = vector(body.position);
+        let behind = self
+            .walls
+            .iter()
+            .map(|wall| -wall.surface.distance(position).0)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let speed_squared = length_squared(body.velocity);
+        if !position.is_finite() {
+            Some(FaultKind::NotFinite("position"))
+        } else if behind >= 0.0 {
+            Some(FaultKind::BehindWall(behind))
+        } else if !speed_squared.is_finite() {
+            Some(FaultKind::NotFinite("velocity"))
+        } else if !length_squared(body.spin).is_finite() {
+            Some(FaultKind::NotFinite("spin"))
+        } else if speed_squared > load.speed_limit_squared {
+            Some(FaultKind::TooFast(speed_squared.sqrt()))
+        } else {
+            None
+        }
+    }
+}
+
+/// Moves planes that have a velocity by one step.
+fn move_walls(walls: &mut [WallBody], dt: f64) {
+    for wall in walls {
+        if let Surface::Plane { point, .. } = &mut wall.surface {
+            *point += wall.motion.velocity * dt;
+        }
+    }
+}
+
+impl WallBody {
+    /// Speed at which the surface moves along its normal [m/s].
+    pub fn speed(&self) -> f64 {
+        match self.surface {
+            Surface::Plane { normal, .. } => self.motion.velocity.dot(normal).abs(),
+            Surface::Cylinder { .. } => 0.0,
+        }
+    }
+}
+
+/// The state on loan to a team for a stretch of steps: each member forces and moves its own share.
+pub struct Phase<'a> {
+    bodies: Shared<'a, Body>,
+    loads: Shared<'a, Load>,
+    grain_springs: Shared<'a, Row>,
+    grain_actions: Shared<'a, Action>,
+    wall_springs: Shared<'a, Row>,
+    wall_actions: Shared<'a, Action>,
+    grain_pairs: &'a [Pair],
+    grain_first: &'a [u32],
+    wall_pairs: &'a [Pair],
+    wall_first: &'a [u32],
+    second_first: &'a [u32],
+    as_second: &'a [u32],
+    reference: &'a [Row],
+    constants: &'a [PairConstants],
+    walls: &'a [WallBody],
+    motion: Motion,
+}
+
+#[expect(
+    unsafe_code,
+    reason = "phases end at barriers: what one writes in shares the other reads whole"
+)]
+impl Phase<'_> {
+    /// Computes `member`'s share of the pairs. `walls` are the walls at the time of the positions.
+    ///
+    /// # Safety
+    /// Every member of `size` calls it between the same two barriers, each with its own number, and nothing else.
+    pub unsafe fn forces<L: Law>(&self, law: L, walls: &[WallBody], member: usize, size: usize) {
+        let (of_grains, of_walls) = (
+            share(self.grain_pairs.len(), member, size),
+            share(self.wall_pairs.len(), member, size),
+        );
+        // SAFETY: in this phase bodies are only read, springs and actions only written, each member its own share.
+        let (bodies, grain_springs, grain_actions, wall_springs, wall_actions) = unsafe {
+            (
+                self.bodies.all(),
+                self.grain_springs.range_mut(of_grains.clone()),
+                self.grain_actions.range_mut(of_grains.clone()),
+                self.wall_springs.range_mut(of_walls.clone()),
+                self.wall_actions.range_mut(of_walls.clone()),
+            )
+        };
+        let dt = self.motion.dt;
+        let pairs = &self.grain_pairs[of_grains];
+        contacts::between_grains(
+            law,
+            dt,
+            bodies,
+            self.constants,
+            pairs,
+            grain_springs,
+            grain_actions,
+        );
+        let pairs = &self.wall_pairs[of_walls];
+        contacts::at_walls(
+            law,
+            dt,
+            bodies,
+            walls,
+            self.constants,
+            pairs,
+            wall_springs,
+            wall_actions,
+        );
+    }
+
+    /// Sums the forces on `member`'s share of the grains and moves them.
+    ///
+    /// # Safety
+    /// As for [`Phase::forces`].
+    pub unsafe fn finish(&self, member: usize, size: usize, last: bool) -> Outcome {
+        // SAFETY: in this phase actions are only read, bodies and loads only written, each member its own share.
+        let own = share(self.reference.len(), member, size);
+        let (bodies, loads, grains, walls) = unsafe {
+            (
+                self.bodies.range_mut(own.clone()),
+                self.loads.range_mut(own.clone()),
+                self.grain_actions.all(),
+                self.wall_actions.all(),
+            )
+        };
+        let incidence = Incidence {
+            grains,
+            first: self.grain_first,
+            second_first: self.second_first,
+            as_second: self.as_second,
+            walls,
+            wall_first: self.wall_first,
+        };
+        integrate::finish(
+            &self.motion,
+            incidence,
+            own.start,
+            bodies,
+            loads,
+            &self.reference[own],
+            last,
+        )
+    }
+
+    /// The walls at the beginning of the stretch.
+    pub fn walls(&self) -> &[WallBody] {
+        self.walls
+    }
+
+    /// Moves a member's own copy of the walls by one step.
+    pub fn step_walls(&self, walls: &mut [WallBody]) {
+        move_walls(walls, self.motion.dt);
+    }
+}

@@ -1,0 +1,334 @@
+//! Claims about the headless binary: exit codes, messages, and files that are whole.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// A folder for one test, with a cache of its own.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_grainfall"));
+        command
+            .args(arguments)
+            .current_dir(self.0.path())
+            .env("HOME", self.0.path())
+            .env("XDG_CACHE_HOME", self.path("cache"));
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Runs the small drum into the folder `out`, which must work, and returns its summary.
+    fn run_small_drum(&self, out: &str, more: &[&str]) -> Value {
+        let mut arguments = vec![
+            "small-drum",
+            "--no-render",
+            "--duration",
+            "200ms",
+            "--out",
+            out,
+        ];
+        arguments.extend(more);
+        let output = self.run(&arguments);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        summary(&self.path(out))
+    }
+
+    fn write(&self, name: &str, content: &str) -> PathBuf {
+        let path = self.path(name);
+        fs::write(&path, content).unwrap();
+        path
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+fn series(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+    let mut reader = csv::Reader::from_path(folder.join("series.csv")).unwrap();
+    let head = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    let rows = reader
+        .records()
+        .map(|row| {
+            row.unwrap()
+                .iter()
+                .map(|cell| cell.parse().unwrap())
+                .collect()
+        })
+        .collect();
+    (head, rows)
+}
+
+#[test]
+fn run_leaves_series_grains_and_summary() {
+    let place = Place::new();
+    let summary = place.run_small_drum("out", &[]);
+    let out = place.path("out");
+    assert_eq!(
+        names(&out),
+        ["grains", "grains.pvd", "series.csv", "summary.json"]
+    );
+    // Every 0.05 s from 0 to 0.2 s.
+    let frames: Vec<String> = (0..5).map(|k| format!("grains_{k:06}.vtp")).collect();
+    assert_eq!(names(&out.join("grains")), frames);
+    let collection = fs::read_to_string(out.join("grains.pvd")).unwrap();
+    for frame in &frames {
+        assert!(collection.contains(&format!("file=\"grains/{frame}\"")));
+    }
+    let (head, rows) = series(&out);
+    assert_eq!(head[..3], ["step [1]", "time [s]", "surface angle [rad]"]);
+    assert_eq!(rows.len(), 11, "every 0.02 s from 0 to 0.2 s");
+    assert_eq!(summary["status"], "done");
+    assert_eq!(summary["program"], "grainfall");
+    assert_eq!(summary["grains"], 100);
+    assert_eq!(summary["state_hash"].as_str().unwrap().len(), 32);
+    assert!(summary["time"].as_f64().unwrap() >= 0.2);
+    assert!(
+        summary["time_step"]["limits"]
+            .as_array()
+            .is_some_and(|limits| !limits.is_empty())
+    );
+}
+
+#[test]
+fn grains_file_reads_back_as_the_grains() {
+    use vtkio::model::{Attribute, DataSet, Piece, Vtk};
+    let place = Place::new();
+    place.run_small_drum("out", &[]);
+    let vtk = Vtk::import(place.path("out/grains/grains_000004.vtp")).unwrap();
+    let DataSet::PolyData { mut pieces, .. } = vtk.data else {
+        panic!("no poly data");
+    };
+    let Some(Piece::Inline(piece)) = pieces.pop() else {
+        panic!("no piece");
+    };
+    assert_eq!((piece.num_points(), piece.num_verts()), (100, 100));
+    let arrays: Vec<(String, Vec<f64>)> = piece
+        .data
+        .point
+        .iter()
+        .map(|attribute| match attribute {
+            Attribute::DataArray(array) => (
+                array.name.clone(),
+                array.data.clone().cast_into::<f64>().unwrap(),
+            ),
+            Attribute::Field { .. } => panic!("a field"),
+        })
+        .collect();
+    let sizes: Vec<_> = arrays
+        .iter()
+        .map(|(name, data)| (name.as_str(), data.len()))
+        .collect();
+    assert_eq!(
+        sizes,
+        [
+            ("radius", 100),
+            ("velocity", 300),
+            ("spin", 300),
+            ("species", 100)
+        ]
+    );
+    assert!(arrays[0].1.iter().all(|radius| *radius == 0.003));
+}
+
+#[test]
+fn threads_do_not_show_in_the_state() {
+    let place = Place::new();
+    let hash = |threads| place.run_small_drum("out", &["--threads", threads])["state_hash"].clone();
+    let one = hash("1");
+    assert_eq!(hash("2"), one);
+    assert_eq!(hash("3"), one);
+}
+
+#[test]
+fn summary_plays_its_run_again() {
+    let place = Place::new();
+    let list = place.write(
+        "commands.ron",
+        r#"[(time: 0.1, command: Set(parameter: "friction.glass.glass", value: 0.1))]"#,
+    );
+    let changes = [
+        "--set",
+        "drum-speed=3 rpm",
+        "--commands",
+        list.to_str().unwrap(),
+    ];
+    let first = place.run_small_drum("first", &changes);
+    assert_eq!(first["commands"].as_array().unwrap().len(), 2);
+    assert_ne!(
+        first["state_hash"],
+        place.run_small_drum("plain", &[])["state_hash"]
+    );
+    let again = place.run_small_drum("again", &["--commands", "first/summary.json"]);
+    assert_eq!(again["state_hash"], first["state_hash"]);
+    assert_eq!(again["commands"], first["commands"]);
+}
+
+#[test]
+fn later_run_clears_the_files_of_an_earlier_one() {
+    let place = Place::new();
+    place.run_small_drum("out", &[]);
+    place.run_small_drum("out", &["--duration", "50ms"]);
+    assert_eq!(names(&place.path("out/grains")).len(), 2);
+}
+
+#[test]
+fn folder_with_other_files_is_left_alone() {
+    let place = Place::new();
+    fs::create_dir(place.path("thesis")).unwrap();
+    place.write("thesis/summary.json", "{}");
+    let output = place.run(&["small-drum", "--no-render", "--out", "thesis"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("holds files that are not a run's"));
+    assert_eq!(names(&place.path("thesis")), ["summary.json"]);
+}
+
+#[test]
+fn bad_input_ends_with_2_and_says_what_was_expected() {
+    let place = Place::new();
+    place.write("broken.ron", "(title: \"x\", colour: 3)");
+    place.write("list.ron", "[(time: 1, command: Fly)]");
+    place.write("reset.ron", "[(time: 1, command: Reset)]");
+    let cases: [(&[&str], &str); 12] = [
+        (&["no-such-scene"], "no-such-scene"),
+        (&["broken.ron"], "broken.ron"),
+        (&["small-drum", "--duration", "soon"], "a time such as"),
+        (&["small-drum", "--seed", "-1"], "seed"),
+        (&["small-drum", "--threads", "0"], "--threads"),
+        (&["small-drum", "--set", "drum-speed"], "expected KEY=VALUE"),
+        (
+            &["small-drum", "--set", "colour=red"],
+            "no parameter is called `colour`",
+        ),
+        (&["small-drum", "--set", "drum-speed=fast"], "rpm"),
+        (
+            &["small-drum", "--set", "friction.glass.gold=0.3"],
+            "friction.glass.drum",
+        ),
+        (
+            &["small-drum", "--set", "friction.glass.glass=-1"],
+            "expected 0 … 1",
+        ),
+        (&["small-drum", "--commands", "list.ron"], "list.ron"),
+        (&["small-drum", "--commands", "reset.ron"], "Reset"),
+    ];
+    for (arguments, expected) in cases {
+        let output = place.run(&[arguments, &["--no-render", "--out", "out"]].concat());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+        assert_eq!(
+            message.matches("error: ").count(),
+            1,
+            "said once: {message}"
+        );
+        assert!(!message.contains("panicked"), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn fault_ends_with_3_and_keeps_the_files_until_then() {
+    let place = Place::new();
+    let output = place.run(&[
+        "small-drum",
+        "--no-render",
+        "--out",
+        "out",
+        "--time-step",
+        "1e-3",
+        "--duration",
+        "1s",
+    ]);
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    let summary = summary(&place.path("out"));
+    assert_eq!(summary["status"], "fault");
+    assert!(summary["fault"]["time"].is_number());
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_run_leaves_whole_files() {
+    let place = Place::new();
+    let arguments = [
+        "small-drum",
+        "--no-render",
+        "--duration",
+        "1h",
+        "--out",
+        "out",
+    ];
+    let mut child = place
+        .command(&arguments)
+        .stderr(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    wait_for(&place.path("out/grains/grains_000003.vtp"), &mut child);
+    let interrupt = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(interrupt.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let out = place.path("out");
+    assert_eq!(
+        names(&out),
+        ["grains", "grains.pvd", "series.csv", "summary.json"]
+    );
+    let summary = summary(&out);
+    assert_eq!(summary["status"], "interrupted");
+    let (_, rows) = series(&out);
+    assert!(rows.last().unwrap()[1] <= summary["time"].as_f64().unwrap());
+    let frames = names(&out.join("grains"));
+    let collection = fs::read_to_string(out.join("grains.pvd")).unwrap();
+    assert_eq!(collection.matches("<DataSet").count(), frames.len());
+}
+
+/// Waits until `path` exists, a minute at most, while `child` runs.
+#[cfg(unix)]
+fn wait_for(path: &Path, child: &mut Child) {
+    for _ in 0..6000 {
+        if path.exists() {
+            return;
+        }
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "the run ended by itself"
+        );
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("{} never came", path.display());
+}
