@@ -3,9 +3,11 @@
 //! In: an app whose cameras draw. Out: an image of given size that they draw into ([`CanvasPlugin`]), and PNG files,
 //! written whole or not at all. When a picture is taken is not decided here.
 
+use crate::files::write_whole;
 use bevy::app::{PluginGroupBuilder, PluginsState};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::RenderTarget;
+use bevy::image::ImageFormat;
 use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
@@ -14,6 +16,7 @@ use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::view::screenshot::Screenshot;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
+use std::io::{self, Cursor};
 use std::path::Path;
 
 /// Frames to draw before a picture is whole: pipelines, textures and panels' sizes need a few.
@@ -78,30 +81,21 @@ pub fn screenshot(canvas: Option<&Canvas>) -> Screenshot {
     })
 }
 
-/// Writes `image` as a PNG file, whole or not at all.
+/// Writes `image` as a PNG file, whole or not at all; missing folders are made.
 ///
 /// # Errors
-/// Where the folder cannot be written, in words.
-pub fn save(image: &Image, path: &Path) -> Result<(), String> {
-    let fail = |what: String| format!("the picture {} could not be written: {what}", path.display());
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+/// Where it cannot be encoded or written.
+pub fn save(image: &Image, path: &Path) -> io::Result<()> {
     let pixels = image
         .clone()
         .try_into_dynamic()
-        .map_err(|error| fail(error.to_string()))?;
-    let file = tempfile::Builder::new()
-        .prefix(".grainfall")
-        .suffix(".png")
-        .tempfile_in(folder)
-        .map_err(|error| fail(error.to_string()))?;
+        .map_err(io::Error::other)?
+        .to_rgb8();
+    let png = ImageFormat::Png.as_image_crate_format();
+    let png = png.ok_or_else(|| io::Error::other("this build knows no PNG"))?;
+    let mut bytes = Cursor::new(Vec::new());
     pixels
-        .to_rgb8()
-        .save(file.path())
-        .map_err(|error| fail(error.to_string()))?;
-    file.persist(path)
-        .map_err(|error| fail(error.to_string()))?;
-    Ok(())
+        .write_to(&mut bytes, png)
+        .map_err(io::Error::other)?;
+    write_whole(path, |file| file.write_all(bytes.get_ref()))
 }
