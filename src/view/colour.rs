@@ -165,7 +165,7 @@ pub fn linear([r, g, b]: [u8; 3]) -> [f32; 3] {
 /// A little lighter or darker, so that the eye can follow single grains of one species.
 fn individual_lightness(i: usize) -> f32 {
     let scrambled = (i as u32).wrapping_mul(2_654_435_761) >> 16;
-    0.88 + 0.24 * (scrambled as f32 / 65_535.0)
+    0.92 + 0.16 * (scrambled as f32 / 65_535.0)
 }
 
 #[cfg(test)]
