@@ -29,6 +29,9 @@ fn main() {
         ("cut", ViewSettings { cut: Some(Cut { axis: grainfall::view::Axis::Z, position: 0.0 }), ..base() }, None),
         ("cutx", ViewSettings { cut: Some(Cut { axis: grainfall::view::Axis::X, position: 0.005 }), ..base() }, None),
         ("above", ViewSettings::default(), Some(Side::Above)),
+        ("plain", ViewSettings { smooth_edges: false, ..base() }, None),
+        ("plainbare", ViewSettings { smooth_edges: false, show_container: false, ..base() }, None),
+        ("empty", ViewSettings { smooth_edges: false, show_container: false, cut: Some(Cut { axis: grainfall::view::Axis::Z, position: -10.0 }), ..base() }, None),
     ];
     for (label, settings, side) in variants {
         if !which.is_empty() && !which.split(',').any(|w| w == label) { continue; }
@@ -42,9 +45,10 @@ fn main() {
         app.world_mut().resource_mut::<Shown>().show(Some(world.clone()));
         make_ready(&mut app);
         for _ in 0..WARM_UP { app.update(); }
-        let t0 = Instant::now();
-        for _ in 0..5 { app.world_mut().resource_mut::<Shown>().show(Some(world.clone())); app.update(); }
-        println!("{label}: {:.1} ms a frame (submitted)", t0.elapsed().as_secs_f64() * 200.0);
+        let t0 = Instant::now(); let c0 = cpu();
+        for _ in 0..10 { app.world_mut().resource_mut::<Shown>().show(Some(world.clone())); app.update(); }
+        app.world().resource::<bevy::render::renderer::RenderDevice>().wgpu_device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        println!("{label}: {:.1} ms a frame wall, {:.1} ms CPU", t0.elapsed().as_secs_f64() * 100.0, (cpu() - c0) * 100.0);
         let taken: Arc<Mutex<Option<Image>>> = Arc::default();
         let slot = taken.clone();
         let canvas = app.world().resource::<Canvas>().clone();
@@ -54,4 +58,10 @@ fn main() {
             if let Some(i) = taken.lock().unwrap().take() { save(&i, std::path::Path::new(&format!("/tmp/shots/{name}-{label}.png"))).unwrap(); break; }
         }
     }
+}
+
+fn cpu() -> f64 {
+    let s = std::fs::read_to_string("/proc/self/stat").unwrap();
+    let f: Vec<&str> = s.rsplit_once(')').unwrap().1.split_whitespace().collect();
+    (f[11].parse::<f64>().unwrap() + f[12].parse::<f64>().unwrap()) / 100.0
 }
