@@ -1,0 +1,246 @@
+//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
+
+use super::{Panel, Request, number};
+use crate::scene::{Scene, SceneContainer, SceneGrains};
+use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+
+/// Width of the field with the number and its unit, in points.
+const NUMBER_WIDTH: f32 = 96.0;
+
+/// The panel of live parameters.
+#[derive(Default)]
+pub struct Parameters;
+
+/// What a parameter belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Group {
+    GrainGrain,
+    GrainWall,
+    Drum,
+    Gravity,
+    Mixture,
+}
+
+impl Group {
+    const ALL: [Self; 5] = [
+        Self::GrainGrain,
+        Self::GrainWall,
+        Self::Drum,
+        Self::Gravity,
+        Self::Mixture,
+    ];
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::GrainGrain => "Grain – grain",
+            Self::GrainWall => "Grain – wall",
+            Self::Drum => "Drum",
+            Self::Gravity => "Gravity",
+            Self::Mixture => "Mixture",
+        }
+    }
+
+    fn of(parameter: &Parameter, scene: &Scene) -> Self {
+        match parameter {
+            Parameter::DrumSpeed => Self::Drum,
+            Parameter::Gravity => Self::Gravity,
+            Parameter::Share(_) => Self::Mixture,
+            Parameter::Friction(a, b)
+            | Parameter::Restitution(a, b)
+            | Parameter::RollingFriction(a, b) => {
+                if is_of_grains(scene, a) && is_of_grains(scene, b) {
+                    Self::GrainGrain
+                } else {
+                    Self::GrainWall
+                }
+            }
+        }
+    }
+}
+
+/// Whether grains of `scene` are made of `material`.
+fn is_of_grains(scene: &Scene, material: &str) -> bool {
+    match &scene.grains {
+        SceneGrains::Fill { species, .. } => species.iter().any(|s| s.material == material),
+        SceneGrains::List(grains) => grains.iter().any(|g| g.material == material),
+    }
+}
+
+/// Whether walls of `scene` are made of `material`.
+fn is_of_walls(scene: &Scene, material: &str) -> bool {
+    match &scene.container {
+        SceneContainer::Nothing => false,
+        SceneContainer::Drum { material: own, .. } | SceneContainer::Box { material: own, .. } => {
+            own == material
+        }
+        SceneContainer::Planes(planes) => planes.iter().any(|plane| plane.material == material),
+    }
+}
+
+impl Panel for Parameters {
+    fn title(&self) -> &'static str {
+        "Parameters"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let list = simulation.parameters();
+        if list.is_empty() {
+            ui.weak("The parameters appear when the bed stands.");
+            return;
+        }
+        let grouped = |group| {
+            let own = move |info: &&ParameterInfo| {
+                Group::of(&info.parameter, simulation.scene()) == group
+            };
+            list.iter().filter(own)
+        };
+        for group in Group::ALL {
+            if grouped(group).next().is_none() {
+                continue;
+            }
+            heading_ui(ui, group, simulation.scene());
+            for info in grouped(group) {
+                let value = simulation.value(&info.parameter);
+                out.extend(parameter_ui(ui, info, value).map(Request::Command));
+            }
+            ui.add_space(4.0);
+        }
+        let changed = list
+            .iter()
+            .any(|info| simulation.value(&info.parameter) != info.default);
+        let button = ui.add_enabled(changed, egui::Button::new("Reset all"));
+        if button
+            .on_hover_text("Every parameter back to the scene's value")
+            .clicked()
+        {
+            let away = list
+                .iter()
+                .filter(|info| simulation.value(&info.parameter) != info.default);
+            out.extend(away.map(|info| Request::Command(set(info, info.default))));
+        }
+    }
+}
+
+fn heading_ui(ui: &mut egui::Ui, group: Group, scene: &Scene) {
+    let heading = ui.label(RichText::new(group.title()).strong());
+    let both = |m: &crate::scene::SceneMaterial| {
+        is_of_grains(scene, &m.name) && is_of_walls(scene, &m.name)
+    };
+    if group == Group::GrainGrain && scene.materials.iter().any(both) {
+        heading.on_hover_text(
+            "Walls are made of the grains' material: these values hold for them too.",
+        );
+    }
+}
+
+/// The row of one parameter whose present value is `value` (SI); the command that a change asks for.
+pub fn parameter_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<Command> {
+    let mut shown = value * info.display.factor;
+    let range = in_display_units(info);
+    let decimals = decimals(range.end() - range.start());
+    let mut reset = false;
+    let edited = ui.push_id(info.parameter.to_string(), |ui| {
+        let label = ui
+            .horizontal(|ui| {
+                let label = ui.label(number::capitalised(&info.label));
+                ui.weak(info.symbol);
+                label
+            })
+            .inner
+            .on_hover_ui(|ui| explanation_ui(ui, info));
+        ui.horizontal(|ui| {
+            let reset_width = ui.spacing().interact_size.y;
+            let gaps = 2.0 * ui.spacing().item_spacing.x;
+            ui.spacing_mut().slider_width =
+                (ui.available_width() - NUMBER_WIDTH - reset_width - gaps).max(60.0);
+            let slider = egui::Slider::new(&mut shown, range.clone())
+                .show_value(false)
+                .clamping(egui::SliderClamping::Edits);
+            let slider = ui.add(slider).labelled_by(label.id);
+            let field = egui::DragValue::new(&mut shown)
+                .range(range.clone())
+                .clamp_existing_to_range(false)
+                .speed((range.end() - range.start()) / 400.0)
+                .max_decimals(decimals)
+                .min_decimals(decimals.min(2))
+                .suffix(suffix(info))
+                .update_while_editing(false);
+            let size = egui::vec2(NUMBER_WIDTH, ui.spacing().interact_size.y);
+            let field = ui.add_sized(size, field).labelled_by(label.id);
+            reset = reset_ui(ui, info, value != info.default);
+            slider.on_hover_ui(|ui| explanation_ui(ui, info)).changed()
+                | field.on_hover_ui(|ui| explanation_ui(ui, info)).changed()
+        })
+        .inner
+    });
+    let wanted = match (reset, edited.inner) {
+        (true, _) => info.default,
+        (false, true) => in_si(info, shown),
+        (false, false) => value,
+    };
+    (wanted != value && wanted.is_finite()).then(|| set(info, wanted))
+}
+
+fn reset_ui(ui: &mut egui::Ui, info: &ParameterInfo, away: bool) -> bool {
+    let hint = format!(
+        "Back to {}{}",
+        number::short(info.default * info.display.factor),
+        suffix(info)
+    );
+    let button = ui
+        .add_enabled(away, egui::Button::new("↺").frame(false))
+        .on_hover_text(hint);
+    let name = format!("Reset {}", info.label);
+    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, away, &name));
+    button.clicked()
+}
+
+fn explanation_ui(ui: &mut egui::Ui, info: &ParameterInfo) {
+    let shown = |value: f64| number::short(value * info.display.factor);
+    ui.label(info.description);
+    ui.weak(format!(
+        "{} from {} to {}{}, {} in the scene",
+        info.symbol,
+        shown(*info.range.start()),
+        shown(*info.range.end()),
+        suffix(info),
+        shown(info.default),
+    ));
+    ui.weak(format!("--set {}=… on the command line", info.parameter));
+}
+
+fn set(info: &ParameterInfo, value: f64) -> Command {
+    Command::Set {
+        parameter: info.parameter.clone(),
+        value,
+    }
+}
+
+fn in_display_units(info: &ParameterInfo) -> std::ops::RangeInclusive<f64> {
+    info.range.start() * info.display.factor..=info.range.end() * info.display.factor
+}
+
+fn in_si(info: &ParameterInfo, shown: f64) -> f64 {
+    (shown / info.display.factor).clamp(*info.range.start(), *info.range.end())
+}
+
+fn suffix(info: &ParameterInfo) -> String {
+    if info.display.name.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", info.display.name)
+    }
+}
+
+/// Digits after the point that a value in a range of this `width` deserves: a thousandth of it.
+fn decimals(width: f64) -> usize {
+    (3.0 - width.log10().ceil()).clamp(0.0, 6.0) as usize
+}
