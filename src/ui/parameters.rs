@@ -1,6 +1,6 @@
 //! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
 
-use super::{Panel, Request, number};
+use super::{Panel, Request, number, symbol};
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
@@ -148,38 +148,33 @@ pub fn parameter_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Opti
     let decimals = decimals(range.end() - range.start());
     let mut reset = false;
     let edited = ui.push_id(info.parameter.to_string(), |ui| {
-        let label = ui
-            .horizontal(|ui| {
-                let label = ui.label(number::capitalised(&info.label));
-                ui.weak(info.symbol);
-                label
-            })
-            .inner
-            .on_hover_ui(|ui| explanation_ui(ui, info));
-        ui.horizontal(|ui| {
-            let reset_width = ui.spacing().interact_size.y;
-            let gaps = 2.0 * ui.spacing().item_spacing.x;
-            ui.spacing_mut().slider_width =
-                (ui.available_width() - NUMBER_WIDTH - reset_width - gaps).max(60.0);
-            let slider = egui::Slider::new(&mut shown, range.clone())
-                .show_value(false)
-                .clamping(egui::SliderClamping::Edits);
-            let slider = ui.add(slider).labelled_by(label.id);
-            let field = egui::DragValue::new(&mut shown)
-                .range(range.clone())
-                .clamp_existing_to_range(false)
-                .speed((range.end() - range.start()) / 400.0)
-                .max_decimals(decimals)
-                .min_decimals(decimals.min(2))
-                .suffix(suffix(info))
-                .update_while_editing(false);
-            let size = egui::vec2(NUMBER_WIDTH, ui.spacing().interact_size.y);
-            let field = ui.add_sized(size, field).labelled_by(label.id);
-            reset = reset_ui(ui, info, value != info.default);
-            slider.on_hover_ui(|ui| explanation_ui(ui, info)).changed()
-                | field.on_hover_ui(|ui| explanation_ui(ui, info)).changed()
-        })
-        .inner
+        let size = egui::vec2(NUMBER_WIDTH, 22.0);
+        let field = egui::DragValue::new(&mut shown)
+            .range(range.clone())
+            .clamp_existing_to_range(false)
+            .speed((range.end() - range.start()) / 400.0)
+            .max_decimals(decimals)
+            .min_decimals(decimals.min(2))
+            .suffix(suffix(info))
+            .update_while_editing(false);
+        let (label, field) = egui::Sides::new().shrink_left().truncate().show(
+            ui,
+            |ui| ui.label(symbol::named(ui, &number::capitalised(&info.label), info.symbol)),
+            |ui| {
+                reset = reset_ui(ui, info, value != info.default);
+                ui.add_sized(size, field)
+            },
+        );
+        ui.spacing_mut().slider_width = ui.available_width();
+        let slider = egui::Slider::new(&mut shown, range.clone())
+            .show_value(false)
+            .clamping(egui::SliderClamping::Edits);
+        let slider = ui.add_sized([ui.available_width(), 18.0], slider);
+        let explain = |ui: &mut egui::Ui| explanation_ui(ui, info);
+        let label = label.on_hover_ui(explain);
+        let slider = slider.labelled_by(label.id).on_hover_ui(explain);
+        let field = field.labelled_by(label.id).on_hover_ui(explain);
+        slider.changed() | field.changed()
     });
     let wanted = match (reset, edited.inner) {
         (true, _) => info.default,

@@ -1,1 +1,3 @@
 //! Claims about the window: panels by their accessible labels, pictures through any Vulkan driver.
+
+mod panels;
