@@ -30,6 +30,8 @@ struct Covered {
     // The outline is the unit circle.
     @location(1) across: vec2<f32>,
     @location(2) @interpolate(flat) grain: u32,
+    // A pixel in radii of the outline.
+    @location(3) @interpolate(flat) pixel: f32,
 }
 
 struct Painted {
@@ -77,7 +79,8 @@ fn vertex(corner: Corner) -> Covered {
     }
 
     // One pixel more on each side for the soft edge.
-    covered.across = corner.place.xy * (1.0 + select(0.0, pixel / outline, outline > 0.0));
+    covered.pixel = select(0.0, pixel / outline, outline > 0.0);
+    covered.across = corner.place.xy * (1.0 + covered.pixel);
     let up = view.world_from_view[1].xyz;
     let side = normalize(cross(forward, up));
     let upward = cross(side, forward);
@@ -90,7 +93,7 @@ fn vertex(corner: Corner) -> Covered {
 fn fragment(covered: Covered) -> Painted {
     let grain = grains[covered.grain];
     let from_middle = length(covered.across);
-    let coverage = clamp(0.5 + (1.0 - from_middle) / fwidth(from_middle), 0.0, 1.0);
+    let coverage = clamp(0.5 + (1.0 - from_middle) / covered.pixel, 0.0, 1.0);
 #ifdef MULTISAMPLED
     if coverage <= 0.0 { discard; }
 #else
@@ -115,7 +118,7 @@ fn fragment(covered: Covered) -> Painted {
         t = (dot(picture.cut_normal, ray.origin) - picture.cut_offset) / approach;
         if t > -b + half_chord { discard; }
         hit = ray.origin + t * ray.direction;
-        light = section(grain, hit);
+        light = section(grain, hit, covered.pixel * grain.radius);
     } else {
         light = surface(grain.colour, normal, to_eye);
     }
@@ -132,11 +135,11 @@ fn surface(colour: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32>
 }
 
 // A flat section with a darker rim.
-fn section(grain: Grain, hit: vec3<f32>) -> vec3<f32> {
+fn section(grain: Grain, hit: vec3<f32>, pixel: f32) -> vec3<f32> {
     let beyond = picture.cut_offset - dot(picture.cut_normal, grain.centre);
     let section_radius = sqrt(max(grain.radius * grain.radius - beyond * beyond, 0.0));
     let from_rim = section_radius - length(hit - grain.centre - beyond * picture.cut_normal);
-    let rim = smoothstep(0.0, 0.09 * grain.radius + fwidth(from_rim), from_rim);
+    let rim = smoothstep(0.0, 0.09 * grain.radius + pixel, from_rim);
     let pale = mix(grain.colour, vec3<f32>(1.0), 0.12);
     return mix(grain.colour * 0.35, pale, rim);
 }

@@ -35,6 +35,7 @@ pub use settings::{
     Side, ViewSettings,
 };
 
+use crate::simulation::Simulation;
 use crate::world::World;
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::CameraUpdateSystems;
@@ -70,6 +71,7 @@ impl Plugin for ViewPlugin {
             .configure_sets(Update, (ViewSystems::Take, ViewSystems::Draw).chain())
             .add_plugins((grains::plugin, container::plugin))
             .add_systems(Startup, rig::spawn)
+            .add_systems(Update, take_newest.in_set(ViewSystems::Take))
             .add_systems(
                 PostUpdate,
                 (rig::steer, rig::follow)
@@ -96,5 +98,20 @@ impl Shown {
     /// The world in the picture.
     pub fn world(&self) -> Option<&World> {
         self.world.as_deref()
+    }
+}
+
+/// Shows the newest state that the simulation has published. Two states are never at the same address while one of them
+/// is shown.
+fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<Shown>) {
+    let Some(simulation) = simulation else { return };
+    let newest = simulation.world();
+    let same = match (newest, &shown.world) {
+        (Some(newest), Some(shown)) => Arc::ptr_eq(newest, shown),
+        (None, None) => true,
+        _ => false,
+    };
+    if !same {
+        shown.show(newest.cloned());
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn spawn(mut commands: Commands, settings: Res<ViewSettings>) {
         Camera::default(),
         Tonemapping::None,
         DebandDither::Disabled,
-        ClusterConfig::None,
+        ClusterConfig::Single,
         if settings.smooth_edges {
             Msaa::Sample4
         } else {
