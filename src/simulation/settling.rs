@@ -19,8 +19,8 @@ const KEPT: f64 = 0.9;
 const CREEPING: f64 = 1e-6;
 /// Kinetic energy over `Σ m g r` of a bed at rest; rms speeds are then near 1e-5 m/s for millimetres.
 const QUIET: f64 = 1e-9;
-/// Shortest relaxation, in units of `√(r/g)`.
-const RELAXATION: f64 = 5.0;
+/// Shortest relaxation, in units of `√(r/g)`: grains that balance where they cannot stay fall within it.
+const RELAXATION: f64 = 10.0;
 /// Longest settling, in units of `√(r/g)`, after which a bed is taken as it is.
 const PATIENCE: f64 = 500.0;
 /// Slices in `√(r/g)`.

@@ -4,10 +4,10 @@
 //! pair, new springs. Pairs are packed into blocks of rows, computed in lanes, and written to rows of their own; nothing
 //! is summed here, so the order of work never shows.
 
+use super::lanes::{Lanes, Work, cross, dot, minus, plus, times};
 use super::law::{Coefficients, Law, PairConstants, rolling_gain};
 use super::row::{Row, add, row, sub, vector};
 use crate::world::{Motion, Surface};
-use multiversion::multiversion;
 
 /// Pairs computed together; enough to hide latency, few enough to stay in the first-level cache.
 const BLOCK: usize = 32;
@@ -60,7 +60,7 @@ pub struct Action {
     pub exchanged: Row,
 }
 
-/// A block of pairs, packed row by row.
+/// A block of pairs, packed row by row: a stride of four is what the compiler can turn into lanes.
 struct Block {
     /// From the grain's centre to the partner's; a wall's centre is the foot of the perpendicular.
     distance: [Row; BLOCK],
@@ -77,7 +77,39 @@ struct Block {
     /// The law's constants.
     coefficients: [Row; BLOCK],
     /// Sliding friction, rolling arm.
-    friction: [[f64; 2]; BLOCK],
+    friction: [Row; BLOCK],
+    /// Tangential springs, in and out.
+    springs: [Row; BLOCK],
+}
+
+/// What a block of pairs does, row by row; the rows of an [`Action`].
+struct Effects {
+    force: [Row; BLOCK],
+    twist: [Row; BLOCK],
+    rolling: [Row; BLOCK],
+    exchanged: [Row; BLOCK],
+}
+
+impl Effects {
+    fn empty() -> Self {
+        let rows = [[0.0; 4]; BLOCK];
+        Self {
+            force: rows,
+            twist: rows,
+            rolling: rows,
+            exchanged: rows,
+        }
+    }
+
+    #[inline(always)]
+    fn unpack(&self, k: usize) -> Action {
+        Action {
+            force: self.force[k],
+            twist: self.twist[k],
+            rolling: self.rolling[k],
+            exchanged: self.exchanged[k],
+        }
+    }
 }
 
 impl Block {
@@ -91,14 +123,15 @@ impl Block {
             rolling_spin: [[0.0; 4]; BLOCK],
             wall_velocity: [[0.0; 4]; BLOCK],
             coefficients: [[0.0; 4]; BLOCK],
-            friction: [[0.0; 2]; BLOCK],
+            friction: [[0.0; 4]; BLOCK],
+            springs: [[0.0; 4]; BLOCK],
         }
     }
 
     #[inline(always)]
     fn set_constants(&mut self, k: usize, constants: &PairConstants) {
         self.coefficients[k] = constants.coefficients;
-        self.friction[k] = [constants.friction, constants.rolling_arm];
+        self.friction[k] = constants.friction;
     }
 
     #[inline(always)]
@@ -131,176 +164,196 @@ impl Block {
         self.wall_velocity[k] = row(wall_velocity, 0.0);
     }
 
-    /// Computes every pair of the block; `springs` and `actions` are its pairs' rows.
+    /// Computes the pairs from `k` on, as many as there are lanes.
     #[inline(always)]
-    fn compute<L: Law, const WALL: bool>(
-        &self,
+    fn compute<N: Lanes, L: Law, const WALL: bool>(
+        &mut self,
+        processor: N::Processor,
         law: L,
         dt: f64,
-        springs: &mut [Row; BLOCK],
-        actions: &mut [Action; BLOCK],
+        k: usize,
+        effects: &mut Effects,
     ) {
-        for k in 0..BLOCK {
-            let (d, spin, other) = (self.distance[k], self.spin[k], self.partner_spin[k]);
-            let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-            let inverse = 1.0 / length;
-            let (nx, ny, nz) = (d[0] * inverse, d[1] * inverse, d[2] * inverse);
+        let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
+        let (one, dt) = (N::splat(processor, 1.0), N::splat(processor, dt));
+        let rows = k..k + N::COUNT;
 
-            let depth = spin[3] + other[3] - length;
-            let touching = depth > 0.0;
-            let overlap = if touching { depth } else { 0.0 };
-            let arm = spin[3] - 0.5 * overlap;
-            let partner_arm = if WALL { 0.0 } else { other[3] - 0.5 * overlap };
-
-            let v = self.velocity[k];
-            let approach = v[0] * nx + v[1] * ny + v[2] * nz;
-            let c = law.coefficients(self.coefficients[k], overlap);
-            let c = Coefficients {
-                normal_damping: if touching { c.normal_damping } else { 0.0 },
-                tangential_damping: if touching { c.tangential_damping } else { 0.0 },
-                ..c
-            };
-            let elastic = c.normal_stiffness * overlap;
-            let normal = law.normal_force(elastic, c.normal_damping * approach);
-            let bound = self.friction[k][0] * law.coulomb_force(elastic, normal);
-
-            // Slip velocity of the grain's surface over its partner's.
-            let wx = arm * spin[0] + partner_arm * other[0];
-            let wy = arm * spin[1] + partner_arm * other[1];
-            let wz = arm * spin[2] + partner_arm * other[2];
-            let tx = v[0] - approach * nx + (wy * nz - wz * ny);
-            let ty = v[1] - approach * ny + (wz * nx - wx * nz);
-            let tz = v[2] - approach * nz + (wx * ny - wy * nx);
-
-            let s = springs[k];
-            let (sx, sy, sz) = (s[0] + tx * dt, s[1] + ty * dt, s[2] + tz * dt);
-            let along = sx * nx + sy * ny + sz * nz;
-            let (sx, sy, sz) = (sx - along * nx, sy - along * ny, sz - along * nz);
-            let stretch_squared = sx * sx + sy * sy + sz * sz;
-            let trial = c.tangential_stiffness * stretch_squared.sqrt();
-            let slides = trial > bound;
-            let kept = if slides { bound / trial } else { 1.0 };
-            let kept = if touching { kept } else { 0.0 };
-            let damping = if slides { 0.0 } else { c.tangential_damping };
-            let (sx, sy, sz) = (sx * kept, sy * kept, sz * kept);
-            springs[k] = [sx, sy, sz, 0.0];
-            let stiffness = c.tangential_stiffness;
-            let (gx, gy, gz) = (
-                -stiffness * sx - damping * tx,
-                -stiffness * sy - damping * ty,
-                -stiffness * sz - damping * tz,
-            );
-
-            let r = self.rolling_spin[k];
-            let rolling_speed = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
-            let gain = rolling_gain(self.friction[k][1] * elastic, v[3], rolling_speed);
-            let twist = r[0] * nx + r[1] * ny + r[2] * nz;
-            let qx = -gain * (r[0] - twist * nx);
-            let qy = -gain * (r[1] - twist * ny);
-            let qz = -gain * (r[2] - twist * nz);
-
-            let (fx, fy, fz) = (gx - normal * nx, gy - normal * ny, gz - normal * nz);
-            let slip_squared = tx * tx + ty * ty + tz * tz;
-            let dashpots = dt * ((normal - elastic) * approach + damping * slip_squared);
-            let sliding = stiffness * stretch_squared * kept * (1.0 - kept);
-            let rolling = -dt
-                * (qx * (spin[0] - other[0])
-                    + qy * (spin[1] - other[1])
-                    + qz * (spin[2] - other[2]));
-            let wall = if WALL {
-                let u = self.wall_velocity[k];
-                dt * (fx * u[0]
-                    + fy * u[1]
-                    + fz * u[2]
-                    + (qx * other[0] + qy * other[1] + qz * other[2]))
-            } else {
-                0.0
-            };
-            actions[k] = Action {
-                force: [fx, fy, fz, arm],
-                twist: [
-                    ny * gz - nz * gy,
-                    nz * gx - nx * gz,
-                    nx * gy - ny * gx,
-                    partner_arm,
-                ],
-                rolling: [qx, qy, qz, if touching { 1.0 } else { 0.0 }],
-                exchanged: [dashpots, sliding, rolling, wall],
-            };
-        }
-    }
-}
-
-/// Runs blocks of `pairs` through `pack` and [`Block::compute`].
-#[inline(always)]
-fn blocks<L: Law, const WALL: bool>(
-    law: L,
-    dt: f64,
-    pairs: &[Pair],
-    springs: &mut [Row],
-    actions: &mut [Action],
-    mut pack: impl FnMut(&mut Block, usize, Pair),
-) {
-    let mut block = Block::empty();
-    let rows = springs.chunks_mut(BLOCK).zip(actions.chunks_mut(BLOCK));
-    for (pairs, (springs, actions)) in pairs.chunks(BLOCK).zip(rows) {
-        for (k, pair) in pairs.iter().enumerate() {
-            pack(&mut block, k, *pair);
-        }
-        if let (Ok(springs), Ok(actions)) = ((&mut *springs).try_into(), (&mut *actions).try_into())
-        {
-            block.compute::<L, WALL>(law, dt, springs, actions);
+        // Geometry.
+        let [x, y, z, _] = N::load(processor, &self.distance[rows.clone()]);
+        let distance = [x, y, z];
+        let length = dot(distance, distance).sqrt();
+        let normal = times(distance, one / length);
+        let [x, y, z, radius] = N::load(processor, &self.spin[rows.clone()]);
+        let spin = [x, y, z];
+        let [x, y, z, partner_radius] = N::load(processor, &self.partner_spin[rows.clone()]);
+        let partner_spin = [x, y, z];
+        let depth = radius + partner_radius - length;
+        let touching = depth.exceeds(zero);
+        let overlap = N::choose(touching, depth, zero);
+        let arm = radius - half * overlap;
+        let partner_arm = if WALL {
+            zero
         } else {
-            let mut padded = ([[0.0; 4]; BLOCK], [Action::default(); BLOCK]);
-            padded.0[..springs.len()].copy_from_slice(springs);
-            block.compute::<L, WALL>(law, dt, &mut padded.0, &mut padded.1);
-            springs.copy_from_slice(&padded.0[..springs.len()]);
-            actions.copy_from_slice(&padded.1[..actions.len()]);
+            partner_radius - half * overlap
+        };
+
+        // Normal force.
+        let [x, y, z, stopping] = N::load(processor, &self.velocity[rows.clone()]);
+        let velocity = [x, y, z];
+        let approach = dot(velocity, normal);
+        let law_constants = N::load(processor, &self.coefficients[rows.clone()]);
+        let Coefficients {
+            normal_stiffness,
+            normal_damping,
+            tangential_stiffness,
+            tangential_damping,
+        } = law.coefficients(law_constants, overlap);
+        let normal_damping = N::choose(touching, normal_damping, zero);
+        let elastic = normal_stiffness * overlap;
+        let repulsion = law.normal_force(elastic, normal_damping * approach, zero);
+
+        // Slip of the grain's surface over its partner's, and the spring it stretches.
+        let [friction, rolling_arm, _, _] = N::load(processor, &self.friction[rows.clone()]);
+        let rolling_sum = plus(times(spin, arm), times(partner_spin, partner_arm));
+        let slip = plus(
+            minus(velocity, times(normal, approach)),
+            cross(rolling_sum, normal),
+        );
+        let [x, y, z, _] = N::load(processor, &self.springs[rows.clone()]);
+        let stretched = plus([x, y, z], times(slip, dt));
+        let stretched = minus(stretched, times(normal, dot(stretched, normal)));
+        let stretch_squared = dot(stretched, stretched);
+        let trial = tangential_stiffness * stretch_squared.sqrt();
+        let bound = friction * law.coulomb_force(elastic, repulsion, zero);
+        let slides = trial.exceeds(bound);
+        let kept = N::choose(slides, bound / trial, one);
+        let kept = N::choose(touching, kept, zero);
+        let damping = N::choose(touching, N::choose(slides, zero, tangential_damping), zero);
+        let spring = times(stretched, kept);
+        N::store(
+            [spring[0], spring[1], spring[2], zero],
+            &mut self.springs[rows.clone()],
+        );
+        let tangential = minus(times(spring, -tangential_stiffness), times(slip, damping));
+
+        // Rolling.
+        let [x, y, z, _] = N::load(processor, &self.rolling_spin[rows.clone()]);
+        let rolling_spin = [x, y, z];
+        let gain = rolling_gain(
+            rolling_arm * elastic,
+            stopping,
+            dot(rolling_spin, rolling_spin).sqrt(),
+        );
+        let without_twist = minus(rolling_spin, times(normal, dot(rolling_spin, normal)));
+        let rolling = times(without_twist, -gain);
+
+        // What it does, and where the energy goes.
+        let force = minus(tangential, times(normal, repulsion));
+        let twist = cross(normal, tangential);
+        let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
+        let in_sliding = tangential_stiffness * stretch_squared * kept * (one - kept);
+        let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
+        let by_wall = if WALL {
+            let [x, y, z, _] = N::load(processor, &self.wall_velocity[rows.clone()]);
+            dt * (dot(force, [x, y, z]) + dot(rolling, partner_spin))
+        } else {
+            zero
+        };
+        let touches = N::choose(touching, one, zero);
+        N::store(
+            [force[0], force[1], force[2], arm],
+            &mut effects.force[rows.clone()],
+        );
+        N::store(
+            [twist[0], twist[1], twist[2], partner_arm],
+            &mut effects.twist[rows.clone()],
+        );
+        N::store(
+            [rolling[0], rolling[1], rolling[2], touches],
+            &mut effects.rolling[rows.clone()],
+        );
+        N::store(
+            [in_dashpots, in_sliding, in_rolling, by_wall],
+            &mut effects.exchanged[rows],
+        );
+    }
+}
+
+/// Runs `rows` through blocks: pairs of a grain and a wall where `WALL` says so, else pairs of grains.
+#[inline(always)]
+fn blocks<N: Lanes, L: Law, const WALL: bool>(
+    processor: N::Processor,
+    all: &Surroundings<'_, L>,
+    rows: PairRows<'_>,
+) {
+    let (mut block, mut effects) = (Block::empty(), Effects::empty());
+    let outputs = rows
+        .springs
+        .chunks_mut(BLOCK)
+        .zip(rows.actions.chunks_mut(BLOCK));
+    for (pairs, (springs, actions)) in rows.pairs.chunks(BLOCK).zip(outputs) {
+        block.springs[..springs.len()].copy_from_slice(springs);
+        for (k, pair) in pairs.iter().enumerate() {
+            block.set_constants(k, &all.constants[pair.kind as usize]);
+            let grain = &all.bodies[pair.grain as usize];
+            if WALL {
+                block.pack_wall(k, grain, &all.walls[pair.partner as usize]);
+            } else {
+                block.pack_grains(k, grain, &all.bodies[pair.partner as usize]);
+            }
+        }
+        for k in (0..pairs.len()).step_by(N::COUNT) {
+            block.compute::<N, L, WALL>(processor, all.law, all.dt, k, &mut effects);
+        }
+        springs.copy_from_slice(&block.springs[..springs.len()]);
+        for (k, action) in actions.iter_mut().enumerate() {
+            *action = effects.unpack(k);
         }
     }
 }
 
-/// Forces between grains, on the widest lanes that the processor has.
-#[multiversion(targets("x86_64+avx+avx2"))]
-pub fn between_grains<L: Law>(
-    law: L,
-    dt: f64,
-    bodies: &[Body],
-    constants: &[PairConstants],
-    pairs: &[Pair],
-    springs: &mut [Row],
-    actions: &mut [Action],
-) {
-    blocks::<L, false>(law, dt, pairs, springs, actions, |block, k, pair| {
-        block.set_constants(k, &constants[pair.kind as usize]);
-        block.pack_grains(
-            k,
-            &bodies[pair.grain as usize],
-            &bodies[pair.partner as usize],
-        );
-    });
+/// A range of pairs with the rows they write.
+pub struct PairRows<'a> {
+    /// The pairs.
+    pub pairs: &'a [Pair],
+    /// Their tangential springs.
+    pub springs: &'a mut [Row],
+    /// What they do.
+    pub actions: &'a mut [Action],
 }
 
-/// Forces of walls on grains, on the widest lanes that the processor has.
-#[multiversion(targets("x86_64+avx+avx2"))]
-pub fn at_walls<L: Law>(
-    law: L,
-    dt: f64,
-    bodies: &[Body],
-    walls: &[WallBody],
-    constants: &[PairConstants],
-    pairs: &[Pair],
-    springs: &mut [Row],
-    actions: &mut [Action],
-) {
-    blocks::<L, true>(law, dt, pairs, springs, actions, |block, k, pair| {
-        block.set_constants(k, &constants[pair.kind as usize]);
-        block.pack_wall(
-            k,
-            &bodies[pair.grain as usize],
-            &walls[pair.partner as usize],
-        );
-    });
+/// What every pair's force depends on.
+pub struct Surroundings<'a, L> {
+    /// The contact law.
+    pub law: L,
+    /// Length of the step [s].
+    pub dt: f64,
+    /// Every grain.
+    pub bodies: &'a [Body],
+    /// Every wall.
+    pub walls: &'a [WallBody],
+    /// Constants of every kind of pair.
+    pub constants: &'a [PairConstants],
+}
+
+/// The forces of a range of pairs of grains and a range of pairs with walls.
+pub struct Forces<'a, L> {
+    /// What they depend on.
+    pub surroundings: Surroundings<'a, L>,
+    /// Pairs of grains.
+    pub of_grains: PairRows<'a>,
+    /// Pairs of a grain and a wall.
+    pub of_walls: PairRows<'a>,
+}
+
+impl<L: Law> Work for Forces<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) {
+        blocks::<N, L, false>(processor, &self.surroundings, self.of_grains);
+        blocks::<N, L, true>(processor, &self.surroundings, self.of_walls);
+    }
 }
 
 /// Sum over the actions on one grain.

@@ -4,8 +4,8 @@
 //! positions; or, at the last step of a call, with velocities at the time of the positions.
 
 use super::contacts::{Action, Body, Total};
-use super::row::{Row, add_scaled, length_squared, sub};
-use multiversion::multiversion;
+use super::lanes::{Lanes, Row, Work};
+use super::row::{add, add_scaled, length_squared, sub};
 
 /// What only the integration reads or writes of a grain.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,33 +123,56 @@ pub fn start(motion: &Motion, bodies: &mut [Body], loads: &[Load], references: &
     outcome
 }
 
-/// Finishes a step for the grains from `begin` on and, unless it is the last of a call, starts the next.
-#[multiversion(targets("x86_64+avx+avx2"))]
-pub fn finish(
-    motion: &Motion,
-    pairs: Incidence<'_>,
-    begin: usize,
-    bodies: &mut [Body],
-    loads: &mut [Load],
-    references: &[Row],
-    last: bool,
-) -> Outcome {
-    let mut outcome = Outcome::default();
-    for (k, ((body, load), reference)) in bodies.iter_mut().zip(loads).zip(references).enumerate() {
-        load.total = pairs.total(begin + k);
-        load.exchanged = super::row::add(load.exchanged, load.total.exchanged);
-        kick(body, load, motion);
-        let spin_squared = length_squared(body.spin);
-        // Written so that a NaN counts as a fault.
-        let sane = length_squared(body.velocity) <= load.speed_limit_squared
-            && spin_squared < f64::INFINITY;
-        outcome.fault |= !sane;
-        // A grain in fault stays where it is, for the diagnosis.
-        if sane && !last {
+/// Finishes a step for a range of grains and, unless it is the last of a call, starts the next.
+pub struct Finish<'a> {
+    /// Constants.
+    pub motion: &'a Motion,
+    /// Where to find the grains' pairs.
+    pub pairs: Incidence<'a>,
+    /// Index of the first grain of the range.
+    pub begin: usize,
+    /// The range.
+    pub bodies: &'a mut [Body],
+    /// What acts on it.
+    pub loads: &'a mut [Load],
+    /// Where it was when the active list was filtered.
+    pub references: &'a [Row],
+    /// Whether this is the last step of a call.
+    pub last: bool,
+}
+
+impl Work for Finish<'_> {
+    type Output = Outcome;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, _processor: N::Processor) -> Outcome {
+        let Self {
+            motion,
+            pairs,
+            begin,
+            bodies,
+            loads,
+            references,
+            last,
+        } = self;
+        let mut outcome = Outcome::default();
+        for (k, ((body, load), reference)) in
+            bodies.iter_mut().zip(loads).zip(references).enumerate()
+        {
+            load.total = pairs.total(begin + k);
+            load.exchanged = add(load.exchanged, load.total.exchanged);
             kick(body, load, motion);
-            drift(body, load, motion);
-            outcome.refresh |= used_up(body, *reference, motion);
+            // Written so that a NaN is not sane.
+            let sane = length_squared(body.velocity) <= load.speed_limit_squared
+                && length_squared(body.spin) < f64::INFINITY;
+            outcome.fault |= !sane;
+            // A grain in fault stays where it is, for the diagnosis.
+            if sane && !last {
+                kick(body, load, motion);
+                drift(body, load, motion);
+                outcome.refresh |= used_up(body, *reference, motion);
+            }
         }
+        outcome
     }
-    outcome
 }

@@ -1,10 +1,6 @@
-//! The solver's small vector vocabulary: a row of four numbers, the width of one cache-aligned load.
-//!
-//! Plain arrays and elementwise loops: the compiler turns them into whatever lanes the processor has, and since every
-//! operation is an exact IEEE one the result has the same bits with any width.
+//! Rows: elementwise sums of four numbers side by side in memory.
 
-/// Four numbers side by side: usually a vector and a companion scalar.
-pub type Row = [f64; 4];
+pub use super::lanes::Row;
 
 /// `a + b`, element by element.
 #[inline(always)]

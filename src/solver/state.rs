@@ -2,8 +2,9 @@
 //!
 //! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
 
-use super::contacts::{self, Action, Body, Pair, WallBody};
-use super::integrate::{self, Incidence, Load, Motion, Outcome};
+use super::contacts::{Action, Body, Forces, Pair, PairRows, Surroundings, Total, WallBody};
+use super::integrate::{self, Finish, Incidence, Load, Motion, Outcome};
+use super::lanes::Processor;
 use super::law::{Law, PairConstants, Pairing};
 use super::neighbours::Neighbours;
 use super::row::{Row, length_squared, row, vector};
@@ -132,7 +133,7 @@ impl State {
             });
             let speed_limit = LARGEST_MOVE * radius / dt;
             self.loads.push(Load {
-                total: contacts::Total {
+                total: Total {
                     force: row(grains.force[i], 0.0),
                     torque: row(grains.torque[i], 0.0),
                     rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
@@ -406,7 +407,14 @@ impl Phase<'_> {
     ///
     /// # Safety
     /// Every member of `size` calls it between the same two barriers, each with its own number, and nothing else.
-    pub unsafe fn forces<L: Law>(&self, law: L, walls: &[WallBody], member: usize, size: usize) {
+    pub unsafe fn forces<L: Law>(
+        &self,
+        processor: Processor,
+        law: L,
+        walls: &[WallBody],
+        member: usize,
+        size: usize,
+    ) {
         let (of_grains, of_walls) = (
             share(self.grain_pairs.len(), member, size),
             share(self.wall_pairs.len(), member, size),
@@ -421,35 +429,38 @@ impl Phase<'_> {
                 self.wall_actions.range_mut(of_walls.clone()),
             )
         };
-        let dt = self.motion.dt;
-        let pairs = &self.grain_pairs[of_grains];
-        contacts::between_grains(
-            law,
-            dt,
-            bodies,
-            self.constants,
-            pairs,
-            grain_springs,
-            grain_actions,
-        );
-        let pairs = &self.wall_pairs[of_walls];
-        contacts::at_walls(
-            law,
-            dt,
-            bodies,
-            walls,
-            self.constants,
-            pairs,
-            wall_springs,
-            wall_actions,
-        );
+        processor.run(Forces {
+            surroundings: Surroundings {
+                law,
+                dt: self.motion.dt,
+                bodies,
+                walls,
+                constants: self.constants,
+            },
+            of_grains: PairRows {
+                pairs: &self.grain_pairs[of_grains],
+                springs: grain_springs,
+                actions: grain_actions,
+            },
+            of_walls: PairRows {
+                pairs: &self.wall_pairs[of_walls],
+                springs: wall_springs,
+                actions: wall_actions,
+            },
+        });
     }
 
     /// Sums the forces on `member`'s share of the grains and moves them.
     ///
     /// # Safety
     /// As for [`Phase::forces`].
-    pub unsafe fn finish(&self, member: usize, size: usize, last: bool) -> Outcome {
+    pub unsafe fn finish(
+        &self,
+        processor: Processor,
+        member: usize,
+        size: usize,
+        last: bool,
+    ) -> Outcome {
         // SAFETY: in this phase actions are only read, bodies and loads only written, each member its own share.
         let own = share(self.reference.len(), member, size);
         let (bodies, loads, grains, walls) = unsafe {
@@ -468,15 +479,15 @@ impl Phase<'_> {
             walls,
             wall_first: self.wall_first,
         };
-        integrate::finish(
-            &self.motion,
-            incidence,
-            own.start,
+        processor.run(Finish {
+            motion: &self.motion,
+            pairs: incidence,
+            begin: own.start,
             bodies,
             loads,
-            &self.reference[own],
+            references: &self.reference[own],
             last,
-        )
+        })
     }
 
     /// The walls at the beginning of the stretch.

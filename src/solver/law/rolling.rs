@@ -5,13 +5,11 @@
 //! torque `J |ω|`, with `J` the inertia per contact over the step, just stops it. So a grain on a slope below tan⁻¹ μ_R
 //! stands still instead of trembling.
 
+use crate::solver::lanes::Lanes;
+
 /// The factor `g` in `q = −g ω` [N m s]: `cap/|ω|` for the full torque `cap` [N m], or `stopping` [N m s] where that
 /// would overshoot. `speed` is |ω| [rad/s].
 #[inline(always)]
-pub fn rolling_gain(cap: f64, stopping: f64, speed: f64) -> f64 {
-    if cap < stopping * speed {
-        cap / speed
-    } else {
-        stopping
-    }
+pub fn rolling_gain<N: Lanes>(cap: N, stopping: N, speed: N) -> N {
+    N::choose((stopping * speed).exceeds(cap), cap / speed, stopping)
 }

@@ -4,6 +4,8 @@ use glam::DVec3;
 use grainfall::scene::Scene;
 use grainfall::world::{self, MaterialId, Shape, SpeciesId, Surface, World};
 
+const BOX: &str = "tests/core/scene/good/two-sizes-box.ron";
+
 fn built(name: &str) -> World {
     world::build(&Scene::open(name).unwrap(), 1e-5)
 }
@@ -38,7 +40,8 @@ fn fillings_have_all_their_grains_and_none_touches() {
         ("dry-r1.25", 6494),
         ("small-drum", 100),
         ("two-frictions-drum", 470),
-        ("two-sizes-box", 600),
+        ("two-sizes-drum", 315),
+        (BOX, 600),
     ] {
         let world = built(name);
         assert_eq!(world.grains.len(), count, "{name}");
@@ -78,7 +81,7 @@ fn grains_near_in_number_are_near_in_space() {
 
 #[test]
 fn the_same_seed_gives_the_same_world_and_another_seed_another() {
-    let mut scene = Scene::open("two-sizes-box").unwrap();
+    let mut scene = Scene::open(BOX).unwrap();
     let first = world::build(&scene, 1e-5);
     assert_eq!(first.hash(), world::build(&scene, 1e-5).hash());
     scene.seed += 1;
@@ -115,7 +118,7 @@ fn the_drum_turns_as_one_body() {
 
 #[test]
 fn a_box_has_six_walls_that_look_inwards() {
-    let world = built("two-sizes-box");
+    let world = built(BOX);
     assert_eq!(world.container.walls.len(), 6);
     for wall in &world.container.walls {
         assert!(
@@ -167,7 +170,7 @@ fn listed_grains_are_as_listed() {
 fn shares_are_exact_in_number() {
     let world = built("two-frictions-drum");
     assert_eq!((count_of(&world, 0), count_of(&world, 1)), (329, 141));
-    let world = built("two-sizes-box");
+    let world = built(BOX);
     assert_eq!((count_of(&world, 0), count_of(&world, 1)), (120, 480));
 }
 
@@ -200,7 +203,7 @@ fn a_larger_share_only_adds_and_going_back_takes_the_same_away() {
 
 #[test]
 fn a_share_cannot_change_where_radii_differ() {
-    let scene = Scene::open("two-sizes-box").unwrap();
+    let scene = Scene::open(BOX).unwrap();
     let start = world::build(&scene, 1e-5);
     let mut world = start.clone();
     world::set_share(&mut world, &scene, SpeciesId(0), 0.9);

@@ -63,16 +63,10 @@ fn each_bad_file_is_refused_with_its_message() {
 
 #[test]
 fn the_example_in_the_documentation_is_read() {
-    let documentation = include_str!("../../../src/scene/mod.rs");
-    let lines: Vec<&str> = documentation
-        .lines()
-        .skip_while(|line| *line != "//! ```ron")
-        .skip(1)
-        .take_while(|line| *line != "//! ```")
-        .map(|line| line.trim_start_matches("//!"))
-        .collect();
-    let scene =
-        Scene::parse("example", &lines.join("\n")).unwrap_or_else(|error| panic!("{error}"));
+    let documentation = include_str!("../../../scenes/README.md");
+    let (_, rest) = documentation.split_once("```ron").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    let scene = Scene::parse("example", example).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(scene.materials.len(), 3);
 }
 
