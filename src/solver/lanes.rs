@@ -24,19 +24,43 @@ pub trait Lanes:
     type Processor: Copy;
     /// One truth value for each.
     type Mask: Copy;
+    /// A row in registers.
+    type Quad: Quad<Processor = Self::Processor>;
 
     /// `x` in every lane.
     fn splat(processor: Self::Processor, x: f64) -> Self;
-    /// Column by column, from the first [`Lanes::COUNT`] rows.
-    fn load(processor: Self::Processor, rows: &[Row]) -> [Self; 4];
-    /// Column by column, to the first [`Lanes::COUNT`] rows.
-    fn store(columns: [Self; 4], rows: &mut [Row]);
+    /// Column by column, from the first [`Lanes::COUNT`] of the rows.
+    fn gather(processor: Self::Processor, rows: [&Row; 4]) -> [Self; 4];
+    /// The four numbers of one row, each in every lane.
+    fn spread(processor: Self::Processor, row: &Row) -> [Self; 4];
+    /// Rows again; the first [`Lanes::COUNT`] of them count.
+    fn rows(columns: [Self; 4]) -> [Self::Quad; 4];
     /// Square root.
     fn sqrt(self) -> Self;
     /// Where `self > other`.
     fn exceeds(self, other: Self) -> Self::Mask;
     /// `a` where `mask` holds, elsewhere `b`.
     fn choose(mask: Self::Mask, a: Self, b: Self) -> Self;
+}
+
+/// A row in registers: four numbers of one grain or pair, whatever the number of lanes.
+pub trait Quad: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// Proof that the processor can.
+    type Processor: Copy;
+
+    /// From memory.
+    fn load(processor: Self::Processor, row: &Row) -> Self;
+    /// `x` four times.
+    fn repeat(processor: Self::Processor, x: f64) -> Self;
+    /// To memory.
+    fn row(self) -> Row;
+
+    /// Square of the length of the vector part.
+    #[inline(always)]
+    fn length_squared(self) -> f64 {
+        let squares = (self * self).row();
+        squares[0] + squares[1] + squares[2]
+    }
 }
 
 /// `a · b`.
@@ -109,6 +133,7 @@ impl Lanes for One {
     const COUNT: usize = 1;
     type Processor = ();
     type Mask = bool;
+    type Quad = Elementwise;
 
     #[inline(always)]
     fn splat((): (), x: f64) -> Self {
@@ -116,13 +141,19 @@ impl Lanes for One {
     }
 
     #[inline(always)]
-    fn load((): (), rows: &[Row]) -> [Self; 4] {
-        rows[0].map(Self)
+    fn gather((): (), rows: [&Row; 4]) -> [Self; 4] {
+        Self::spread((), rows[0])
     }
 
     #[inline(always)]
-    fn store(columns: [Self; 4], rows: &mut [Row]) {
-        rows[0] = columns.map(|column| column.0);
+    fn spread((): (), row: &Row) -> [Self; 4] {
+        [Self(row[0]), Self(row[1]), Self(row[2]), Self(row[3])]
+    }
+
+    #[inline(always)]
+    fn rows(columns: [Self; 4]) -> [Elementwise; 4] {
+        let [a, b, c, d] = columns;
+        [Elementwise([a.0, b.0, c.0, d.0]); 4]
     }
 
     #[inline(always)]
@@ -141,10 +172,47 @@ impl Lanes for One {
     }
 }
 
+/// A row for any processor.
+#[derive(Clone, Copy, Debug)]
+pub struct Elementwise(Row);
+
+macro_rules! elementwise {
+    ($($operator:ident $function:ident $sign:tt),*) => {$(
+        impl $operator for Elementwise {
+            type Output = Self;
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                let (a, b) = (self.0, other.0);
+                Self([a[0] $sign b[0], a[1] $sign b[1], a[2] $sign b[2], a[3] $sign b[3]])
+            }
+        }
+    )*};
+}
+elementwise!(Add add +, Sub sub -, Mul mul *);
+
+impl Quad for Elementwise {
+    type Processor = ();
+
+    #[inline(always)]
+    fn load((): (), row: &Row) -> Self {
+        Self(*row)
+    }
+
+    #[inline(always)]
+    fn repeat((): (), x: f64) -> Self {
+        Self([x; 4])
+    }
+
+    #[inline(always)]
+    fn row(self) -> Row {
+        self.0
+    }
+}
+
 /// Four lanes of AVX.
 #[cfg(target_arch = "x86_64")]
 mod avx {
-    use super::{Lanes, Row};
+    use super::{Lanes, Quad, Row};
     use pulp::x86::V3;
     use std::arch::x86_64::__m256d;
     use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -176,14 +244,8 @@ mod avx {
     }
 
     #[inline(always)]
-    fn register(row: Row) -> __m256d {
+    fn register(row: &Row) -> __m256d {
         pulp::cast(pulp::f64x4(row[0], row[1], row[2], row[3]))
-    }
-
-    #[inline(always)]
-    fn memory(value: __m256d) -> Row {
-        let value: pulp::f64x4 = pulp::cast(value);
-        [value.0, value.1, value.2, value.3]
     }
 
     /// Turns four rows into four columns, or back.
@@ -201,10 +263,31 @@ mod avx {
         ]
     }
 
+    impl Quad for Four {
+        type Processor = V3;
+
+        #[inline(always)]
+        fn load(v3: V3, row: &Row) -> Self {
+            Self(v3, register(row))
+        }
+
+        #[inline(always)]
+        fn repeat(v3: V3, x: f64) -> Self {
+            Self(v3, v3.avx._mm256_set1_pd(x))
+        }
+
+        #[inline(always)]
+        fn row(self) -> Row {
+            let value: pulp::f64x4 = pulp::cast(self.1);
+            [value.0, value.1, value.2, value.3]
+        }
+    }
+
     impl Lanes for Four {
         const COUNT: usize = 4;
         type Processor = V3;
         type Mask = __m256d;
+        type Quad = Self;
 
         #[inline(always)]
         fn splat(v3: V3, x: f64) -> Self {
@@ -212,27 +295,33 @@ mod avx {
         }
 
         #[inline(always)]
-        fn load(v3: V3, rows: &[Row]) -> [Self; 4] {
-            let [a, b, c, d] = transpose(
-                v3,
-                [
-                    register(rows[0]),
-                    register(rows[1]),
-                    register(rows[2]),
-                    register(rows[3]),
-                ],
-            );
+        fn gather(v3: V3, rows: [&Row; 4]) -> [Self; 4] {
+            let rows = [
+                register(rows[0]),
+                register(rows[1]),
+                register(rows[2]),
+                register(rows[3]),
+            ];
+            let [a, b, c, d] = transpose(v3, rows);
             [Self(v3, a), Self(v3, b), Self(v3, c), Self(v3, d)]
         }
 
         #[inline(always)]
-        fn store(columns: [Self; 4], rows: &mut [Row]) {
+        fn spread(v3: V3, row: &Row) -> [Self; 4] {
+            [
+                Self::splat(v3, row[0]),
+                Self::splat(v3, row[1]),
+                Self::splat(v3, row[2]),
+                Self::splat(v3, row[3]),
+            ]
+        }
+
+        #[inline(always)]
+        fn rows(columns: [Self; 4]) -> [Self; 4] {
             let [a, b, c, d] = columns;
-            let [a, b, c, d] = transpose(a.0, [a.1, b.1, c.1, d.1]);
-            rows[0] = memory(a);
-            rows[1] = memory(b);
-            rows[2] = memory(c);
-            rows[3] = memory(d);
+            let v3 = a.0;
+            let [a, b, c, d] = transpose(v3, [a.1, b.1, c.1, d.1]);
+            [Self(v3, a), Self(v3, b), Self(v3, c), Self(v3, d)]
         }
 
         #[inline(always)]

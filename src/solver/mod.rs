@@ -103,7 +103,7 @@ impl Solver {
     /// Takes `steps` steps; on a fault, says after how many.
     fn march(&mut self, law: impl Law, world: &World, steps: u64) -> Result<(), u64> {
         let mut done = 0;
-        let mut refresh = self.state.start();
+        let mut refresh = self.state.start(self.processor);
         while done < steps {
             if refresh {
                 let begin = Instant::now();
