@@ -160,7 +160,7 @@ pub struct ScenePlane {
     pub point: DVec3,
     /// Normal towards the grains (made a unit vector when read).
     pub normal: DVec3,
-    /// Its velocity [m/s].
+    /// Velocity of its surface, along the plane as that of a belt [m/s].
     pub velocity: DVec3,
     /// Name of its material.
     pub material: String,

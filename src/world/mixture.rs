@@ -5,7 +5,7 @@
 //! larger share only adds grains to a species, and going back takes the same ones away.
 
 use super::{SpeciesId, World};
-use crate::scene::{Scene, SceneGrains, SizeClass, apportion, size_classes};
+use crate::scene::{Scene, SceneGrains, SceneSpecies, SizeClass, apportion, size_classes};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -66,24 +66,25 @@ pub fn set_share(world: &mut World, scene: &Scene, species: SpeciesId, share: f6
         return;
     };
     let part = (share * *count as f64 / class.count.max(1) as f64).clamp(0.0, 1.0);
-    let others: f64 = class
-        .species
-        .iter()
-        .filter(|member| member.0 != index)
-        .map(|member| kinds[member.0].share)
+    let counts = apportion(class.count, &shares_beside(part, index, class, kinds));
+    let wanted: Vec<(usize, usize)> = class.species.iter().map(|m| m.0).zip(counts).collect();
+    relabel(world, scene.seed, &wanted);
+}
+
+/// Shares within `class` when the species `index` has the part `part` of it.
+fn shares_beside(part: f64, index: usize, class: &SizeClass, kinds: &[SceneSpecies]) -> Vec<f64> {
+    let members = || class.species.iter().map(|&(member, _)| member);
+    let others: f64 = members()
+        .filter(|&member| member != index)
+        .map(|member| kinds[member].share)
         .sum();
-    let shares: Vec<f64> = class
-        .species
-        .iter()
-        .map(|&(member, _)| match member {
+    members()
+        .map(|member| match member {
             _ if member == index => part,
             _ if others > 0.0 => (1.0 - part) * kinds[member].share / others,
             _ => (1.0 - part) / (class.species.len() - 1) as f64,
         })
-        .collect();
-    let counts = apportion(class.count, &shares);
-    let wanted: Vec<(usize, usize)> = class.species.iter().map(|m| m.0).zip(counts).collect();
-    relabel(world, scene.seed, &wanted);
+        .collect()
 }
 
 /// Labels the grains of the species in `wanted` anew, so that each has its number of grains.
