@@ -11,8 +11,8 @@ use crate::simulation::{Command, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotBounds,
-    PlotPoint, PlotUi, Points, Text, VLine,
+    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot,
+    PlotBounds, PlotPoint, PlotUi, Points, Text, VLine,
 };
 use std::ops::RangeInclusive;
 
@@ -31,6 +31,8 @@ const COLDEST: f64 = 1e-13;
 /// Grid lines stand this many times further apart than the plot would have them at the closest, which is 8 points.
 const SPARSE_X: f32 = 5.5;
 const SPARSE_Y: f32 = 3.5;
+/// Room for half of the last label of the time axis.
+const ROOM_AT_THE_RIGHT: f32 = 14.0;
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// Both plots.
@@ -247,7 +249,11 @@ fn temperature_curve(
 fn on_axis(temperature: f64, decades: bool) -> f64 {
     if decades {
         // Zero has no logarithm and is passed over.
-        if temperature > 0.0 { temperature.max(COLDEST).log10() } else { f64::NAN }
+        if temperature > 0.0 {
+            temperature.max(COLDEST).log10()
+        } else {
+            f64::NAN
+        }
     } else {
         temperature
     }
@@ -291,6 +297,7 @@ fn curve_ui<'a>(
     let (decades, unit) = (curve.decades, curve.unit);
     let plot = Plot::new(curve.id)
         .height(height)
+        .width(ui.available_width() - ROOM_AT_THE_RIGHT)
         .show_crosshair(false)
         .grid_color(grid)
         .x_grid_spacer(|input| round_marks(input, SPARSE_X, 0.0))
@@ -330,7 +337,10 @@ fn curve_ui<'a>(
 /// closest.
 fn round_marks(input: GridInput, sparse: f32, finest: f64) -> Vec<GridMark> {
     let step = round_step((input.base_step_size * f64::from(sparse)).max(finest));
-    let (first, last) = ((input.bounds.0 / step).ceil(), (input.bounds.1 / step).floor());
+    let (first, last) = (
+        (input.bounds.0 / step).ceil(),
+        (input.bounds.1 / step).floor(),
+    );
     (first as i64..=last as i64)
         .map(|index| GridMark {
             value: index as f64 * step,

@@ -26,10 +26,13 @@ fn append(job: &mut LayoutJob, ui: &Ui, text: &str, colour: Color32) {
     for (index, part) in text.split('_').enumerate() {
         let end = match index {
             0 => 0,
-            _ => part.find(|c: char| !c.is_alphanumeric()).unwrap_or(part.len()),
+            _ => part
+                .find(|c: char| !c.is_alphanumeric())
+                .unwrap_or(part.len()),
         };
         let (lowered, rest) = part.split_at(end);
-        for (piece, font, valign) in [(lowered, &low, Align::BOTTOM), (rest, &font, Align::Center)] {
+        for (piece, font, valign) in [(lowered, &low, Align::BOTTOM), (rest, &font, Align::Center)]
+        {
             let format = TextFormat {
                 valign,
                 ..TextFormat::simple(font.clone(), colour)

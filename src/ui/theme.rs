@@ -145,7 +145,8 @@ pub fn install(ctx: &egui::Context) {
             style.visuals = visuals(theme);
             style.text_styles = text_styles();
             style.animation_time = 0.08;
-            style.explanation_tooltips = false;
+            style.interaction.selectable_labels = false;
+            style.interaction.tooltip_delay = 0.35;
             let spacing = &mut style.spacing;
             spacing.item_spacing = vec2(8.0, 6.0);
             spacing.button_padding = vec2(9.0, 4.0);
