@@ -19,6 +19,11 @@ fn tuple(v: DVec3) -> String {
 
 /// Grains of two sizes and materials that fly towards the origin and at random, spinning.
 fn converging(law: &str, dt: f64) -> World {
+    converging_with(law, dt, "friction: 0.3,", "friction: 0.5,")
+}
+
+/// The same with other friction.
+fn converging_with(law: &str, dt: f64, a: &str, b: &str) -> World {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let mut grains = String::new();
     for i in 0..125 {
@@ -44,8 +49,8 @@ fn converging(law: &str, dt: f64) -> World {
             r#"(
     title: "A collapsing cloud",
     materials: {{
-        "a": (restitution: 0.8, friction: 0.3, rolling_friction: 0.02),
-        "b": (youngs_modulus: 2e8, density: 4000, restitution: 0.6, friction: 0.5, rolling_friction: 0.01),
+        "a": (restitution: 0.8, {a} rolling_friction: 0.02),
+        "b": (youngs_modulus: 2e8, density: 4000, restitution: 0.6, {b} rolling_friction: 0.01),
     }},
     container: Nothing,
     gravity: (0, 0, 0),
@@ -111,17 +116,27 @@ fn cloud_keeps_its_momentum_and_angular_momentum() {
 
 #[test]
 fn energy_balance_of_a_cloud_closes_with_the_step() {
-    for law in ["HertzMindlin", HOOKE] {
+    // With a tangential spring whose stiffness follows the overlap, Hertz–Mindlin is not conservative (see the impacts'
+    // tests), so it is tried without friction.
+    for (law, friction) in [("HertzMindlin", "friction: 0,"), (HOOKE, "friction: 0.4,")] {
         let residual = |dt: f64| {
-            let mut world = converging(law, dt);
+            let mut world = converging_with(law, dt, friction, friction);
             run(&mut world, 0.02);
             EnergyLedger::of(&world).relative_residual().abs()
         };
         // Dashpots are booked with the velocity half a step ago: an error of first order in the step.
         let [coarse, fine] = [4e-6, 5e-7].map(residual);
         println!("{law}: residual {coarse:.1e} at 4e-6 s, {fine:.1e} at 5e-7 s");
-        assert!(coarse < 5e-3 && fine < 0.25 * coarse, "{coarse} {fine}");
+        assert!(coarse < 5e-3 && fine < 0.25 * coarse, "{law}: {coarse} {fine}");
     }
+}
+
+#[test]
+fn energy_that_hertz_mindlin_springs_do_not_conserve_is_a_percent() {
+    let mut world = converging("HertzMindlin", 1e-6);
+    run(&mut world, 0.02);
+    let residual = EnergyLedger::of(&world).relative_residual().abs();
+    assert_below("residual", residual, 0.02);
 }
 
 /// A gas of smooth spheres of restitution 0.8 in a box of perfectly reflecting walls.
@@ -185,11 +200,13 @@ fn gas_of_constant_restitution_cools_by_haffs_law() {
     let free_volume = (0.04_f64 - 0.002).powi(3);
     let fraction = count * 4.0 / 3.0 * std::f64::consts::PI * 1e-9 / free_volume;
     let chi = (1.0 - 0.5 * fraction) / (1.0 - fraction).powi(3);
-    let rate = (1.0 - e * e) / 6.0 * 4.0 * count / free_volume * 4e-6 * chi
+    // A pair of centres d apart has to fit between the walls: of its orientations 1 − (3/2) d/L do.
+    let fits = 1.0 - 1.5 * 0.002 / 0.038;
+    let rate = fits * (1.0 - e * e) / 6.0 * 4.0 * count / free_volume * 4e-6 * chi
         * std::f64::consts::PI.sqrt();
     println!("rises of 1/√T {rises:.3?}, halves {halves:.3}");
-    // Some 3000 collisions: 2 % of noise; e lowers the rate by another 2 % through the shape of the distribution, and
-    // walls keep centres apart from them.
-    assert_relative("rise of 1/√T", whole / (50_000.0 * 4e-6), rate, 0.1);
+    // Some 5000 collisions: 2 % of noise; a contact lasts 1 % of the time between two; e changes the shape of the
+    // distribution, 1 %.
+    assert_relative("rise of 1/√T", whole / (50_000.0 * 4e-6), rate, 0.06);
     assert_relative("first half over second", halves, 1.0, 0.15);
 }

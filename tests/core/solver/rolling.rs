@@ -55,11 +55,12 @@ fn sliding_grain_rolls_on_with_five_sevenths_of_its_speed() {
         assert_relative("spin", world.grains.spin[0].z, spin, 1e-3);
 
         run(&mut world, sliding_time);
-        // Angular momentum about the line of contact points is conserved.
+        // Angular momentum about the line of contact points is conserved; the grain starts without forces and bounces by
+        // some hundredths of its overlap, the arm with it.
         let share = 2.5 * (arm() / RADIUS).powi(2);
         let expected = speed * (1.0 - 1.0 / (1.0 + share));
         let v = world.grains.velocity[0].x;
-        assert_relative("rolling speed", v, expected, 1e-6);
+        assert_relative("rolling speed", v, expected, 5e-6);
         // The arm is short by half the overlap.
         assert_relative("of 5/7", v / speed, 5.0 / 7.0, sunk() / RADIUS);
         assert_relative("pure rolling", -world.grains.spin[0].z * arm(), v, 1e-6);
