@@ -169,7 +169,9 @@ mod tests {
     #[test]
     fn logarithm_is_that_of_the_platform_to_a_few_last_bits() {
         assert_eq!(natural_log(1.0), 0.0);
-        for x in [1e-300, 1e-3, 0.01, 0.2, 0.7499, 0.75, 0.9, 0.95, 0.999_999, 1.4, 3.0, 1e9] {
+        for x in [
+            1e-300, 1e-3, 0.01, 0.2, 0.7499, 0.75, 0.9, 0.95, 0.999_999, 1.4, 3.0, 1e9,
+        ] {
             let error = (natural_log(x) / f64::ln(x) - 1.0).abs();
             assert!(error < 1e-15, "ln {x}: off by {error:e}");
         }

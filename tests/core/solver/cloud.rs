@@ -31,11 +31,7 @@ fn converging_with(law: &str, dt: f64, a: &str, b: &str) -> World {
         let position = site * 6.5e-3 + 2e-4 * random_vector(&mut rng);
         let velocity = -6.0 * position + 0.1 * random_vector(&mut rng);
         let spin = 20.0 * random_vector(&mut rng);
-        let (radius, material) = if i % 3 == 0 {
-            (3.0, "a")
-        } else {
-            (2.0, "b")
-        };
+        let (radius, material) = if i % 3 == 0 { (3.0, "a") } else { (2.0, "b") };
         let _ = writeln!(
             grains,
             r#"(position: {}, velocity: {}, spin: {}, radius_mm: {radius}, material: "{material}"),"#,
@@ -127,7 +123,10 @@ fn energy_balance_of_a_cloud_closes_with_the_step() {
         // Dashpots are booked with the velocity half a step ago: an error of first order in the step.
         let [coarse, fine] = [4e-6, 5e-7].map(residual);
         println!("{law}: residual {coarse:.1e} at 4e-6 s, {fine:.1e} at 5e-7 s");
-        assert!(coarse < 5e-3 && fine < 0.25 * coarse, "{law}: {coarse} {fine}");
+        assert!(
+            coarse < 5e-3 && fine < 0.25 * coarse,
+            "{law}: {coarse} {fine}"
+        );
     }
 }
 
@@ -202,7 +201,9 @@ fn gas_of_constant_restitution_cools_by_haffs_law() {
     let chi = (1.0 - 0.5 * fraction) / (1.0 - fraction).powi(3);
     // A pair of centres d apart has to fit between the walls: of its orientations 1 − (3/2) d/L do.
     let fits = 1.0 - 1.5 * 0.002 / 0.038;
-    let rate = fits * (1.0 - e * e) / 6.0 * 4.0 * count / free_volume * 4e-6 * chi
+    let rate = fits * (1.0 - e * e) / 6.0 * 4.0 * count / free_volume
+        * 4e-6
+        * chi
         * std::f64::consts::PI.sqrt();
     println!("rises of 1/√T {rises:.3?}, halves {halves:.3}");
     // Some 5000 collisions: 2 % of noise; a contact lasts 1 % of the time between two; e changes the shape of the

@@ -75,9 +75,14 @@ fn hash(text: &str, solver: Solver, slices: &[u64]) -> StateHash {
 #[test]
 fn drum_of_these_tests_flows() {
     let (begin, end) = (start(DRUM), after(DRUM, Solver::new(1), &[4000]));
-    assert!(begin.contacts.len() > 400, "{} contacts", begin.contacts.len());
+    assert!(
+        begin.contacts.len() > 400,
+        "{} contacts",
+        begin.contacts.len()
+    );
     let known = |contact: &&Contact| {
-        let same = |other: &Contact| (other.grain, other.partner) == (contact.grain, contact.partner);
+        let same =
+            |other: &Contact| (other.grain, other.partner) == (contact.grain, contact.partner);
         begin.contacts.iter().any(same)
     };
     let kept = end.contacts.iter().filter(known).count();
@@ -90,10 +95,10 @@ fn drum_of_these_tests_flows() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for text in [DRUM, BELT] {
-        let alone = hash(text, Solver::new(1), &[4000]);
+        let alone = hash(text, Solver::new(1), &[1000]);
         for threads in [2, 3, 8] {
             assert_eq!(
-                hash(text, Solver::new(threads), &[4000]),
+                hash(text, Solver::new(threads), &[1000]),
                 alone,
                 "{threads} threads"
             );
@@ -104,27 +109,22 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn scalar_twin_gives_the_same_bits() {
     for text in [DRUM, BELT] {
-        let lanes = hash(text, Solver::new(1), &[8000]);
-        assert_eq!(hash(text, Solver::scalar(1), &[8000]), lanes);
-        assert_eq!(hash(text, Solver::scalar(2), &[8000]), lanes);
+        let lanes = hash(text, Solver::new(1), &[3000]);
+        assert_eq!(hash(text, Solver::scalar(1), &[3000]), lanes);
+        assert_eq!(hash(text, Solver::scalar(2), &[3000]), lanes);
     }
 }
 
 #[test]
 fn any_slicing_of_the_steps_gives_the_same_bits() {
     for text in [DRUM, BELT] {
-        let whole = hash(text, Solver::new(1), &[3000]);
-        for slices in [
-            &[1, 2999][..],
-            &[0, 1500, 0, 1500],
-            &[7; 428],
-            &[1000, 1, 1, 1, 997, 1000],
-        ] {
-            let rest = 3000 - slices.iter().sum::<u64>();
+        let whole = hash(text, Solver::new(1), &[1000]);
+        for slices in [&[1][..], &[0, 500, 0], &[7; 142], &[300, 1, 1, 1, 297]] {
+            let rest = 1000 - slices.iter().sum::<u64>();
             let slices = [slices, &[rest]].concat();
             assert_eq!(hash(text, Solver::new(1), &slices), whole, "{slices:?}");
         }
-        assert_eq!(hash(text, Solver::new(2), &[1; 3000]), whole);
+        assert_eq!(hash(text, Solver::new(2), &[1; 1000]), whole);
     }
 }
 
@@ -134,14 +134,14 @@ fn restored_snapshot_goes_on_as_if_nothing_had_happened() {
         let mut world = after(text, Solver::new(1), &[500]);
         let snapshot = world.clone();
         let mut solver = Solver::new(2);
-        solver.advance(&mut world, 3000).unwrap();
+        solver.advance(&mut world, 1500).unwrap();
         let expected = world.hash();
         // The same solver, its lists now of a later state; and one that knows nothing.
         world = snapshot.clone();
-        solver.advance(&mut world, 3000).unwrap();
+        solver.advance(&mut world, 1500).unwrap();
         assert_eq!(world.hash(), expected);
         world = snapshot;
-        Solver::new(1).advance(&mut world, 3000).unwrap();
+        Solver::new(1).advance(&mut world, 1500).unwrap();
         assert_eq!(world.hash(), expected);
     }
 }
@@ -162,10 +162,10 @@ fn solver_that_moves_two_worlds_in_turn_mixes_nothing_up() {
 fn fresh_lists_at_every_slice_give_the_same_bits_as_old_ones() {
     // Lists have skins that grow and shrink with use; a new solver starts with the first ones.
     let mut world = start(DRUM);
-    for _ in 0..60 {
+    for _ in 0..30 {
         Solver::new(1).advance(&mut world, 100).unwrap();
     }
-    assert_eq!(world.hash(), hash(DRUM, Solver::new(1), &[6000]));
+    assert_eq!(world.hash(), hash(DRUM, Solver::new(1), &[3000]));
 }
 
 #[test]
@@ -189,22 +189,16 @@ fn changed_friction_acts_at_once_and_alike_for_old_and_new_solvers() {
 fn run_has_the_bits_it_always_had() {
     // A golden hash: the same on every machine, as the step knows nothing but + − × ÷ √. A commit that changes it says why.
     assert_eq!(
-        hash(DRUM, Solver::new(1), &[6000]).to_string(),
-        "unknown"
+        hash(DRUM, Solver::new(1), &[1000]).to_string(),
+        "1451153dce9defbe3e8221c34a2bbccf"
     );
-    assert_eq!(
-        hash(BELT, Solver::new(1), &[6000]).to_string(),
-        "unknown"
-    );
+    assert_eq!(hash(BELT, Solver::new(1), &[6000]).to_string(), "unknown");
 }
 
 #[test]
 fn seed_decides_the_run() {
     let other = DRUM.replace("title:", "seed: 2, title:");
-    assert_ne!(
-        world(&other, STEP).hash(),
-        world(DRUM, STEP).hash()
-    );
+    assert_ne!(world(&other, STEP).hash(), world(DRUM, STEP).hash());
 }
 
 #[test]

@@ -17,9 +17,15 @@ fn drum(speed: f64, gravity: DVec3, position: DVec3, velocity: DVec3, spin: f64)
     gravity: ({}, {}, {}),
     grains: List([(position: ({}, {}, {}), velocity: ({}, {}, {}), spin: (0, 0, {spin}), radius: {RADIUS}, material: "glass")]),
 )"#,
-            gravity.x, gravity.y, gravity.z,
-            position.x, position.y, position.z,
-            velocity.x, velocity.y, velocity.z,
+            gravity.x,
+            gravity.y,
+            gravity.z,
+            position.x,
+            position.y,
+            position.z,
+            velocity.x,
+            velocity.y,
+            velocity.z,
         ),
         1e-5,
     )
@@ -61,8 +67,9 @@ fn grain_turns_with_the_drum_as_if_glued_where_nothing_else_pulls() {
         grains.rolling_torque[0].length() / (0.01 * mass() * speed * speed * rho * RADIUS),
         1e-4,
     );
+    // 100 000 turns are added up, each sum rounded to 1e-16.
     let angle = world.container.angle;
-    assert_relative("angle of the drum", angle, speed * world.time(), 1e-12);
+    assert_relative("angle of the drum", angle, speed * world.time(), 1e-11);
 }
 
 #[test]

@@ -132,7 +132,9 @@ fn far_too_long_step_is_a_fault_that_advises_a_shorter_one() {
     };
     assert_eq!(world.hash(), before);
     assert_eq!(fault.good_time, world.time());
-    assert!(fault.time > fault.good_time && fault.time <= world.clock.time_at(world.clock.step + 10));
+    assert!(
+        fault.time > fault.good_time && fault.time <= world.clock.time_at(world.clock.step + 10)
+    );
     let message = fault.to_string();
     println!("{message}");
     assert!(message.contains(&format!("grain {}", fault.grain)));

@@ -214,9 +214,8 @@ fn hertz_mindlin_impacts_rebound_with_their_restitution_at_any_speed() {
 #[test]
 fn hooke_impacts_rebound_as_a_spring_and_dashpot_that_never_pull() {
     let stiffness = 4000.0;
-    let mass = |shot: &Shot| {
-        sphere_mass(shot.radius, 2500.0) * if shot.at_wall { 1.0 } else { 0.5 }
-    };
+    let mass =
+        |shot: &Shot| sphere_mass(shot.radius, 2500.0) * if shot.at_wall { 1.0 } else { 0.5 };
     let shots = |e| {
         let mut shots = Vec::new();
         for speed in [0.01, 1.0] {
@@ -344,7 +343,12 @@ fn grazing_impact_slides_and_leaves_with_the_spin_that_friction_gave_it() {
         // Sliding begins once the spring has stretched: μ k_n δ/(k_t v_t) after contact, a share 1e-2 of the impulse's
         // own square; the arm is short by half the overlap.
         let arm = impact.overlap / (2.0 * radius);
-        assert_relative("tangential speed", grains.velocity[0].x / vt, expected, 1e-5);
+        assert_relative(
+            "tangential speed",
+            grains.velocity[0].x / vt,
+            expected,
+            1e-5,
+        );
         let spin = -2.5 * friction * 2.0 * vn / radius;
         assert_relative("spin", grains.spin[0].z, spin, arm + 5e-4);
     }
@@ -409,7 +413,11 @@ fn energy_balance_of_an_impact_closes_but_for_what_the_tangential_spring_does_no
     // Hertz-Mindlin as the paper has it, not of the step.
     assert_below("residual", fine.abs(), 0.02);
     assert_below("unexplained at 4e-7 s", coarse_rest.abs(), 2e-2);
-    assert_below("unexplained at 4e-8 s", fine_rest.abs(), 0.2 * coarse_rest.abs());
+    assert_below(
+        "unexplained at 4e-8 s",
+        fine_rest.abs(),
+        0.2 * coarse_rest.abs(),
+    );
 }
 
 #[test]
