@@ -70,16 +70,16 @@ struct What {
     /// A scene file, or the name of a built-in scene
     scene: Option<String>,
     /// Simulated time of a run without a window: 10s, 500ms
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     duration: Option<String>,
     /// Simulated time between two written states: 0.1s, 20ms
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     output_interval: Option<String>,
     /// Length of a step: automatic, 10us
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     time_step: Option<String>,
     /// Seed of everything random
-    #[arg(long, value_name = "N")]
+    #[arg(long, allow_hyphen_values = true, value_name = "N")]
     seed: Option<String>,
     /// Change a value: friction.glass.glass=0.3, drum-speed=1rpm, count=200 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE")]

@@ -27,9 +27,11 @@ const SCENES: &[BuiltIn] = built_in![
     "dry-r1.25" in "papers/kasper2021",
     "small-drum" in "gallery",
     "two-frictions-drum" in "gallery",
-    "two-sizes-box" in "gallery",
+    "two-sizes-drum" in "gallery",
     "bouncing-grain" in "gallery",
     "two-grains" in "gallery",
+    "grain-chain" in "gallery",
+    "slide-to-roll" in "gallery",
 ];
 
 /// Every scene that comes with the program; the first is the one to open when none is asked for.

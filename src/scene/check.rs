@@ -154,19 +154,7 @@ impl Scene {
 
     fn check_room(&self, count: usize, species: &[SceneSpecies]) -> Checked {
         let room = volume(&self.container)?;
-        let narrowest = narrowest(&self.container);
-        for (index, kind) in species.iter().enumerate() {
-            if 2.0 * kind.radius > narrowest {
-                return Err(Problem::value(
-                    format!("grains.species[{index}].radius"),
-                    format!("{} m", kind.radius),
-                    format!(
-                        "at most {} m, half of the container's narrowest width",
-                        0.5 * narrowest
-                    ),
-                ));
-            }
-        }
+        self.check_widths(species)?;
         let classes = size_classes(count, species);
         if Lattice::for_filling(&self.container, &classes).is_some() {
             return Ok(());
@@ -175,15 +163,25 @@ impl Scene {
             .iter()
             .map(|class| class.count as f64 * 4.0 / 3.0 * PI * class.radius.powi(3))
             .sum();
+        let part = solid / room;
         Err(Problem::new(
             "grains",
-            format!(
-                "do not fit into the container: {count} grains are {:.3} of its volume, before they settle",
-                solid / room
-            ),
+            format!("do not fit into the container: {count} grains are {part:.3} of its volume, before they settle"),
             "a filling that leaves the grains room to be placed apart, about 0.4 of the volume or less",
         )
         .advise("Take fewer or smaller grains or a larger container"))
+    }
+
+    fn check_widths(&self, species: &[SceneSpecies]) -> Checked {
+        let largest = 0.5 * narrowest(&self.container);
+        let wide = species.iter().position(|kind| kind.radius > largest);
+        wide.map_or(Ok(()), |index| {
+            Err(Problem::value(
+                format!("grains.species[{index}].radius"),
+                format!("{} m", species[index].radius),
+                format!("at most {largest} m, half of the container's narrowest width"),
+            ))
+        })
     }
 
     fn check_list(&self, grains: &[SceneGrain]) -> Checked {
@@ -288,15 +286,28 @@ fn check_planes(planes: &[ScenePlane]) -> Checked {
         }
         vector(plane.point, 1e5, "m", || path("point"))?;
         vector(plane.velocity, 1e5, "m/s", || path("velocity"))?;
-        if !plane.normal.is_normalized() {
-            return Err(Problem::value(
-                path("normal"),
-                shown(plane.normal),
-                "a direction towards the grains; its length does not matter, but must not be zero",
-            ));
-        }
+        check_plane_directions(plane, path)?;
     }
     Ok(())
+}
+
+fn check_plane_directions(plane: &ScenePlane, path: impl Fn(&str) -> String) -> Checked {
+    if !plane.normal.is_normalized() {
+        return Err(Problem::value(
+            path("normal"),
+            shown(plane.normal),
+            "a direction towards the grains; its length does not matter, but must not be zero",
+        ));
+    }
+    // Room for the rounding of a slanted velocity.
+    if plane.velocity.dot(plane.normal).abs() <= 1e-6 * plane.velocity.length() {
+        return Ok(());
+    }
+    Err(Problem::value(
+        path("velocity"),
+        shown(plane.velocity),
+        "a velocity along the plane, at right angles to `normal`: it moves as a belt does, in itself",
+    ))
 }
 
 fn check_title(title: &str) -> Checked {

@@ -3,8 +3,7 @@
 //! In: RON. Out: a [`Scene`] whose values are not yet checked. This is the only place that knows how a file spells
 //! things; [`super::check`] is the only one that knows which values make sense.
 //!
-//! Every number is in SI units, save under a key that names its unit: `radius_mm`, `width_mm`, `speed_rpm`. A default is
-//! the value of the dry grains or the drum of Kasper et al. 2021.
+//! What the keys mean stands in `scenes/README.md`.
 
 use super::check::{check_container, fraction, volume};
 use super::error::Problem;

@@ -3,42 +3,7 @@
 //! In: the text of a scene file. Out: a [`Scene`] in SI units, or a [`SceneError`] that names file, line, key, value and
 //! what was expected. Nothing here places a grain: [`crate::world::build`] does.
 //!
-//! # Scene files
-//! ```ron
-//! (
-//!     title: "A drum of glass and steel beads",
-//!     look_for: "How the mixture changes the angle of the surface.",
-//!     source: "Drum and glass of Kasper et al. 2021; the steel is made up.",
-//!     materials: {
-//!         "glass": (youngs_modulus: 63e6, poisson_ratio: 0.21, density: 2500, restitution: 0.95, friction: 0.4),
-//!         "steel": (youngs_modulus: 63e6, poisson_ratio: 0.3, density: 7800, friction: 0.2),
-//!         "drum": (youngs_modulus: 12e6, poisson_ratio: 0.35),
-//!     },
-//!     pairs: [(between: ("glass", "drum"), restitution: 0.72, friction: 0.3)],
-//!     container: Drum(radius_mm: 60.5, width_mm: 22, speed_rpm: 0.5, material: "drum"),
-//!     grains: Fill(
-//!         bulk_fraction: 0.35,
-//!         packing: 0.6,
-//!         species: [
-//!             (name: "glass", radius_mm: 3, material: "glass", share: 0.7),
-//!             (name: "steel", radius_mm: 3, material: "steel", share: 0.3),
-//!         ],
-//!     ),
-//!     duration: 10,
-//!     output_interval: 0.1,
-//! )
-//! ```
-//! **Units**: SI, save under a key that names its unit: `radius_mm`, `width_mm`, `speed_rpm`.
-//! **Defaults**: a material's values are those of the dry glass of Kasper et al. 2021, a drum's those of their drum (0.5
-//! rpm), a filling's 0.35 of the volume at a packing of 0.60; gravity (0, −9.81, 0), law `HertzMindlin`, time step
-//! `Automatic`, duration 50 s, an output each 0.1 s, seed 1. A species is called after its material. All else is required.
-//! **Containers**: `Drum(…)`, `Box(min: …, max: …, material: …)`, `Planes([(point: …, normal: …, material: …), …])`,
-//! `Nothing`. **Grains**: `Fill(…)` by `bulk_fraction` and `packing` or by `count`, from low y upwards, or
-//! `List([(position: …, velocity: …, spin: …, radius: …, material: …), …])`, of which nothing is settled.
-//! **Laws**: `HertzMindlin`, `Hooke(normal_stiffness: …, tangential_stiffness: …)`. **Time step**: `Automatic`,
-//! `Given(1e-5)`.
-//!
-//! `pairs` says how two different materials meet where that is not the harmonic mean of their own values.
+#![doc = include_str!("../../scenes/README.md")]
 
 mod built_in;
 mod check;
@@ -53,7 +18,7 @@ mod syntax;
 pub use built_in::{BuiltIn, built_in};
 pub use error::SceneError;
 pub use lattice::Lattice;
-pub use mixture::{SizeClass, apportion, size_classes};
+pub use mixture::{SizeClass, size_classes};
 pub use set::seconds;
 
 use file::SceneFile;
@@ -195,7 +160,7 @@ pub struct ScenePlane {
     pub point: DVec3,
     /// Normal towards the grains (made a unit vector when read).
     pub normal: DVec3,
-    /// Its velocity [m/s].
+    /// Velocity of its surface, along the plane as that of a belt [m/s].
     pub velocity: DVec3,
     /// Name of its material.
     pub material: String,

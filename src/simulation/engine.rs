@@ -91,7 +91,8 @@ pub struct Engine {
 enum Stage {
     Preparing(Box<Preparation>),
     Ready(Box<Run>),
-    Failed(String),
+    /// There is no run, as the status says.
+    Failed(Status),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,7 +169,7 @@ impl Engine {
                     let warnings = preparation.warnings().to_vec();
                     self.begin(run, warnings);
                 }
-                Err(fault) => self.stage = Stage::Failed(format!("the bed cannot settle: {fault}")),
+                Err(fault) => self.stage = Stage::Failed(Status::Faulted(fault)),
             },
             Stage::Ready(_) => self.advance_run(),
             Stage::Failed(_) => {}
@@ -206,7 +207,7 @@ impl Engine {
 
     fn status(&self) -> Status {
         match (&self.stage, &self.fault) {
-            (Stage::Failed(reason), _) => Status::Failed(reason.clone()),
+            (Stage::Failed(status), _) => status.clone(),
             (Stage::Preparing(preparation), _) => Status::Preparing {
                 stage: preparation.name().into(),
                 progress: preparation.progress(),
@@ -250,7 +251,7 @@ impl Engine {
             .map_err(|error| error.to_string())
             .and_then(|script| run.schedule(script).map_err(|error| error.to_string()));
         if let Err(reason) = scheduled {
-            self.stage = Stage::Failed(reason);
+            self.stage = Stage::Failed(Status::Failed(reason));
             return;
         }
         self.news.parameters = Some(run.parameters().clone());

@@ -98,7 +98,7 @@ pub enum Status {
     Paused,
     /// It goes on.
     Running,
-    /// The solver met an absurd state; the last good one is shown.
+    /// The solver met an absurd state; the last good one is shown, none where the bed was still settling.
     Faulted(Fault),
     /// There is no run, for the reason given.
     Failed(String),
@@ -298,6 +298,9 @@ impl Simulation {
         self.status = update.status.unwrap_or(self.status.clone());
         self.parameters = update.parameters.unwrap_or(self.parameters.clone());
         self.profile = update.profile.unwrap_or(std::mem::take(&mut self.profile));
+        if self.status != Status::Running {
+            self.rate.since = None;
+        }
         if let Some(world) = update.world {
             self.rate.follow(world.time());
             self.world = Some(world);

@@ -1,16 +1,16 @@
 //! The pair loop: geometry, contact law, sliding and rolling friction of every listed pair.
 //!
 //! In: bodies, listed pairs with their constants and tangential springs. Out: forces, torques and exchanged energy per
-//! pair, new springs. Pairs are packed into blocks of rows, computed in lanes, and written to rows of their own; nothing
-//! is summed here, so the order of work never shows.
+//! pair, new springs. Pairs are computed in lanes and each writes rows of its own; nothing is summed here, so the order of
+//! work never shows.
 
+use super::lanes::{Lanes, Quad, Row, Work, cross, dot, minus, plus, times};
 use super::law::{Coefficients, Law, PairConstants, rolling_gain};
-use super::row::{Row, add, row, sub, vector};
 use crate::world::{Motion, Surface};
-use multiversion::multiversion;
+use glam::DVec3;
 
-/// Pairs computed together; enough to hide latency, few enough to stay in the first-level cache.
-const BLOCK: usize = 32;
+/// Listed pairs come in groups of this many, filled up with ghosts, whatever lanes the processor has.
+pub const GROUP: usize = 4;
 
 /// What the pair loop reads of a grain: two cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Body {
     pub velocity: Row,
     /// Spin half a step ago [rad/s]; radius [m].
     pub spin: Row,
-    /// Spin after the step if nothing resisted rolling [rad/s]; inertia over time step and contact count [N m s].
+    /// Spin after the step if nothing resisted rolling [rad/s]; time step and contact count over inertia [1/(N m s)].
     pub free_spin: Row,
 }
 
@@ -60,283 +60,432 @@ pub struct Action {
     pub exchanged: Row,
 }
 
-/// A block of pairs, packed row by row.
-struct Block {
-    /// From the grain's centre to the partner's; a wall's centre is the foot of the perpendicular.
-    distance: [Row; BLOCK],
-    /// Velocity of the grain relative to its partner; inertia that stops rolling.
-    velocity: [Row; BLOCK],
-    /// Spin of the grain; radius.
-    spin: [Row; BLOCK],
-    /// Spin of the partner; radius (0 for a wall).
-    partner_spin: [Row; BLOCK],
-    /// Relative spin for rolling friction.
-    rolling_spin: [Row; BLOCK],
-    /// Velocity of a wall at the contact.
-    wall_velocity: [Row; BLOCK],
-    /// The law's constants.
-    coefficients: [Row; BLOCK],
-    /// Sliding friction, rolling arm.
-    friction: [[f64; 2]; BLOCK],
+/// Partners side by side, as many as there are lanes. What a law needs of them is read when it is needed: registers are
+/// few.
+trait Partners<N: Lanes>: Copy {
+    /// Whether the second side is a wall: its velocity is taken at the contact, so that it needs no arm.
+    const WALL: bool;
+
+    /// Unit vectors from the grains to their partners, and the overlaps (negative at a gap), for these radii.
+    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N);
+    /// Velocity of the partner at the contact, where it is a wall.
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3];
+    /// Velocity of the grain relative to its partner.
+    fn velocity(self, processor: N::Processor) -> [N; 3];
+    /// Spins of both.
+    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]);
+    /// Relative spin for rolling friction, and how much of it a unit of torque stops.
+    fn rolling(self, processor: N::Processor) -> ([N; 3], N);
 }
 
-impl Block {
-    /// Rows at unit distance that touch nothing.
-    fn empty() -> Self {
-        Self {
-            distance: [[1.0, 0.0, 0.0, 0.0]; BLOCK],
-            velocity: [[0.0; 4]; BLOCK],
-            spin: [[0.0; 4]; BLOCK],
-            partner_spin: [[0.0; 4]; BLOCK],
-            rolling_spin: [[0.0; 4]; BLOCK],
-            wall_velocity: [[0.0; 4]; BLOCK],
-            coefficients: [[0.0; 4]; BLOCK],
-            friction: [[0.0; 2]; BLOCK],
-        }
-    }
-
-    #[inline(always)]
-    fn set_constants(&mut self, k: usize, constants: &PairConstants) {
-        self.coefficients[k] = constants.coefficients;
-        self.friction[k] = [constants.friction, constants.rolling_arm];
-    }
-
-    #[inline(always)]
-    fn pack_grains(&mut self, k: usize, a: &Body, b: &Body) {
-        self.distance[k] = sub(b.position, a.position);
-        let mut velocity = sub(a.velocity, b.velocity);
-        let (stop_a, stop_b) = (a.free_spin[3], b.free_spin[3]);
-        velocity[3] = 0.5 * if stop_a < stop_b { stop_a } else { stop_b };
-        self.velocity[k] = velocity;
-        self.spin[k] = a.spin;
-        self.partner_spin[k] = b.spin;
-        self.rolling_spin[k] = sub(a.free_spin, b.free_spin);
-    }
-
-    #[inline(always)]
-    fn pack_wall(&mut self, k: usize, a: &Body, wall: &WallBody) {
-        let x = vector(a.position);
-        let (gap, towards) = wall.surface.distance(x);
-        // A centre on or behind the surface has no distance to take a direction from: the check after the step reports it.
-        let reach = towards * if gap > 0.0 { gap } else { f64::NAN };
-        let wall_velocity = wall.motion.velocity_at(x + reach);
-        let wall_spin = row(wall.motion.spin, 0.0);
-        self.distance[k] = row(reach, 0.0);
-        let mut velocity = sub(a.velocity, row(wall_velocity, 0.0));
-        velocity[3] = a.free_spin[3];
-        self.velocity[k] = velocity;
-        self.spin[k] = a.spin;
-        self.partner_spin[k] = wall_spin;
-        self.rolling_spin[k] = sub(a.free_spin, wall_spin);
-        self.wall_velocity[k] = row(wall_velocity, 0.0);
-    }
-
-    /// Computes every pair of the block; `springs` and `actions` are its pairs' rows.
-    #[inline(always)]
-    fn compute<L: Law, const WALL: bool>(
-        &self,
-        law: L,
-        dt: f64,
-        springs: &mut [Row; BLOCK],
-        actions: &mut [Action; BLOCK],
-    ) {
-        for k in 0..BLOCK {
-            let (d, spin, other) = (self.distance[k], self.spin[k], self.partner_spin[k]);
-            let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-            let inverse = 1.0 / length;
-            let (nx, ny, nz) = (d[0] * inverse, d[1] * inverse, d[2] * inverse);
-
-            let depth = spin[3] + other[3] - length;
-            let touching = depth > 0.0;
-            let overlap = if touching { depth } else { 0.0 };
-            let arm = spin[3] - 0.5 * overlap;
-            let partner_arm = if WALL { 0.0 } else { other[3] - 0.5 * overlap };
-
-            let v = self.velocity[k];
-            let approach = v[0] * nx + v[1] * ny + v[2] * nz;
-            let c = law.coefficients(self.coefficients[k], overlap);
-            let c = Coefficients {
-                normal_damping: if touching { c.normal_damping } else { 0.0 },
-                tangential_damping: if touching { c.tangential_damping } else { 0.0 },
-                ..c
-            };
-            let elastic = c.normal_stiffness * overlap;
-            let normal = law.normal_force(elastic, c.normal_damping * approach);
-            let bound = self.friction[k][0] * law.coulomb_force(elastic, normal);
-
-            // Slip velocity of the grain's surface over its partner's.
-            let wx = arm * spin[0] + partner_arm * other[0];
-            let wy = arm * spin[1] + partner_arm * other[1];
-            let wz = arm * spin[2] + partner_arm * other[2];
-            let tx = v[0] - approach * nx + (wy * nz - wz * ny);
-            let ty = v[1] - approach * ny + (wz * nx - wx * nz);
-            let tz = v[2] - approach * nz + (wx * ny - wy * nx);
-
-            let s = springs[k];
-            let (sx, sy, sz) = (s[0] + tx * dt, s[1] + ty * dt, s[2] + tz * dt);
-            let along = sx * nx + sy * ny + sz * nz;
-            let (sx, sy, sz) = (sx - along * nx, sy - along * ny, sz - along * nz);
-            let stretch_squared = sx * sx + sy * sy + sz * sz;
-            let trial = c.tangential_stiffness * stretch_squared.sqrt();
-            let slides = trial > bound;
-            let kept = if slides { bound / trial } else { 1.0 };
-            let kept = if touching { kept } else { 0.0 };
-            let damping = if slides { 0.0 } else { c.tangential_damping };
-            let (sx, sy, sz) = (sx * kept, sy * kept, sz * kept);
-            springs[k] = [sx, sy, sz, 0.0];
-            let stiffness = c.tangential_stiffness;
-            let (gx, gy, gz) = (
-                -stiffness * sx - damping * tx,
-                -stiffness * sy - damping * ty,
-                -stiffness * sz - damping * tz,
-            );
-
-            let r = self.rolling_spin[k];
-            let rolling_speed = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
-            let gain = rolling_gain(self.friction[k][1] * elastic, v[3], rolling_speed);
-            let twist = r[0] * nx + r[1] * ny + r[2] * nz;
-            let qx = -gain * (r[0] - twist * nx);
-            let qy = -gain * (r[1] - twist * ny);
-            let qz = -gain * (r[2] - twist * nz);
-
-            let (fx, fy, fz) = (gx - normal * nx, gy - normal * ny, gz - normal * nz);
-            let slip_squared = tx * tx + ty * ty + tz * tz;
-            let dashpots = dt * ((normal - elastic) * approach + damping * slip_squared);
-            let sliding = stiffness * stretch_squared * kept * (1.0 - kept);
-            let rolling = -dt
-                * (qx * (spin[0] - other[0])
-                    + qy * (spin[1] - other[1])
-                    + qz * (spin[2] - other[2]));
-            let wall = if WALL {
-                let u = self.wall_velocity[k];
-                dt * (fx * u[0]
-                    + fy * u[1]
-                    + fz * u[2]
-                    + (qx * other[0] + qy * other[1] + qz * other[2]))
-            } else {
-                0.0
-            };
-            actions[k] = Action {
-                force: [fx, fy, fz, arm],
-                twist: [
-                    ny * gz - nz * gy,
-                    nz * gx - nx * gz,
-                    nx * gy - ny * gx,
-                    partner_arm,
-                ],
-                rolling: [qx, qy, qz, if touching { 1.0 } else { 0.0 }],
-                exchanged: [dashpots, sliding, rolling, wall],
-            };
-        }
-    }
+/// Pairs of grains.
+#[derive(Clone, Copy)]
+struct TwoGrains<'a> {
+    first: [&'a Body; 4],
+    second: [&'a Body; 4],
 }
 
-/// Runs blocks of `pairs` through `pack` and [`Block::compute`].
+/// Grains at one wall.
+#[derive(Clone, Copy)]
+struct GrainAndWall<'a, N> {
+    grain: [&'a Body; 4],
+    wall: &'a WallBody,
+    normal: [N; 3],
+    gap: N,
+    foot: [N; 3],
+}
+
 #[inline(always)]
-fn blocks<L: Law, const WALL: bool>(
+fn rows<'a>(bodies: [&'a Body; 4], row: impl Fn(&'a Body) -> &'a Row) -> [&'a Row; 4] {
+    [
+        row(bodies[0]),
+        row(bodies[1]),
+        row(bodies[2]),
+        row(bodies[3]),
+    ]
+}
+
+/// Four grains, of which the first [`Lanes::COUNT`] are named by `pairs`.
+#[inline(always)]
+fn bodies_of<'a, N: Lanes>(
+    bodies: &'a [Body],
+    pairs: &[Pair],
+    side: impl Fn(&Pair) -> u32,
+) -> [&'a Body; 4] {
+    let last = N::COUNT - 1;
+    [
+        &bodies[side(&pairs[0]) as usize],
+        &bodies[side(&pairs[1.min(last)]) as usize],
+        &bodies[side(&pairs[2.min(last)]) as usize],
+        &bodies[side(&pairs[3.min(last)]) as usize],
+    ]
+}
+
+impl<N: Lanes> Partners<N> for TwoGrains<'_> {
+    const WALL: bool = false;
+
+    #[inline(always)]
+    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
+        let (a, b) = (
+            rows(self.first, |body| &body.position),
+            rows(self.second, |body| &body.position),
+        );
+        let [x, y, z, _] = N::gather_difference(processor, b, a);
+        let length = dot([x, y, z], [x, y, z]).sqrt();
+        let inverse = N::splat(processor, 1.0) / length;
+        (times([x, y, z], inverse), radii[0] + radii[1] - length)
+    }
+
+    #[inline(always)]
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
+        [N::splat(processor, 0.0); 3]
+    }
+
+    #[inline(always)]
+    fn velocity(self, processor: N::Processor) -> [N; 3] {
+        let (a, b) = (
+            rows(self.first, |body| &body.velocity),
+            rows(self.second, |body| &body.velocity),
+        );
+        let [x, y, z, _] = N::gather_difference(processor, a, b);
+        [x, y, z]
+    }
+
+    #[inline(always)]
+    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]) {
+        let [ax, ay, az, _] = N::gather(processor, rows(self.first, |body| &body.spin));
+        let [bx, by, bz, _] = N::gather(processor, rows(self.second, |body| &body.spin));
+        ([ax, ay, az], [bx, by, bz])
+    }
+
+    #[inline(always)]
+    fn rolling(self, processor: N::Processor) -> ([N; 3], N) {
+        let (a, b) = (
+            rows(self.first, |body| &body.free_spin),
+            rows(self.second, |body| &body.free_spin),
+        );
+        let [x, y, z, compliance] = N::gather_difference_and_sum(processor, a, b);
+        ([x, y, z], compliance)
+    }
+}
+
+impl<'a, N: Lanes> GrainAndWall<'a, N> {
+    #[inline(always)]
+    fn new(processor: N::Processor, grain: [&'a Body; 4], wall: &'a WallBody) -> Self {
+        let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
+        let position = [x, y, z];
+        let (gap, normal) = match wall.surface {
+            Surface::Plane { point, normal } => {
+                let inward = splat_vector::<N>(processor, normal);
+                (
+                    dot(minus(position, splat_vector(processor, point)), inward),
+                    splat_vector(processor, -normal),
+                )
+            }
+            Surface::Cylinder { radius } => {
+                let rho = (x * x + y * y).sqrt();
+                (
+                    N::splat(processor, radius) - rho,
+                    [x / rho, y / rho, N::splat(processor, 0.0)],
+                )
+            }
+        };
+        // A centre on or behind the surface is no contact any more: the check after the step reports it.
+        let gap = N::choose(
+            gap.exceeds(N::splat(processor, 0.0)),
+            gap,
+            N::splat(processor, f64::NAN),
+        );
+        Self {
+            grain,
+            wall,
+            normal,
+            gap,
+            foot: plus(position, times(normal, gap)),
+        }
+    }
+}
+
+impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
+    const WALL: bool = true;
+
+    #[inline(always)]
+    fn geometry(self, _processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
+        (self.normal, radii[0] - self.gap)
+    }
+
+    #[inline(always)]
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
+        let motion = &self.wall.motion;
+        plus(
+            splat_vector(processor, motion.velocity),
+            cross(splat_vector(processor, motion.spin), self.foot),
+        )
+    }
+
+    #[inline(always)]
+    fn velocity(self, processor: N::Processor) -> [N; 3] {
+        let [x, y, z, _] = N::gather(processor, rows(self.grain, |body| &body.velocity));
+        minus([x, y, z], self.wall_velocity(processor))
+    }
+
+    #[inline(always)]
+    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]) {
+        let [x, y, z, _] = N::gather(processor, rows(self.grain, |body| &body.spin));
+        ([x, y, z], splat_vector(processor, self.wall.motion.spin))
+    }
+
+    #[inline(always)]
+    fn rolling(self, processor: N::Processor) -> ([N; 3], N) {
+        let [x, y, z, compliance] = N::gather(processor, rows(self.grain, |body| &body.free_spin));
+        (
+            minus([x, y, z], splat_vector(processor, self.wall.motion.spin)),
+            compliance,
+        )
+    }
+}
+
+#[inline(always)]
+fn splat_vector<N: Lanes>(processor: N::Processor, v: DVec3) -> [N; 3] {
+    [
+        N::splat(processor, v.x),
+        N::splat(processor, v.y),
+        N::splat(processor, v.z),
+    ]
+}
+
+/// Constants of pairs side by side: the law's, then friction, rolling arm and both radii.
+type Constants<N> = ([N; 4], [N; 4]);
+
+#[inline(always)]
+fn common_constants<N: Lanes>(processor: N::Processor, constants: &PairConstants) -> Constants<N> {
+    (
+        N::spread(processor, &constants.coefficients),
+        N::spread(processor, &constants.contact),
+    )
+}
+
+#[inline(always)]
+fn own_constants<N: Lanes>(
+    processor: N::Processor,
+    constants: &[PairConstants],
+    pairs: &[Pair],
+) -> Constants<N> {
+    let of = |k: usize| &constants[pairs[k.min(N::COUNT - 1)].kind as usize];
+    let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
+    (
+        N::gather(
+            processor,
+            [
+                &a.coefficients,
+                &b.coefficients,
+                &c.coefficients,
+                &d.coefficients,
+            ],
+        ),
+        N::gather(processor, [&a.contact, &b.contact, &c.contact, &d.contact]),
+    )
+}
+
+/// Contact law, sliding and rolling of as many pairs as there are lanes.
+#[inline(always)]
+fn interact<N: Lanes, L: Law, P: Partners<N>>(
+    processor: N::Processor,
     law: L,
     dt: f64,
-    pairs: &[Pair],
+    partners: P,
+    constants: &Constants<N>,
     springs: &mut [Row],
     actions: &mut [Action],
-    mut pack: impl FnMut(&mut Block, usize, Pair),
 ) {
-    let mut block = Block::empty();
-    let rows = springs.chunks_mut(BLOCK).zip(actions.chunks_mut(BLOCK));
-    for (pairs, (springs, actions)) in pairs.chunks(BLOCK).zip(rows) {
-        for (k, pair) in pairs.iter().enumerate() {
-            pack(&mut block, k, *pair);
-        }
-        if let (Ok(springs), Ok(actions)) = ((&mut *springs).try_into(), (&mut *actions).try_into())
-        {
-            block.compute::<L, WALL>(law, dt, springs, actions);
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let (half, dt) = (N::splat(processor, 0.5), N::splat(processor, dt));
+    let (law_constants, [friction, rolling_arm, radius, partner_radius]) = *constants;
+
+    let (normal, depth) = partners.geometry(processor, [radius, partner_radius]);
+    let touching = depth.exceeds(zero);
+    let overlap = N::choose(touching, depth, zero);
+    let arm = radius - half * overlap;
+    let partner_arm = if P::WALL {
+        zero
+    } else {
+        partner_radius - half * overlap
+    };
+
+    // Normal force.
+    let velocity = partners.velocity(processor);
+    let approach = dot(velocity, normal);
+    let Coefficients {
+        normal_stiffness,
+        normal_damping,
+        tangential_stiffness,
+        tangential_damping,
+    } = law.coefficients(law_constants, overlap);
+    let normal_damping = N::choose(touching, normal_damping, zero);
+    let elastic = normal_stiffness * overlap;
+    let repulsion = law.normal_force(elastic, normal_damping * approach, zero);
+
+    // Slip of the grain's surface over its partner's, and the spring it stretches.
+    let (spin, partner_spin) = partners.spins(processor);
+    let rolling_sum = if P::WALL {
+        times(spin, arm)
+    } else {
+        plus(times(spin, arm), times(partner_spin, partner_arm))
+    };
+    let slip = plus(
+        minus(velocity, times(normal, approach)),
+        cross(rolling_sum, normal),
+    );
+    let last = N::COUNT - 1;
+    let old = [
+        &springs[0],
+        &springs[1.min(last)],
+        &springs[2.min(last)],
+        &springs[3.min(last)],
+    ];
+    let [x, y, z, _] = N::gather(processor, old);
+    let stretched = plus([x, y, z], times(slip, dt));
+    let stretched = minus(stretched, times(normal, dot(stretched, normal)));
+    let stretch_squared = dot(stretched, stretched);
+    let trial = tangential_stiffness * stretch_squared.sqrt();
+    let bound = friction * law.coulomb_force(elastic, repulsion, zero);
+    let slides = trial.exceeds(bound);
+    let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
+    let damping = N::choose(touching, N::choose(slides, zero, tangential_damping), zero);
+    let spring = times(stretched, kept);
+    let new = N::rows([spring[0], spring[1], spring[2], zero]);
+    for (spring, new) in springs.iter_mut().zip(new) {
+        *spring = new.row();
+    }
+    let tangential = minus(times(spring, -tangential_stiffness), times(slip, damping));
+    let force = minus(tangential, times(normal, repulsion));
+    let twist = cross(normal, tangential);
+    let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
+    let in_sliding = tangential_stiffness * stretch_squared * kept * (one - kept);
+
+    // Rolling.
+    let (rolling_spin, compliance) = partners.rolling(processor);
+    let speed = dot(rolling_spin, rolling_spin).sqrt();
+    let gain = rolling_gain(rolling_arm * elastic, compliance, speed, zero, one);
+    let without_twist = minus(rolling_spin, times(normal, dot(rolling_spin, normal)));
+    let rolling = times(without_twist, -gain);
+    let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
+    let by_wall = if P::WALL {
+        dt * (dot(force, partners.wall_velocity(processor)) + dot(rolling, partner_spin))
+    } else {
+        zero
+    };
+
+    let force = N::rows([force[0], force[1], force[2], arm]);
+    let twist = N::rows([twist[0], twist[1], twist[2], partner_arm]);
+    let rolling = N::rows([
+        rolling[0],
+        rolling[1],
+        rolling[2],
+        N::choose(touching, one, zero),
+    ]);
+    let exchanged = N::rows([in_dashpots, in_sliding, in_rolling, by_wall]);
+    for (k, action) in actions.iter_mut().enumerate() {
+        action.force = force[k].row();
+        action.twist = twist[k].row();
+        action.rolling = rolling[k].row();
+        action.exchanged = exchanged[k].row();
+    }
+}
+
+/// A range of pairs with the rows they write.
+pub struct PairRows<'a> {
+    /// The pairs.
+    pub pairs: &'a [Pair],
+    /// Their tangential springs.
+    pub springs: &'a mut [Row],
+    /// What they do.
+    pub actions: &'a mut [Action],
+}
+
+/// What every pair's force depends on.
+pub struct Surroundings<'a, L> {
+    /// The contact law.
+    pub law: L,
+    /// Length of the step [s].
+    pub dt: f64,
+    /// Every grain.
+    pub bodies: &'a [Body],
+    /// Every wall.
+    pub walls: &'a [WallBody],
+    /// Constants of every kind of pair.
+    pub constants: &'a [PairConstants],
+}
+
+/// The forces of a range of pairs of grains and a range of pairs with walls.
+pub struct Forces<'a, L> {
+    /// What they depend on.
+    pub surroundings: Surroundings<'a, L>,
+    /// Pairs of grains.
+    pub of_grains: PairRows<'a>,
+    /// Pairs of a grain and a wall.
+    pub of_walls: PairRows<'a>,
+}
+
+/// Pairs of grains, as many at a time as there are lanes.
+#[inline(always)]
+fn between_grains<N: Lanes, L: Law>(
+    processor: N::Processor,
+    all: &Surroundings<'_, L>,
+    rows: PairRows<'_>,
+) {
+    let Some(kind) = rows.pairs.first().map(|pair| pair.kind) else {
+        return;
+    };
+    // As a rule all grains are of one class, and the constants are the same throughout.
+    let uniform = rows.pairs.iter().all(|pair| pair.kind == kind);
+    let common = common_constants::<N>(processor, &all.constants[kind as usize]);
+    let outputs = rows
+        .springs
+        .chunks_exact_mut(N::COUNT)
+        .zip(rows.actions.chunks_exact_mut(N::COUNT));
+    for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
+        let partners = TwoGrains {
+            first: bodies_of::<N>(all.bodies, pairs, |pair| pair.grain),
+            second: bodies_of::<N>(all.bodies, pairs, |pair| pair.partner),
+        };
+        if uniform {
+            interact(
+                processor, all.law, all.dt, partners, &common, springs, actions,
+            );
         } else {
-            let mut padded = ([[0.0; 4]; BLOCK], [Action::default(); BLOCK]);
-            padded.0[..springs.len()].copy_from_slice(springs);
-            block.compute::<L, WALL>(law, dt, &mut padded.0, &mut padded.1);
-            springs.copy_from_slice(&padded.0[..springs.len()]);
-            actions.copy_from_slice(&padded.1[..actions.len()]);
+            let own = own_constants::<N>(processor, all.constants, pairs);
+            interact(processor, all.law, all.dt, partners, &own, springs, actions);
         }
     }
 }
 
-/// Forces between grains, on the widest lanes that the processor has.
-#[multiversion(targets("x86_64+avx+avx2"))]
-pub fn between_grains<L: Law>(
-    law: L,
-    dt: f64,
-    bodies: &[Body],
-    constants: &[PairConstants],
-    pairs: &[Pair],
-    springs: &mut [Row],
-    actions: &mut [Action],
+/// Pairs with walls, as many at a time as there are lanes; each such group meets one wall.
+#[inline(always)]
+fn at_walls<N: Lanes, L: Law>(
+    processor: N::Processor,
+    all: &Surroundings<'_, L>,
+    rows: PairRows<'_>,
 ) {
-    blocks::<L, false>(law, dt, pairs, springs, actions, |block, k, pair| {
-        block.set_constants(k, &constants[pair.kind as usize]);
-        block.pack_grains(
-            k,
-            &bodies[pair.grain as usize],
-            &bodies[pair.partner as usize],
-        );
-    });
-}
-
-/// Forces of walls on grains, on the widest lanes that the processor has.
-#[multiversion(targets("x86_64+avx+avx2"))]
-pub fn at_walls<L: Law>(
-    law: L,
-    dt: f64,
-    bodies: &[Body],
-    walls: &[WallBody],
-    constants: &[PairConstants],
-    pairs: &[Pair],
-    springs: &mut [Row],
-    actions: &mut [Action],
-) {
-    blocks::<L, true>(law, dt, pairs, springs, actions, |block, k, pair| {
-        block.set_constants(k, &constants[pair.kind as usize]);
-        block.pack_wall(
-            k,
-            &bodies[pair.grain as usize],
-            &walls[pair.partner as usize],
-        );
-    });
-}
-
-/// Sum over the actions on one grain.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Total {
-    /// Contact forces [N].
-    pub force: Row,
-    /// Their torque [N m].
-    pub torque: Row,
-    /// Torque of rolling friction [N m]; number of touching partners.
-    pub rolling: Row,
-    /// Energy exchanged at the grain's own pairs [J].
-    pub exchanged: Row,
-}
-
-impl Total {
-    /// Adds a pair of which this grain is the first partner.
-    #[inline(always)]
-    pub fn add_own(&mut self, action: &Action) {
-        self.force = add(self.force, action.force);
-        self.torque = super::row::add_scaled(self.torque, action.twist, action.force[3]);
-        self.rolling = add(self.rolling, action.rolling);
-        self.exchanged = add(self.exchanged, action.exchanged);
+    let outputs = rows
+        .springs
+        .chunks_exact_mut(N::COUNT)
+        .zip(rows.actions.chunks_exact_mut(N::COUNT));
+    for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
+        let grain = bodies_of::<N>(all.bodies, pairs, |pair| pair.grain);
+        let partners =
+            GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
+        let own = own_constants::<N>(processor, all.constants, pairs);
+        interact(processor, all.law, all.dt, partners, &own, springs, actions);
     }
+}
 
-    /// Adds a pair of which this grain is the second partner.
+impl<L: Law> Work for Forces<'_, L> {
+    type Output = ();
+
     #[inline(always)]
-    pub fn add_other(&mut self, action: &Action) {
-        let q = action.rolling;
-        self.force = sub(self.force, action.force);
-        self.torque = super::row::add_scaled(self.torque, action.twist, action.twist[3]);
-        self.rolling = [
-            self.rolling[0] - q[0],
-            self.rolling[1] - q[1],
-            self.rolling[2] - q[2],
-            self.rolling[3] + q[3],
-        ];
+    fn run<N: Lanes>(self, processor: N::Processor) {
+        between_grains::<N, L>(processor, &self.surroundings, self.of_grains);
+        at_walls::<N, L>(processor, &self.surroundings, self.of_walls);
     }
 }

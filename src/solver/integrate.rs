@@ -3,19 +3,85 @@
 //! In: actions per pair, the bodies half a step behind in velocity. Out: the bodies half a step ahead, at their next
 //! positions; or, at the last step of a call, with velocities at the time of the positions.
 
-use super::contacts::{Action, Body, Total};
-use super::row::{Row, add_scaled, length_squared, sub};
-use multiversion::multiversion;
+use super::contacts::{Action, Body};
+use super::lanes::{Lanes, Quad, Row, Work};
+use super::neighbours::Index;
+
+/// Sum over the actions on one grain.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Total<Q> {
+    /// Contact forces [N].
+    pub force: Q,
+    /// Their torque [N m].
+    pub torque: Q,
+    /// Torque of rolling friction [N m]; number of touching partners.
+    pub rolling: Q,
+    /// Energy exchanged at the grain's own pairs [J].
+    pub exchanged: Q,
+}
+
+impl<Q: Quad> Total<Q> {
+    #[inline(always)]
+    fn zero(processor: Q::Processor) -> Self {
+        let zero = Q::repeat(processor, 0.0);
+        Self {
+            force: zero,
+            torque: zero,
+            rolling: zero,
+            exchanged: zero,
+        }
+    }
+
+    /// Adds a pair of which this grain is the first partner.
+    #[inline(always)]
+    fn add_own(&mut self, processor: Q::Processor, action: &Action) {
+        let arm = Q::repeat(processor, action.force[3]);
+        self.force = self.force + Q::load(processor, &action.force);
+        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
+        self.rolling = self.rolling + Q::load(processor, &action.rolling);
+        self.exchanged = self.exchanged + Q::load(processor, &action.exchanged);
+    }
+
+    /// Adds a pair of which this grain is the second partner.
+    #[inline(always)]
+    fn add_other(&mut self, processor: Q::Processor, action: &Action) {
+        let arm = Q::repeat(processor, action.twist[3]);
+        let opposite = Q::load(processor, &[-1.0, -1.0, -1.0, 1.0]);
+        self.force = self.force - Q::load(processor, &action.force);
+        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
+        self.rolling = self.rolling + Q::load(processor, &action.rolling) * opposite;
+    }
+
+    #[inline(always)]
+    fn load(processor: Q::Processor, total: &Total<Row>) -> Self {
+        Self {
+            force: Q::load(processor, &total.force),
+            torque: Q::load(processor, &total.torque),
+            rolling: Q::load(processor, &total.rolling),
+            exchanged: Q::load(processor, &total.exchanged),
+        }
+    }
+
+    #[inline(always)]
+    fn rows(self) -> Total<Row> {
+        Total {
+            force: self.force.row(),
+            torque: self.torque.row(),
+            rolling: self.rolling.row(),
+            exchanged: self.exchanged.row(),
+        }
+    }
+}
 
 /// What only the integration reads or writes of a grain.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Load {
     /// Sum over the grain's contacts at the last evaluation.
-    pub total: Total,
+    pub total: Total<Row>,
     /// Energy exchanged since the start [J].
     pub exchanged: Row,
-    /// Moment of inertia over the time step [N m s].
-    pub stopping: f64,
+    /// Time step over moment of inertia [1/(N m s)].
+    pub compliance: f64,
     /// Largest speed that is not absurd, squared [m²/s²].
     pub speed_limit_squared: f64,
 }
@@ -38,14 +104,12 @@ pub struct Incidence<'a> {
     pub grains: &'a [Action],
     /// Begin of each grain's own pairs.
     pub first: &'a [u32],
-    /// Begin of each grain's pairs as second partner.
-    pub second_first: &'a [u32],
     /// Indices of pairs by second grain.
-    pub as_second: &'a [u32],
+    pub as_second: &'a Index,
     /// Actions of walls.
     pub walls: &'a [Action],
-    /// Begin of each grain's wall pairs.
-    pub wall_first: &'a [u32],
+    /// Indices of wall pairs by grain.
+    pub at_walls: &'a Index,
 }
 
 /// What a range of grains asks for after a step.
@@ -60,96 +124,144 @@ pub struct Outcome {
 impl Incidence<'_> {
     /// Sum over the pairs of grain `i`, in the pairs' order.
     #[inline(always)]
-    fn total(&self, i: usize) -> Total {
-        let mut total = Total::default();
-        for &pair in
-            &self.as_second[self.second_first[i] as usize..self.second_first[i + 1] as usize]
-        {
-            total.add_other(&self.grains[pair as usize]);
+    fn total<Q: Quad>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
+        let mut total = Total::zero(processor);
+        for &pair in self.as_second.of(i) {
+            total.add_other(processor, &self.grains[pair as usize]);
         }
         for action in &self.grains[self.first[i] as usize..self.first[i + 1] as usize] {
-            total.add_own(action);
+            total.add_own(processor, action);
         }
-        for action in &self.walls[self.wall_first[i] as usize..self.wall_first[i + 1] as usize] {
-            total.add_own(action);
+        for &pair in self.at_walls.of(i) {
+            total.add_own(processor, &self.walls[pair as usize]);
         }
         total
     }
 }
 
-/// Half a step of velocity and spin under the forces of `load`.
+/// Half a step of velocity and spin.
 #[inline(always)]
-fn kick(body: &mut Body, load: &Load, motion: &Motion) {
+fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, motion: &Motion) {
     let half = 0.5 * motion.dt;
+    // The fourth number of a row is no velocity: it gets nothing added.
+    let half = Q::load(processor, &[half, half, half, 0.0]);
     let (inverse_mass, inverse_inertia) = (body.position[3], body.velocity[3]);
-    let (f, g) = (load.total.force, motion.gravity);
-    let (t, q) = (load.total.torque, load.total.rolling);
-    for axis in 0..3 {
-        body.velocity[axis] += half * (f[axis] * inverse_mass + g[axis]);
-        body.spin[axis] += half * ((t[axis] + q[axis]) * inverse_inertia);
-    }
+    let gravity = Q::load(processor, &motion.gravity);
+    let acceleration = total.force * Q::repeat(processor, inverse_mass) + gravity;
+    let turning = (total.torque + total.rolling) * Q::repeat(processor, inverse_inertia);
+    body.velocity = (Q::load(processor, &body.velocity) + acceleration * half).row();
+    body.spin = (Q::load(processor, &body.spin) + turning * half).row();
 }
 
-/// A full step of position, and the spin that rolling friction works against.
+/// A full step of position, and the spin that rolling friction works against. True when the slack of the active list is
+/// used up.
 #[inline(always)]
-fn drift(body: &mut Body, load: &Load, motion: &Motion) {
-    let inverse_inertia = body.velocity[3];
-    for axis in 0..3 {
-        body.position[axis] += motion.dt * body.velocity[axis];
-    }
-    let contacts = if load.total.rolling[3] > 1.0 {
-        load.total.rolling[3]
-    } else {
-        1.0
-    };
-    let mut free = add_scaled(body.spin, load.total.torque, motion.dt * inverse_inertia);
-    free[3] = load.stopping / contacts;
-    body.free_spin = free;
-}
-
-#[inline(always)]
-fn used_up(body: &Body, reference: Row, motion: &Motion) -> bool {
-    length_squared(sub(body.position, reference)) > motion.slack_squared
-}
-
-/// Starts the first step of a call from the forces that `loads` hold.
-pub fn start(motion: &Motion, bodies: &mut [Body], loads: &[Load], references: &[Row]) -> Outcome {
-    let mut outcome = Outcome::default();
-    for ((body, load), reference) in bodies.iter_mut().zip(loads).zip(references) {
-        kick(body, load, motion);
-        drift(body, load, motion);
-        outcome.refresh |= used_up(body, *reference, motion);
-    }
-    outcome
-}
-
-/// Finishes a step for the grains from `begin` on and, unless it is the last of a call, starts the next.
-#[multiversion(targets("x86_64+avx+avx2"))]
-pub fn finish(
+fn drift<Q: Quad>(
+    processor: Q::Processor,
+    body: &mut Body,
+    load: &Load,
+    total: &Total<Q>,
+    reference: &Row,
     motion: &Motion,
-    pairs: Incidence<'_>,
-    begin: usize,
-    bodies: &mut [Body],
-    loads: &mut [Load],
-    references: &[Row],
-    last: bool,
-) -> Outcome {
-    let mut outcome = Outcome::default();
-    for (k, ((body, load), reference)) in bodies.iter_mut().zip(loads).zip(references).enumerate() {
-        load.total = pairs.total(begin + k);
-        load.exchanged = super::row::add(load.exchanged, load.total.exchanged);
-        kick(body, load, motion);
-        let spin_squared = length_squared(body.spin);
-        // Written so that a NaN counts as a fault.
-        let sane = length_squared(body.velocity) <= load.speed_limit_squared
-            && spin_squared < f64::INFINITY;
-        outcome.fault |= !sane;
-        // A grain in fault stays where it is, for the diagnosis.
-        if sane && !last {
-            kick(body, load, motion);
-            drift(body, load, motion);
-            outcome.refresh |= used_up(body, *reference, motion);
+) -> bool {
+    let dt = motion.dt;
+    let step = Q::load(processor, &[dt, dt, dt, 0.0]);
+    let position = Q::load(processor, &body.position) + Q::load(processor, &body.velocity) * step;
+    let contacts = total.rolling.row()[3];
+    let contacts = if contacts > 1.0 { contacts } else { 1.0 };
+    let free =
+        Q::load(processor, &body.spin) + total.torque * Q::repeat(processor, dt * body.velocity[3]);
+    let free = free.row();
+    body.free_spin = [free[0], free[1], free[2], load.compliance * contacts];
+    body.position = position.row();
+    (position - Q::load(processor, reference)).length_squared() > motion.slack_squared
+}
+
+/// Starts the first step of a call from the forces that the loads hold.
+pub struct Start<'a> {
+    /// Constants.
+    pub motion: &'a Motion,
+    /// Every grain.
+    pub bodies: &'a mut [Body],
+    /// What acts on it.
+    pub loads: &'a [Load],
+    /// Where it was when the active list was filtered.
+    pub references: &'a [Row],
+}
+
+impl Work for Start<'_> {
+    type Output = Outcome;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) -> Outcome {
+        let Self {
+            motion,
+            bodies,
+            loads,
+            references,
+        } = self;
+        let mut outcome = Outcome::default();
+        for ((body, load), reference) in bodies.iter_mut().zip(loads).zip(references) {
+            let total = Total::<N::Quad>::load(processor, &load.total);
+            kick(processor, body, &total, motion);
+            outcome.refresh |= drift(processor, body, load, &total, reference, motion);
         }
+        outcome
     }
-    outcome
+}
+
+/// Finishes a step for a range of grains and, unless it is the last of a call, starts the next.
+pub struct Finish<'a> {
+    /// Constants.
+    pub motion: &'a Motion,
+    /// Where to find the grains' pairs.
+    pub pairs: Incidence<'a>,
+    /// Index of the first grain of the range.
+    pub begin: usize,
+    /// The range.
+    pub bodies: &'a mut [Body],
+    /// What acts on it; written at the last step.
+    pub loads: &'a mut [Load],
+    /// Where it was when the active list was filtered.
+    pub references: &'a [Row],
+    /// Whether this is the last step of a call.
+    pub last: bool,
+}
+
+impl Work for Finish<'_> {
+    type Output = Outcome;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) -> Outcome {
+        let Self {
+            motion,
+            pairs,
+            begin,
+            bodies,
+            loads,
+            references,
+            last,
+        } = self;
+        let mut outcome = Outcome::default();
+        for (k, ((body, load), reference)) in
+            bodies.iter_mut().zip(loads).zip(references).enumerate()
+        {
+            let total = pairs.total::<N::Quad>(processor, begin + k);
+            load.exchanged = (N::Quad::load(processor, &load.exchanged) + total.exchanged).row();
+            kick(processor, body, &total, motion);
+            let speed_squared = N::Quad::load(processor, &body.velocity).length_squared();
+            let spin_squared = N::Quad::load(processor, &body.spin).length_squared();
+            // Written so that a NaN is not sane.
+            let sane = speed_squared <= load.speed_limit_squared && spin_squared < f64::INFINITY;
+            outcome.fault |= !sane;
+            if last {
+                load.total = total.rows();
+            } else if sane {
+                // A grain in fault stays where it is, for the diagnosis.
+                kick(processor, body, &total, motion);
+                outcome.refresh |= drift(processor, body, load, &total, reference, motion);
+            }
+        }
+        outcome
+    }
 }

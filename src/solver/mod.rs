@@ -13,6 +13,7 @@
 mod contacts;
 mod fault;
 mod integrate;
+mod lanes;
 pub mod law;
 mod neighbours;
 mod profile;
@@ -27,6 +28,7 @@ pub use time_step::{Limit, TimeStepAdvice, advise};
 
 use crate::scene::ContactLaw;
 use crate::world::World;
+use lanes::Processor;
 use law::{HertzMindlin, Hooke, Law};
 use state::State;
 use std::sync::Mutex;
@@ -37,6 +39,7 @@ use team::{Barrier, Team};
 /// Advances worlds.
 pub struct Solver {
     team: Team,
+    processor: Processor,
     state: State,
     profile: Profile,
 }
@@ -49,8 +52,17 @@ impl Solver {
     pub fn new(threads: usize) -> Self {
         Self {
             team: Team::new(threads),
+            processor: Processor::detect(),
             state: State::default(),
             profile: Profile::default(),
+        }
+    }
+
+    /// A solver that computes one number at a time: the plain twin of [`Solver::new`], with the same results to the bit.
+    pub fn scalar(threads: usize) -> Self {
+        Self {
+            processor: Processor::Scalar,
+            ..Self::new(threads)
         }
     }
 
@@ -91,7 +103,7 @@ impl Solver {
     /// Takes `steps` steps; on a fault, says after how many.
     fn march(&mut self, law: impl Law, world: &World, steps: u64) -> Result<(), u64> {
         let mut done = 0;
-        let mut refresh = self.state.start();
+        let mut refresh = self.state.start(self.processor);
         while done < steps {
             if refresh {
                 let begin = Instant::now();
@@ -125,6 +137,7 @@ impl Solver {
         let limit = remaining.min(self.state.steps_within_slack());
         let result = Mutex::new((0, [Duration::ZERO; 2]));
         let phase = self.state.phase();
+        let processor = self.processor;
         self.team.run(|member| {
             let mut timings = [Duration::ZERO; 2];
             let mut walls = phase.walls().to_vec();
@@ -135,13 +148,13 @@ impl Solver {
             {
                 let begin = (member == 0 && steps % STEPS_PER_TIMING == 0).then(Instant::now);
                 // SAFETY: all members are between the same two barriers, each under its own number.
-                unsafe { phase.forces(law, &walls, member, size) };
+                unsafe { phase.forces(processor, law, &walls, member, size) };
                 barrier.wait();
                 let middle = begin.map(|begin| (begin.elapsed(), Instant::now()));
                 steps += 1;
                 let last = steps == remaining;
                 // SAFETY: likewise, one barrier further.
-                let outcome = unsafe { phase.finish(member, size, last) };
+                let outcome = unsafe { phase.finish(processor, member, size, last) };
                 refresh.fetch_or(outcome.refresh, Ordering::Relaxed);
                 fault.fetch_or(outcome.fault, Ordering::Relaxed);
                 if !last {

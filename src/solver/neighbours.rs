@@ -4,36 +4,80 @@
 //! wide skin; the *active* list, filtered from it, holds pairs closer than a narrow skin and is what the pair loop runs
 //! over. Each list is good until some grain has moved by half its skin. Pairs are kept sorted by grain and partner and
 //! forces are summed in that order; a listed pair that does not touch adds exact zeros, so the sums do not depend on the
-//! skins. Tangential springs follow their pair from list to list.
+//! skins. Tangential springs follow their pair from list to list. The last of the bodies is a ghost that fills groups of
+//! pairs up; nothing it does counts.
 
-use super::contacts::{Action, Body, Pair, WallBody};
+use super::contacts::{Action, Body, GROUP, Pair, WallBody};
 use super::row::{Row, length_squared, sub, vector};
 use crate::world::{Contact, Partner, Surface};
 
-/// Pairs with what they remember and what they do.
+/// Pairs with what they remember and what they do, in whole groups: the last ones may be ghosts.
 #[derive(Default)]
 pub struct PairList {
-    /// The pairs, sorted by grain and partner.
+    /// The pairs, sorted by their key.
     pub pairs: Vec<Pair>,
     /// Tangential spring of each [m].
     pub springs: Vec<Row>,
     /// What each does to its partners.
     pub actions: Vec<Action>,
-    /// Where the pairs of grain `i` as first partner begin; one more entry at the end.
-    pub first: Vec<u32>,
+}
+
+/// Indices of pairs, grain by grain, ascending for each.
+#[derive(Default)]
+pub struct Index {
+    first: Vec<u32>,
+    pairs: Vec<u32>,
+}
+
+impl Index {
+    /// The pairs of grain `i`.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> &[u32] {
+        &self.pairs[self.first[i] as usize..self.first[i + 1] as usize]
+    }
+
+    /// Sorts `pairs` by the grain that `grain` names; grains from `count` on are ghosts.
+    fn fill(&mut self, pairs: &[Pair], count: usize, grain: impl Fn(&Pair) -> u32) {
+        count_by(&mut self.first, pairs, count, &grain);
+        let mut next = self.first.clone();
+        self.pairs.resize(self.first[count] as usize, 0);
+        for (index, pair) in pairs.iter().enumerate() {
+            let grain = grain(pair) as usize;
+            if grain < count {
+                self.pairs[next[grain] as usize] = index as u32;
+                next[grain] += 1;
+            }
+        }
+    }
+}
+
+/// Fills `first` with where each grain's pairs begin when sorted by `grain`, and the end of the last.
+fn count_by(first: &mut Vec<u32>, pairs: &[Pair], count: usize, grain: &impl Fn(&Pair) -> u32) {
+    first.clear();
+    first.resize(count + 1, 0);
+    for pair in pairs {
+        if let Some(entry) = first.get_mut(grain(pair) as usize + 1) {
+            *entry += 1;
+        }
+    }
+    for i in 0..count {
+        first[i + 1] += first[i];
+    }
 }
 
 /// Both lists.
 #[derive(Default)]
 pub struct Neighbours {
-    /// Active pairs of grains.
+    /// Active pairs of grains, sorted by grain and partner.
     pub grains: PairList,
-    /// Active pairs of a grain and a wall.
+    /// Active pairs of a grain and a wall, sorted by wall and grain; a group meets one wall.
     pub walls: PairList,
-    /// Where in `as_second` the pairs of grain `i` as second partner begin; one more entry at the end.
-    pub second_first: Vec<u32>,
-    /// Indices of active pairs by their second grain, ascending for each.
-    pub as_second: Vec<u32>,
+    /// Where the pairs of grain `i` as first partner begin; one more entry at the end.
+    pub first: Vec<u32>,
+    /// Pairs of grains by their second grain.
+    pub as_second: Index,
+    /// Wall pairs by their grain.
+    pub at_walls: Index,
     near_grains: Vec<Pair>,
     near_walls: Vec<Pair>,
     near_reference: Vec<Row>,
@@ -72,7 +116,7 @@ impl Neighbours {
     pub fn active_covers(&self, bodies: &[Body], walls: &[WallBody]) -> bool {
         let slack = self.slack();
         self.covers(bodies, walls)
-            && self.reference.len() == bodies.len()
+            && self.reference.len() + 1 == bodies.len()
             && bodies
                 .iter()
                 .zip(&self.reference)
@@ -82,7 +126,7 @@ impl Neighbours {
     /// Whether the near list was built for these bodies and walls and still covers them.
     fn covers(&self, bodies: &[Body], walls: &[WallBody]) -> bool {
         let slack = 0.5 * (self.skins.near - self.skins.active);
-        self.near_reference.len() == bodies.len()
+        self.near_reference.len() + 1 == bodies.len()
             && walls
                 .iter()
                 .map(|wall| wall.surface)
@@ -133,37 +177,41 @@ impl Neighbours {
                 .distance(vector(body.position));
             distance < body.spin[3] + skin
         };
-        self.grains.replace(
-            self.near_grains.iter().filter(close).copied().collect(),
-            bodies.len(),
+        let count = bodies.len() - 1;
+        let ghost = Pair {
+            grain: count as u32,
+            partner: count as u32,
+            kind: 0,
+        };
+        let mut pairs: Vec<Pair> = self.near_grains.iter().filter(close).copied().collect();
+        fill_group(&mut pairs, ghost);
+        self.grains.replace(pairs, grain_key);
+        let mut pairs = Vec::new();
+        for of_wall in self.near_walls.chunk_by(|a, b| a.partner == b.partner) {
+            pairs.extend(of_wall.iter().filter(at_wall));
+            fill_group(
+                &mut pairs,
+                Pair {
+                    partner: of_wall[0].partner,
+                    kind: of_wall[0].kind,
+                    ..ghost
+                },
+            );
+        }
+        self.walls.replace(pairs, wall_key);
+        count_by(
+            &mut self.first,
+            &self.grains.pairs,
+            count,
+            &|pair: &Pair| pair.grain,
         );
-        self.walls.replace(
-            self.near_walls.iter().filter(at_wall).copied().collect(),
-            bodies.len(),
-        );
-        self.index_seconds(bodies.len());
+        self.as_second
+            .fill(&self.grains.pairs, count, |pair| pair.partner);
+        self.at_walls
+            .fill(&self.walls.pairs, count, |pair| pair.grain);
         self.reference.clear();
         self.reference
-            .extend(bodies.iter().map(|body| body.position));
-    }
-
-    fn index_seconds(&mut self, count: usize) {
-        let first = &mut self.second_first;
-        first.clear();
-        first.resize(count + 1, 0);
-        for pair in &self.grains.pairs {
-            first[pair.partner as usize + 1] += 1;
-        }
-        for i in 0..count {
-            first[i + 1] += first[i];
-        }
-        let mut next = first.clone();
-        self.as_second.resize(self.grains.pairs.len(), 0);
-        for (index, pair) in self.grains.pairs.iter().enumerate() {
-            let place = &mut next[pair.partner as usize];
-            self.as_second[*place as usize] = index as u32;
-            *place += 1;
-        }
+            .extend(bodies[..count].iter().map(|body| body.position));
     }
 
     fn rebuild(
@@ -174,6 +222,7 @@ impl Neighbours {
         wall_kind: &mut impl FnMut(u32, u32) -> u32,
     ) {
         self.rebuilds += 1;
+        let bodies = &bodies[..bodies.len() - 1];
         let smallest = bodies
             .iter()
             .map(|body| body.spin[3])
@@ -211,8 +260,8 @@ impl Neighbours {
         }
 
         self.near_walls.clear();
-        for (i, body) in bodies.iter().enumerate() {
-            for (w, wall) in walls.iter().enumerate() {
+        for (w, wall) in walls.iter().enumerate() {
+            for (i, body) in bodies.iter().enumerate() {
                 if wall.surface.distance(vector(body.position)).0 < body.spin[3] + near {
                     let (grain, partner) = (i as u32, w as u32);
                     self.near_walls.push(Pair {
@@ -246,33 +295,48 @@ impl PairList {
         })
     }
 
-    /// Takes over `pairs`; those that were listed before keep their springs.
-    fn replace(&mut self, pairs: Vec<Pair>, count: usize) {
+    /// Takes over `pairs`, sorted by `key`; those that were listed before keep their springs.
+    fn replace(&mut self, pairs: Vec<Pair>, key: Key) {
         let mut springs = vec![[0.0; 4]; pairs.len()];
-        carry_springs(&self.pairs, &self.springs, &pairs, &mut springs);
-        self.first.clear();
-        self.first.resize(count + 1, 0);
-        for pair in &pairs {
-            self.first[pair.grain as usize + 1] += 1;
-        }
-        for i in 0..count {
-            self.first[i + 1] += self.first[i];
-        }
+        carry_springs(&self.pairs, &self.springs, &pairs, &mut springs, key);
         self.actions.resize(pairs.len(), Action::default());
         self.springs = springs;
         self.pairs = pairs;
     }
 
-    /// Sets the springs of the listed pairs from `known` pairs with their springs, both sorted; others are unloaded.
-    pub fn load_springs(&mut self, known: &[Pair], springs: &[Row]) {
+    /// Sets the springs of the listed pairs from `known` pairs with their springs, sorted by `key`; others are unloaded.
+    pub fn load_springs(&mut self, known: &[Pair], springs: &[Row], key: Key) {
         self.springs.fill([0.0; 4]);
-        carry_springs(known, springs, &self.pairs, &mut self.springs);
+        carry_springs(known, springs, &self.pairs, &mut self.springs, key);
     }
 }
 
+/// What a list is sorted by.
+type Key = fn(&Pair) -> (u32, u32);
+
+/// Order of pairs of grains.
+pub fn grain_key(pair: &Pair) -> (u32, u32) {
+    (pair.grain, pair.partner)
+}
+
+/// Order of pairs with walls.
+pub fn wall_key(pair: &Pair) -> (u32, u32) {
+    (pair.partner, pair.grain)
+}
+
+/// Adds ghosts until the last group is whole.
+fn fill_group(pairs: &mut Vec<Pair>, ghost: Pair) {
+    pairs.resize(pairs.len().next_multiple_of(GROUP), ghost);
+}
+
 /// Copies the springs of pairs that stand in both sorted lists.
-fn carry_springs(old: &[Pair], old_springs: &[Row], new: &[Pair], new_springs: &mut [Row]) {
-    let key = |pair: &Pair| (pair.grain, pair.partner);
+fn carry_springs(
+    old: &[Pair],
+    old_springs: &[Row],
+    new: &[Pair],
+    new_springs: &mut [Row],
+    key: Key,
+) {
     let mut known = old.iter().zip(old_springs).peekable();
     for (pair, spring) in new.iter().zip(new_springs) {
         while known.next_if(|(old, _)| key(old) < key(pair)).is_some() {}

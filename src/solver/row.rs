@@ -1,33 +1,11 @@
-//! The solver's small vector vocabulary: a row of four numbers, the width of one cache-aligned load.
-//!
-//! Plain arrays and elementwise loops: the compiler turns them into whatever lanes the processor has, and since every
-//! operation is an exact IEEE one the result has the same bits with any width.
+//! Rows: elementwise sums of four numbers side by side in memory.
 
-/// Four numbers side by side: usually a vector and a companion scalar.
-pub type Row = [f64; 4];
-
-/// `a + b`, element by element.
-#[inline(always)]
-pub fn add(a: Row, b: Row) -> Row {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
-}
+pub use super::lanes::Row;
 
 /// `a − b`, element by element.
 #[inline(always)]
 pub fn sub(a: Row, b: Row) -> Row {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
-}
-
-/// `a s`.
-#[inline(always)]
-pub fn scale(a: Row, s: f64) -> Row {
-    [a[0] * s, a[1] * s, a[2] * s, a[3] * s]
-}
-
-/// `a + b s`.
-#[inline(always)]
-pub fn add_scaled(a: Row, b: Row, s: f64) -> Row {
-    add(a, scale(b, s))
 }
 
 /// Square of the length of the vector part.

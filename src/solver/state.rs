@@ -2,10 +2,11 @@
 //!
 //! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
 
-use super::contacts::{self, Action, Body, Pair, WallBody};
-use super::integrate::{self, Incidence, Load, Motion, Outcome};
+use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
+use super::integrate::{Finish, Incidence, Load, Motion, Outcome, Start, Total};
+use super::lanes::Processor;
 use super::law::{Law, PairConstants, Pairing};
-use super::neighbours::Neighbours;
+use super::neighbours::{Index, Neighbours, grain_key, wall_key};
 use super::row::{Row, length_squared, row, vector};
 use super::team::{Shared, share};
 use super::{Fault, FaultKind};
@@ -132,17 +133,19 @@ impl State {
             });
             let speed_limit = LARGEST_MOVE * radius / dt;
             self.loads.push(Load {
-                total: contacts::Total {
+                total: Total {
                     force: row(grains.force[i], 0.0),
                     torque: row(grains.torque[i], 0.0),
                     rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
                     exchanged: [0.0; 4],
                 },
                 exchanged: grains.exchanged[i],
-                stopping: grains.inertia[i] / dt,
+                compliance: dt / grains.inertia[i],
                 speed_limit_squared: speed_limit * speed_limit,
             });
         }
+        // The ghost that fills groups of pairs up.
+        self.bodies.push(Body::default());
         self.refresh_lists(world);
         self.load_springs(&world.contacts);
     }
@@ -173,10 +176,13 @@ impl State {
         }
         self.neighbours
             .grains
-            .load_springs(&grain_pairs, &grain_springs);
+            .load_springs(&grain_pairs, &grain_springs, grain_key);
+        let mut at_walls: Vec<(Pair, Row)> = wall_pairs.into_iter().zip(wall_springs).collect();
+        at_walls.sort_unstable_by_key(|(pair, _)| wall_key(pair));
+        let (wall_pairs, wall_springs): (Vec<_>, Vec<_>) = at_walls.into_iter().unzip();
         self.neighbours
             .walls
-            .load_springs(&wall_pairs, &wall_springs);
+            .load_springs(&wall_pairs, &wall_springs, wall_key);
     }
 
     /// Puts the state, `steps` steps on, back into `world`.
@@ -205,12 +211,22 @@ impl State {
     }
 
     fn collect_contacts(&self, contacts: &mut Vec<Contact>) {
-        let (grains, walls) = (&self.neighbours.grains, &self.neighbours.walls);
-        for i in 0..self.bodies.len() {
-            let own = grains.first[i] as usize..grains.first[i + 1] as usize;
-            let at_walls = walls.first[i] as usize..walls.first[i + 1] as usize;
+        let Neighbours {
+            grains,
+            walls,
+            first,
+            at_walls,
+            ..
+        } = &self.neighbours;
+        for i in 0..self.loads.len() {
+            let own = first[i] as usize..first[i + 1] as usize;
             contacts.extend(own.filter_map(|k| grains.contact(k, Partner::Grain)));
-            contacts.extend(at_walls.filter_map(|k| walls.contact(k, Partner::Wall)));
+            contacts.extend(
+                at_walls
+                    .of(i)
+                    .iter()
+                    .filter_map(|&k| walls.contact(k as usize, Partner::Wall)),
+            );
         }
     }
 
@@ -220,15 +236,25 @@ impl State {
     }
 
     /// Starts the first step of a call; true when the active list must be refreshed before forces.
-    pub fn start(&mut self) -> bool {
+    pub fn start(&mut self, processor: Processor) -> bool {
         self.move_walls();
-        integrate::start(
-            &self.motion,
-            &mut self.bodies,
-            &self.loads,
-            &self.neighbours.reference,
-        )
-        .refresh
+        let Self {
+            bodies,
+            loads,
+            neighbours,
+            motion,
+            ..
+        } = self;
+        let count = loads.len();
+        let references = &neighbours.reference;
+        processor
+            .run(Start {
+                motion,
+                bodies: &mut bodies[..count],
+                loads,
+                references,
+            })
+            .refresh
     }
 
     /// Brings the lists up to date with the positions; returns how often the near list was built.
@@ -291,9 +317,10 @@ impl State {
         } = self;
         let Neighbours {
             grains,
-            walls: at_walls,
-            second_first,
+            walls: wall_list,
+            first,
             as_second,
+            at_walls,
             reference,
             ..
         } = neighbours;
@@ -302,13 +329,12 @@ impl State {
             loads: Shared::new(loads),
             grain_springs: Shared::new(&mut grains.springs),
             grain_actions: Shared::new(&mut grains.actions),
-            wall_springs: Shared::new(&mut at_walls.springs),
-            wall_actions: Shared::new(&mut at_walls.actions),
+            wall_springs: Shared::new(&mut wall_list.springs),
+            wall_actions: Shared::new(&mut wall_list.actions),
             grain_pairs: &grains.pairs,
-            grain_first: &grains.first,
-            wall_pairs: &at_walls.pairs,
-            wall_first: &at_walls.first,
-            second_first,
+            first,
+            wall_pairs: &wall_list.pairs,
+            at_walls,
             as_second,
             reference,
             constants: &kinds.constants,
@@ -358,6 +384,12 @@ impl State {
     }
 }
 
+/// The part of `count` pairs that is `member`'s, in whole groups.
+fn share_of_groups(count: usize, member: usize, size: usize) -> std::ops::Range<usize> {
+    let groups = share(count / GROUP, member, size);
+    groups.start * GROUP..groups.end * GROUP
+}
+
 /// Moves planes that have a velocity by one step.
 fn move_walls(walls: &mut [WallBody], dt: f64) {
     for wall in walls {
@@ -386,11 +418,10 @@ pub struct Phase<'a> {
     wall_springs: Shared<'a, Row>,
     wall_actions: Shared<'a, Action>,
     grain_pairs: &'a [Pair],
-    grain_first: &'a [u32],
+    first: &'a [u32],
     wall_pairs: &'a [Pair],
-    wall_first: &'a [u32],
-    second_first: &'a [u32],
-    as_second: &'a [u32],
+    at_walls: &'a Index,
+    as_second: &'a Index,
     reference: &'a [Row],
     constants: &'a [PairConstants],
     walls: &'a [WallBody],
@@ -406,11 +437,16 @@ impl Phase<'_> {
     ///
     /// # Safety
     /// Every member of `size` calls it between the same two barriers, each with its own number, and nothing else.
-    pub unsafe fn forces<L: Law>(&self, law: L, walls: &[WallBody], member: usize, size: usize) {
-        let (of_grains, of_walls) = (
-            share(self.grain_pairs.len(), member, size),
-            share(self.wall_pairs.len(), member, size),
-        );
+    pub unsafe fn forces<L: Law>(
+        &self,
+        processor: Processor,
+        law: L,
+        walls: &[WallBody],
+        member: usize,
+        size: usize,
+    ) {
+        let of_grains = share_of_groups(self.grain_pairs.len(), member, size);
+        let of_walls = share_of_groups(self.wall_pairs.len(), member, size);
         // SAFETY: in this phase bodies are only read, springs and actions only written, each member its own share.
         let (bodies, grain_springs, grain_actions, wall_springs, wall_actions) = unsafe {
             (
@@ -421,35 +457,38 @@ impl Phase<'_> {
                 self.wall_actions.range_mut(of_walls.clone()),
             )
         };
-        let dt = self.motion.dt;
-        let pairs = &self.grain_pairs[of_grains];
-        contacts::between_grains(
-            law,
-            dt,
-            bodies,
-            self.constants,
-            pairs,
-            grain_springs,
-            grain_actions,
-        );
-        let pairs = &self.wall_pairs[of_walls];
-        contacts::at_walls(
-            law,
-            dt,
-            bodies,
-            walls,
-            self.constants,
-            pairs,
-            wall_springs,
-            wall_actions,
-        );
+        processor.run(Forces {
+            surroundings: Surroundings {
+                law,
+                dt: self.motion.dt,
+                bodies,
+                walls,
+                constants: self.constants,
+            },
+            of_grains: PairRows {
+                pairs: &self.grain_pairs[of_grains],
+                springs: grain_springs,
+                actions: grain_actions,
+            },
+            of_walls: PairRows {
+                pairs: &self.wall_pairs[of_walls],
+                springs: wall_springs,
+                actions: wall_actions,
+            },
+        });
     }
 
     /// Sums the forces on `member`'s share of the grains and moves them.
     ///
     /// # Safety
     /// As for [`Phase::forces`].
-    pub unsafe fn finish(&self, member: usize, size: usize, last: bool) -> Outcome {
+    pub unsafe fn finish(
+        &self,
+        processor: Processor,
+        member: usize,
+        size: usize,
+        last: bool,
+    ) -> Outcome {
         // SAFETY: in this phase actions are only read, bodies and loads only written, each member its own share.
         let own = share(self.reference.len(), member, size);
         let (bodies, loads, grains, walls) = unsafe {
@@ -462,21 +501,20 @@ impl Phase<'_> {
         };
         let incidence = Incidence {
             grains,
-            first: self.grain_first,
-            second_first: self.second_first,
+            first: self.first,
             as_second: self.as_second,
             walls,
-            wall_first: self.wall_first,
+            at_walls: self.at_walls,
         };
-        integrate::finish(
-            &self.motion,
-            incidence,
-            own.start,
+        processor.run(Finish {
+            motion: &self.motion,
+            pairs: incidence,
+            begin: own.start,
             bodies,
             loads,
-            &self.reference[own],
+            references: &self.reference[own],
             last,
-        )
+        })
     }
 
     /// The walls at the beginning of the stretch.

@@ -24,12 +24,13 @@ impl Panel for AboutScene {
     ) {
         let scene = simulation.scene();
         ui.label(RichText::new(&scene.title).strong());
-        for text in [&scene.look_for, &scene.source] {
-            if !text.is_empty() {
-                ui.label(text);
-            }
+        if !scene.look_for.is_empty() {
+            ui.label(&scene.look_for);
         }
-        ui.weak(outline(scene));
+        if !scene.source.is_empty() {
+            ui.label(RichText::new(&scene.source).small().weak());
+        }
+        ui.label(RichText::new(outline(scene)).small().weak());
     }
 }
 

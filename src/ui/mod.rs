@@ -14,7 +14,7 @@
 //! | `plots`, `results` | panels on the right |
 //! | `sheets`, `path_dialog` | windows over the rest |
 //! | `theme` | every colour, size and font |
-//! | `number`, `table`, `decimate` | numbers in words, tables, fewer points for the same picture |
+//! | `number`, `symbol`, `table`, `decimate` | numbers and symbols in text, tables, fewer points for the same picture |
 
 mod about_scene;
 mod carry_out;
@@ -31,6 +31,7 @@ mod request;
 mod results;
 mod sheets;
 mod shortcuts;
+mod symbol;
 mod table;
 pub mod theme;
 mod transport;

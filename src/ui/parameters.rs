@@ -1,6 +1,6 @@
 //! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
 
-use super::{Panel, Request, number};
+use super::{Panel, Request, number, symbol};
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
@@ -103,16 +103,18 @@ impl Panel for Parameters {
             list.iter().filter(own)
         };
         for group in Group::ALL {
-            if grouped(group).next().is_none() {
-                continue;
-            }
-            heading_ui(ui, group, simulation.scene());
+            let mut pair = None;
             for info in grouped(group) {
+                let own = pair_of(&info.parameter);
+                if pair != Some(own) {
+                    heading_ui(ui, group, own, simulation.scene());
+                    pair = Some(own);
+                }
                 let value = simulation.value(&info.parameter);
                 out.extend(parameter_ui(ui, info, value).map(Request::Command));
             }
-            ui.add_space(4.0);
         }
+        ui.add_space(4.0);
         let changed = list
             .iter()
             .any(|info| simulation.value(&info.parameter) != info.default);
@@ -129,16 +131,40 @@ impl Panel for Parameters {
     }
 }
 
-fn heading_ui(ui: &mut egui::Ui, group: Group, scene: &Scene) {
-    let heading = ui.label(RichText::new(group.title()).strong());
-    let both = |m: &crate::scene::SceneMaterial| {
-        is_of_grains(scene, &m.name) && is_of_walls(scene, &m.name)
-    };
-    if group == Group::GrainGrain && scene.materials.iter().any(both) {
-        heading.on_hover_text(
-            "Walls are made of the grains' material: these values hold for them too.",
-        );
+/// The two materials that a parameter is about.
+fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
+    match parameter {
+        Parameter::Friction(a, b)
+        | Parameter::Restitution(a, b)
+        | Parameter::RollingFriction(a, b) => Some((a, b)),
+        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => None,
     }
+}
+
+/// What stands beside a slider, under a heading that says the rest.
+fn short_name(info: &ParameterInfo) -> String {
+    match &info.parameter {
+        Parameter::Friction(..) => "Friction".into(),
+        Parameter::Restitution(..) => "Restitution".into(),
+        Parameter::RollingFriction(..) => "Rolling friction".into(),
+        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => {
+            number::capitalised(&info.label)
+        }
+    }
+}
+
+fn heading_ui(ui: &mut egui::Ui, group: Group, pair: Option<(&str, &str)>, scene: &Scene) {
+    ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(group.title()).strong());
+        let Some((a, b)) = pair else {
+            return;
+        };
+        let names = ui.weak(format!("{a} – {b}"));
+        if group == Group::GrainGrain && (is_of_walls(scene, a) || is_of_walls(scene, b)) {
+            names.on_hover_text("Walls are made of it too: these values hold for them as well.");
+        }
+    });
 }
 
 /// The row of one parameter whose present value is `value` (SI); the command that a change asks for.
@@ -148,38 +174,38 @@ pub fn parameter_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Opti
     let decimals = decimals(range.end() - range.start());
     let mut reset = false;
     let edited = ui.push_id(info.parameter.to_string(), |ui| {
-        let label = ui
-            .horizontal(|ui| {
-                let label = ui.label(number::capitalised(&info.label));
-                ui.weak(info.symbol);
-                label
-            })
-            .inner
-            .on_hover_ui(|ui| explanation_ui(ui, info));
-        ui.horizontal(|ui| {
-            let reset_width = ui.spacing().interact_size.y;
-            let gaps = 2.0 * ui.spacing().item_spacing.x;
-            ui.spacing_mut().slider_width =
-                (ui.available_width() - NUMBER_WIDTH - reset_width - gaps).max(60.0);
-            let slider = egui::Slider::new(&mut shown, range.clone())
-                .show_value(false)
-                .clamping(egui::SliderClamping::Edits);
-            let slider = ui.add(slider).labelled_by(label.id);
-            let field = egui::DragValue::new(&mut shown)
-                .range(range.clone())
-                .clamp_existing_to_range(false)
-                .speed((range.end() - range.start()) / 400.0)
-                .max_decimals(decimals)
-                .min_decimals(decimals.min(2))
-                .suffix(suffix(info))
-                .update_while_editing(false);
-            let size = egui::vec2(NUMBER_WIDTH, ui.spacing().interact_size.y);
-            let field = ui.add_sized(size, field).labelled_by(label.id);
-            reset = reset_ui(ui, info, value != info.default);
-            slider.on_hover_ui(|ui| explanation_ui(ui, info)).changed()
-                | field.on_hover_ui(|ui| explanation_ui(ui, info)).changed()
-        })
-        .inner
+        ui.spacing_mut().item_spacing.y = 1.0;
+        let field = egui::DragValue::new(&mut shown)
+            .range(range.clone())
+            .clamp_existing_to_range(false)
+            .speed((range.end() - range.start()) / 400.0)
+            .max_decimals(decimals)
+            .min_decimals(decimals.min(2))
+            .suffix(suffix(info))
+            .update_while_editing(false);
+        let (name, field) = egui::Sides::new().shrink_left().truncate().show(
+            ui,
+            |ui| ui.label(symbol::named(ui, &short_name(info), info.symbol)),
+            |ui| {
+                reset = reset_ui(ui, info, value != info.default);
+                ui.add_sized([NUMBER_WIDTH, 22.0], field)
+            },
+        );
+        ui.spacing_mut().slider_width = ui.available_width();
+        ui.spacing_mut().interact_size.y = 18.0;
+        let slider = egui::Slider::new(&mut shown, range.clone())
+            .show_value(false)
+            .clamping(egui::SliderClamping::Edits);
+        let slider = ui.add(slider);
+        slider.widget_info(|| WidgetInfo::slider(true, shown, &info.label));
+        field.widget_info(|| WidgetInfo {
+            label: Some(info.label.clone()),
+            ..WidgetInfo::drag_value(true, shown)
+        });
+        let explained =
+            |response: egui::Response| response.on_hover_ui(|ui| explanation_ui(ui, info));
+        explained(name);
+        explained(slider).changed() | explained(field).changed()
     });
     let wanted = match (reset, edited.inner) {
         (true, _) => info.default,

@@ -11,8 +11,8 @@ use crate::simulation::{Command, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
 use egui_plot::{
-    GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotBounds,
-    PlotPoint, PlotUi, Points, Text, VLine,
+    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot,
+    PlotBounds, PlotPoint, PlotUi, Points, Text, VLine,
 };
 use std::ops::RangeInclusive;
 
@@ -26,8 +26,13 @@ const LABELLED_AVALANCHES: usize = 14;
 const SMALLEST_ANGLE_SPAN: f64 = 2.0;
 /// Smallest height of the Tg plot with a logarithmic axis, in powers of ten.
 const SMALLEST_DECADES: f64 = 2.0;
-/// Temperatures are drawn no lower than this [m²/s²]: a bed at rest has none, and zero has no logarithm.
-const COLDEST: f64 = 1e-16;
+/// Temperatures are drawn no lower than this [m²/s²]: below lies only rounding.
+const COLDEST: f64 = 1e-13;
+/// Grid lines stand this many times further apart than the plot would have them at the closest, which is 8 points.
+const SPARSE_X: f32 = 5.5;
+const SPARSE_Y: f32 = 3.5;
+/// Room for half of the last label of the time axis.
+const ROOM_AT_THE_RIGHT: f32 = 14.0;
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// Both plots.
@@ -221,7 +226,7 @@ fn temperature_curve(
     let points = decimate(curves.time, window, columns, |i| {
         on_axis(curves.temperature[i], decades)
     });
-    // The threshold is always in view.
+    // The threshold is always in view, and zero where it has a place.
     let seen: Vec<[f64; 2]> = (points.iter().copied())
         .chain([
             [0.0, threshold],
@@ -243,7 +248,12 @@ fn temperature_curve(
 /// Where a temperature [m²/s²] stands on its axis.
 fn on_axis(temperature: f64, decades: bool) -> f64 {
     if decades {
-        temperature.max(COLDEST).log10()
+        // Zero has no logarithm and is passed over.
+        if temperature > 0.0 {
+            temperature.max(COLDEST).log10()
+        } else {
+            f64::NAN
+        }
     } else {
         temperature
     }
@@ -271,6 +281,7 @@ fn curve_ui<'a>(
     height: f32,
     marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
 ) -> egui::Response {
+    let grid = Palette::of(ui.visuals()).grid;
     egui::Sides::new().shrink_left().truncate().show(
         ui,
         |ui| ui.label(RichText::new(curve.title).strong()),
@@ -286,7 +297,14 @@ fn curve_ui<'a>(
     let (decades, unit) = (curve.decades, curve.unit);
     let plot = Plot::new(curve.id)
         .height(height)
+        .width(ui.available_width() - ROOM_AT_THE_RIGHT)
         .show_crosshair(false)
+        .grid_color(grid)
+        .x_grid_spacer(|input| round_marks(input, SPARSE_X, 0.0))
+        .y_grid_spacer(move |input| {
+            let finest = if decades { 1.0 } else { 0.0 };
+            round_marks(input, SPARSE_Y, finest)
+        })
         .auto_bounds(false)
         .allow_drag(false)
         .allow_zoom(false)
@@ -295,15 +313,18 @@ fn curve_ui<'a>(
         .allow_axis_zoom_drag(false)
         .allow_double_click_reset(false)
         .link_cursor("time", Vec2b::new(true, false))
-        .y_axis_min_width(46.0)
-        .x_axis_formatter(|mark, _| format!("{} s", tidy(mark.value)))
-        .y_axis_formatter(move |mark, _| tick(mark.value, decades))
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label_spacing(SPARSE_X * 6.0..=SPARSE_X * 8.0)
+                .formatter(|mark, _| format!("{} s", tidy(mark.value))),
+        ])
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .min_thickness(46.0)
+                .label_spacing(SPARSE_Y * 6.0..=SPARSE_Y * 8.0)
+                .formatter(move |mark, _| tick(mark.value, decades)),
+        ])
         .label_formatter(move |hover| Some(hover_label(hover, decades, unit)));
-    let plot = if decades {
-        plot.y_grid_spacer(decade_marks)
-    } else {
-        plot
-    };
     let shown = plot.show(ui, move |plot| {
         plot.set_plot_bounds(bounds);
         plot.line(line);
@@ -312,17 +333,27 @@ fn curve_ui<'a>(
     shown.response
 }
 
-/// One grid line per power of ten, fewer where they would crowd.
-fn decade_marks(input: GridInput) -> Vec<GridMark> {
-    let (low, high) = (input.bounds.0.ceil() as i32, input.bounds.1.floor() as i32);
-    let step = ((high - low) / 5).max(1);
-    (low..=high)
-        .filter(|exponent| exponent.rem_euclid(step) == 0)
-        .map(|exponent| GridMark {
-            value: f64::from(exponent),
-            step_size: f64::from(step),
+/// Grid lines at round numbers at least `finest` apart, `sparse` times as far apart as the plot would have them at the
+/// closest.
+fn round_marks(input: GridInput, sparse: f32, finest: f64) -> Vec<GridMark> {
+    let step = round_step((input.base_step_size * f64::from(sparse)).max(finest));
+    let (first, last) = (
+        (input.bounds.0 / step).ceil(),
+        (input.bounds.1 / step).floor(),
+    );
+    (first as i64..=last as i64)
+        .map(|index| GridMark {
+            value: index as f64 * step,
+            step_size: step,
         })
         .collect()
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
+fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    let fits = |factor: &f64| factor * power >= least * (1.0 - 1e-9);
+    [1.0, 2.0, 5.0, 10.0].into_iter().find(fits).unwrap_or(10.0) * power
 }
 
 fn tick(value: f64, decades: bool) -> String {

@@ -1,5 +1,6 @@
 //! Two-column tables: a name on the left, a value on the right.
 
+use super::symbol;
 use bevy_egui::egui::{self, Color32, Frame, Margin, RichText, Sides};
 
 /// A line of a table.
@@ -30,7 +31,7 @@ pub fn table_ui(ui: &mut egui::Ui, rows: impl Iterator<Item = Row>) {
             .show(ui, |ui| {
                 Sides::new().shrink_left().truncate().show(
                     ui,
-                    |ui| ui.label(row.name),
+                    |ui| ui.label(symbol::text(ui, &row.name)),
                     |ui| ui.label(RichText::new(row.value).strong()),
                 )
             })

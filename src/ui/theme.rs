@@ -27,6 +27,8 @@ pub struct Palette {
     pub minimum: Color32,
     /// When somebody changed a parameter.
     pub change: Color32,
+    /// Lines behind a plot.
+    pub grid: Color32,
     /// Bars, one per stage of a step.
     pub stages: [Color32; 4],
     /// Something to look at.
@@ -53,6 +55,7 @@ const DARK: Palette = Palette {
     maximum: Color32::from_rgb(0xFF, 0xD5, 0x7A),
     minimum: Color32::from_rgb(0x5F, 0xD3, 0xA8),
     change: Color32::from_rgb(0x8B, 0x7B, 0xC8),
+    grid: Color32::from_rgb(0x3B, 0x45, 0x54),
     stages: [
         Color32::from_rgb(0x6C, 0xB8, 0xF6),
         Color32::from_rgb(0xF4, 0xA2, 0x5B),
@@ -72,6 +75,7 @@ const LIGHT: Palette = Palette {
     maximum: Color32::from_rgb(0xA8, 0x6B, 0x00),
     minimum: Color32::from_rgb(0x0B, 0x7D, 0x59),
     change: Color32::from_rgb(0x6A, 0x56, 0xB5),
+    grid: Color32::from_rgb(0xC9, 0xD0, 0xD9),
     stages: [
         Color32::from_rgb(0x2F, 0x86, 0xCB),
         Color32::from_rgb(0xD9, 0x7A, 0x2B),
@@ -141,7 +145,8 @@ pub fn install(ctx: &egui::Context) {
             style.visuals = visuals(theme);
             style.text_styles = text_styles();
             style.animation_time = 0.08;
-            style.explanation_tooltips = false;
+            style.interaction.selectable_labels = false;
+            style.interaction.tooltip_delay = 0.35;
             let spacing = &mut style.spacing;
             spacing.item_spacing = vec2(8.0, 6.0);
             spacing.button_padding = vec2(9.0, 4.0);

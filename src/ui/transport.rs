@@ -123,7 +123,7 @@ fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     let palette = Palette::of(ui.visuals());
     let (factor, asked) = (simulation.real_time_factor(), simulation.speed());
     let slower = factor > 0.0 && asked.is_finite() && factor < KEEPING_UP * asked;
-    let time = RichText::new(format!("t = {:8.3} s", world.time()))
+    let time = RichText::new(format!("t = {:.2} s", world.time()))
         .monospace()
         .size(17.0);
     ui.label(time.strong())

@@ -2,4 +2,5 @@
 
 mod build;
 mod files;
+mod gallery;
 mod mutations;

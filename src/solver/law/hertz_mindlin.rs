@@ -5,7 +5,7 @@
 //! the end of a contact is kept: only then does the restitution come out as e.
 
 use super::{Coefficients, Law, Pairing};
-use crate::solver::row::Row;
+use crate::solver::lanes::{Lanes, Row};
 use crate::world::Materials;
 use std::f64::consts::PI;
 
@@ -49,7 +49,7 @@ fn damping_exponent(restitution: f64) -> f64 {
 
 impl Law for HertzMindlin {
     #[inline(always)]
-    fn coefficients(self, constants: Row, overlap: f64) -> Coefficients {
+    fn coefficients<N: Lanes>(self, constants: [N; 4], overlap: N) -> Coefficients<N> {
         let root = overlap.sqrt();
         let fourth_root = root.sqrt();
         Coefficients {
@@ -61,13 +61,13 @@ impl Law for HertzMindlin {
     }
 
     #[inline(always)]
-    fn normal_force(self, elastic: f64, damping: f64) -> f64 {
+    fn normal_force<N: Lanes>(self, elastic: N, damping: N, _zero: N) -> N {
         elastic + damping
     }
 
     /// Eq. 20: `μ |F_n|` with the whole normal force.
     #[inline(always)]
-    fn coulomb_force(self, _elastic: f64, normal: f64) -> f64 {
-        normal.abs()
+    fn coulomb_force<N: Lanes>(self, _elastic: N, normal: N, zero: N) -> N {
+        N::choose(zero.exceeds(normal), -normal, normal)
     }
 }

@@ -5,7 +5,7 @@
 //! zero, the Coulomb bound uses the elastic part `K_n δ`, and there is no tangential dashpot, as in the paper's program.
 
 use super::{Coefficients, Law, Pairing};
-use crate::solver::row::Row;
+use crate::solver::lanes::{Lanes, Row};
 use std::f64::consts::PI;
 
 /// The law of Eqs. 3.3–3.5.
@@ -29,7 +29,7 @@ impl Hooke {
 
 impl Law for Hooke {
     #[inline(always)]
-    fn coefficients(self, constants: Row, _overlap: f64) -> Coefficients {
+    fn coefficients<N: Lanes>(self, constants: [N; 4], _overlap: N) -> Coefficients<N> {
         Coefficients {
             normal_stiffness: constants[0],
             normal_damping: constants[1],
@@ -39,13 +39,13 @@ impl Law for Hooke {
     }
 
     #[inline(always)]
-    fn normal_force(self, elastic: f64, damping: f64) -> f64 {
+    fn normal_force<N: Lanes>(self, elastic: N, damping: N, zero: N) -> N {
         let force = elastic + damping;
-        if force > 0.0 { force } else { 0.0 }
+        N::choose(force.exceeds(zero), force, zero)
     }
 
     #[inline(always)]
-    fn coulomb_force(self, elastic: f64, _normal: f64) -> f64 {
+    fn coulomb_force<N: Lanes>(self, elastic: N, _normal: N, _zero: N) -> N {
         elastic
     }
 }

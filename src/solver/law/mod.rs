@@ -13,7 +13,7 @@ pub use hertz_mindlin::HertzMindlin;
 pub use hooke::Hooke;
 pub use rolling::rolling_gain;
 
-use super::row::Row;
+use super::lanes::{Lanes, One, Row};
 use crate::scene::ContactLaw;
 use crate::world::{MaterialId, Materials, Partner, World};
 
@@ -23,36 +23,33 @@ use crate::world::{MaterialId, Materials, Partner, World};
 pub struct PairConstants {
     /// The law's own constants, in the order of its [`Coefficients`].
     pub coefficients: Row,
-    /// Coefficient of sliding friction μ.
-    pub friction: f64,
-    /// `μ_R r*`, the arm of rolling friction [m].
-    pub rolling_arm: f64,
-    _padding: [f64; 2],
+    /// Coefficient of sliding friction μ; `μ_R r*`, the arm of rolling friction [m]; radii of both, 0 for a wall [m].
+    pub contact: Row,
 }
 
-/// Stiffnesses and dashpots of a contact at some overlap.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+/// Stiffnesses and dashpots of contacts at some overlap, side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Coefficients<N> {
     /// `k_n`, normal force over overlap [N/m].
-    pub normal_stiffness: f64,
+    pub normal_stiffness: N,
     /// `η_n` [N s/m].
-    pub normal_damping: f64,
+    pub normal_damping: N,
     /// `k_t` [N/m].
-    pub tangential_stiffness: f64,
+    pub tangential_stiffness: N,
     /// `η_t` [N s/m].
-    pub tangential_damping: f64,
+    pub tangential_damping: N,
 }
 
 /// A contact law: a plain value whose functions the pair loop inlines.
 pub trait Law: Copy + Send + Sync {
-    /// Stiffnesses and dashpots at the overlap `δ > 0` [m].
-    fn coefficients(self, constants: Row, overlap: f64) -> Coefficients;
+    /// Stiffnesses and dashpots at the overlap `δ ≥ 0` [m].
+    fn coefficients<N: Lanes>(self, constants: [N; 4], overlap: N) -> Coefficients<N>;
 
     /// Repulsive normal force [N] from its elastic part and the dashpot's part.
-    fn normal_force(self, elastic: f64, damping: f64) -> f64;
+    fn normal_force<N: Lanes>(self, elastic: N, damping: N, zero: N) -> N;
 
     /// The normal force that bounds the tangential one [N].
-    fn coulomb_force(self, elastic: f64, normal: f64) -> f64;
+    fn coulomb_force<N: Lanes>(self, elastic: N, normal: N, zero: N) -> N;
 }
 
 /// Effective (reduced) quantities of two partners, which an infinite partner leaves at the other's value.
@@ -62,6 +59,8 @@ pub struct Pairing {
     pub effective_radius: f64,
     /// `m* = m_i m_j / (m_i + m_j)` [kg].
     pub effective_mass: f64,
+    /// Radii of both, 0 for a wall [m].
+    pub radii: (f64, f64),
     /// Materials of both sides.
     pub materials: (MaterialId, MaterialId),
 }
@@ -77,12 +76,14 @@ impl Pairing {
                 Self {
                     effective_radius: reduced(grains.radius[grain], grains.radius[j]),
                     effective_mass: reduced(grains.mass[grain], grains.mass[j]),
+                    radii: (grains.radius[grain], grains.radius[j]),
                     materials: (material(grain), material(j)),
                 }
             }
             Partner::Wall(w) => Self {
                 effective_radius: grains.radius[grain],
                 effective_mass: grains.mass[grain],
+                radii: (grains.radius[grain], 0.0),
                 materials: (material(grain), world.container.walls[w as usize].material),
             },
         }
@@ -105,9 +106,12 @@ impl Pairing {
         };
         PairConstants {
             coefficients,
-            friction: pair.friction,
-            rolling_arm: pair.rolling_friction * self.effective_radius,
-            _padding: [0.0; 2],
+            contact: [
+                pair.friction,
+                pair.rolling_friction * self.effective_radius,
+                self.radii.0,
+                self.radii.1,
+            ],
         }
     }
 
@@ -119,19 +123,18 @@ impl Pairing {
         overlap: f64,
         spring: f64,
     ) -> f64 {
-        let constants = self.constants(law, materials).coefficients;
-        let (normal, tangential) = match law {
-            // ∫ k_n δ dδ with k_n ∝ √δ.
-            ContactLaw::HertzMindlin => {
-                let k = HertzMindlin.coefficients(constants, overlap);
-                (0.4 * k.normal_stiffness, k.tangential_stiffness)
-            }
-            ContactLaw::Hooke { .. } => {
-                let k = Hooke.coefficients(constants, overlap);
-                (0.5 * k.normal_stiffness, k.tangential_stiffness)
-            }
+        let constants = self
+            .constants(law, materials)
+            .coefficients
+            .map(|x| One::splat((), x));
+        let at = One::splat((), overlap);
+        // ∫ k_n δ dδ: k_n grows as √δ under Hertz' law and is constant under Hooke's.
+        let (share, k) = match law {
+            ContactLaw::HertzMindlin => (0.4, HertzMindlin.coefficients(constants, at)),
+            ContactLaw::Hooke { .. } => (0.5, Hooke.coefficients(constants, at)),
         };
-        normal * overlap * overlap + 0.5 * tangential * spring * spring
+        share * k.normal_stiffness.get() * overlap * overlap
+            + 0.5 * k.tangential_stiffness.get() * spring * spring
     }
 }
 

@@ -1,8 +1,10 @@
 //! What world a scene becomes.
 
 use glam::DVec3;
-use grainfall::scene::Scene;
+use grainfall::scene::{Scene, built_in};
 use grainfall::world::{self, MaterialId, Shape, SpeciesId, Surface, World};
+
+const BOX: &str = "tests/core/scene/good/two-sizes-box.ron";
 
 fn built(name: &str) -> World {
     world::build(&Scene::open(name).unwrap(), 1e-5)
@@ -38,7 +40,8 @@ fn fillings_have_all_their_grains_and_none_touches() {
         ("dry-r1.25", 6494),
         ("small-drum", 100),
         ("two-frictions-drum", 470),
-        ("two-sizes-box", 600),
+        ("two-sizes-drum", 315),
+        (BOX, 600),
     ] {
         let world = built(name);
         assert_eq!(world.grains.len(), count, "{name}");
@@ -78,7 +81,7 @@ fn grains_near_in_number_are_near_in_space() {
 
 #[test]
 fn the_same_seed_gives_the_same_world_and_another_seed_another() {
-    let mut scene = Scene::open("two-sizes-box").unwrap();
+    let mut scene = Scene::open(BOX).unwrap();
     let first = world::build(&scene, 1e-5);
     assert_eq!(first.hash(), world::build(&scene, 1e-5).hash());
     scene.seed += 1;
@@ -115,7 +118,7 @@ fn the_drum_turns_as_one_body() {
 
 #[test]
 fn a_box_has_six_walls_that_look_inwards() {
-    let world = built("two-sizes-box");
+    let world = built(BOX);
     assert_eq!(world.container.walls.len(), 6);
     for wall in &world.container.walls {
         assert!(
@@ -167,7 +170,7 @@ fn listed_grains_are_as_listed() {
 fn shares_are_exact_in_number() {
     let world = built("two-frictions-drum");
     assert_eq!((count_of(&world, 0), count_of(&world, 1)), (329, 141));
-    let world = built("two-sizes-box");
+    let world = built(BOX);
     assert_eq!((count_of(&world, 0), count_of(&world, 1)), (120, 480));
 }
 
@@ -199,8 +202,31 @@ fn a_larger_share_only_adds_and_going_back_takes_the_same_away() {
 }
 
 #[test]
+fn shares_given_one_after_another_reach_any_mixture() {
+    let text = built_in()[0].text.replace(
+        r#"[(radius_mm: 3, material: "glass")]"#,
+        r#"[
+            (name: "a", radius_mm: 3, material: "glass", share: 0.5),
+            (name: "b", radius_mm: 3, material: "glass", share: 0.3),
+            (name: "c", radius_mm: 3, material: "glass", share: 0.2),
+        ]"#,
+    );
+    let scene = Scene::parse("three", &text).unwrap();
+    let mut world = world::build(&scene, 1e-5);
+    let counts = |world: &World| [0, 1, 2].map(|species| count_of(world, species));
+    assert_eq!(counts(&world), [235, 141, 94]);
+    world::set_share(&mut world, &scene, SpeciesId(0), 0.1);
+    world::set_share(&mut world, &scene, SpeciesId(1), 0.2);
+    assert_eq!(counts(&world), [47, 94, 329]);
+    world::set_share(&mut world, &scene, SpeciesId(2), 1.5);
+    assert_eq!(counts(&world), [0, 0, 470]);
+    world::set_share(&mut world, &scene, SpeciesId(2), f64::NAN);
+    assert_eq!(counts(&world), [470, 0, 0]);
+}
+
+#[test]
 fn a_share_cannot_change_where_radii_differ() {
-    let scene = Scene::open("two-sizes-box").unwrap();
+    let scene = Scene::open(BOX).unwrap();
     let start = world::build(&scene, 1e-5);
     let mut world = start.clone();
     world::set_share(&mut world, &scene, SpeciesId(0), 0.9);

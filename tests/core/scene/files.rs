@@ -62,17 +62,83 @@ fn each_bad_file_is_refused_with_its_message() {
 }
 
 #[test]
+fn a_number_that_is_none_is_refused_at_its_own_line_and_key() {
+    let text = r#"(
+        title: "Each number on a line of its own",
+        materials: {
+            "glass": (
+                youngs_modulus: 63e6,
+                poisson_ratio: 0.21,
+                density: 2500,
+                restitution: 0.95,
+                friction: 0.4,
+                rolling_friction: 0.01,
+            ),
+            "drum": (),
+        },
+        pairs: [(
+            between: ("glass", "drum"),
+            restitution: 0.7,
+            friction: 0.3,
+            rolling_friction: 0.02,
+        )],
+        container: Drum(
+            radius_mm: 60.5,
+            width_mm: 22,
+            speed_rpm: 0.5,
+            material: "drum",
+        ),
+        grains: Fill(
+            bulk_fraction: 0.35,
+            packing: 0.6,
+            species: [(
+                radius_mm: 3,
+                share: 1,
+                material: "glass",
+            )],
+        ),
+        law: Hooke(
+            normal_stiffness: 4000,
+            tangential_stiffness: 2000,
+        ),
+        duration: 50,
+        output_interval: 0.1,
+    )"#;
+    assert!(Scene::parse("sound", text).is_ok());
+    let lines: Vec<&str> = text.lines().collect();
+    let mut tried = 0;
+    for (index, line) in lines.iter().enumerate() {
+        let Some((key, value)) = line.trim().trim_end_matches(',').split_once(": ") else {
+            continue;
+        };
+        if value.parse::<f64>().is_err() {
+            continue;
+        }
+        for wrong in ["NaN", "-inf", "-1e300"] {
+            let mut changed = lines.clone();
+            let replaced = line.replace(value, wrong);
+            changed[index] = &replaced;
+            let error = Scene::parse("wrong", &changed.join("\n")).unwrap_err();
+            assert_eq!(error.file(), "wrong");
+            assert_eq!(error.line(), Some(index + 1), "{error}");
+            assert!(
+                error.key().is_some_and(|path| path.ends_with(key)),
+                "{error}"
+            );
+            assert_eq!(error.value(), Some(wrong), "{error}");
+            assert!(!error.expected().is_empty(), "{error}");
+        }
+        tried += 1;
+    }
+    assert_eq!(tried, 20);
+}
+
+#[test]
 fn the_example_in_the_documentation_is_read() {
-    let documentation = include_str!("../../../src/scene/mod.rs");
-    let lines: Vec<&str> = documentation
-        .lines()
-        .skip_while(|line| *line != "//! ```ron")
-        .skip(1)
-        .take_while(|line| *line != "//! ```")
-        .map(|line| line.trim_start_matches("//!"))
-        .collect();
-    let scene =
-        Scene::parse("example", &lines.join("\n")).unwrap_or_else(|error| panic!("{error}"));
+    let documentation = include_str!("../../../scenes/README.md");
+    let (_, rest) = documentation.split_once("```ron").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    let scene = Scene::parse("example", example).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(scene.materials.len(), 3);
 }
 
