@@ -234,14 +234,19 @@ fn open_window(
         size: picture.size.into(),
         offscreen: picture.offscreen,
     });
-    run(Job {
+    let job = Job {
         name,
         scene,
         options,
         picture,
-    })
-    .map_err(|error| HeadlessError::Input(error.to_string()))?;
-    Ok(0)
+    };
+    Ok(run(job).map_or_else(
+        |error| {
+            print_chain(&error);
+            error.exit_code()
+        },
+        |()| 0,
+    ))
 }
 
 #[cfg(not(feature = "desktop"))]

@@ -18,6 +18,7 @@
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `rig` | Bevy's camera entity that follows it |
 //! | `overlay` | scale bar, clock, legend in the picture |
+//! | `png` | pictures as files |
 
 mod camera;
 mod colour;
@@ -25,12 +26,14 @@ mod container;
 mod grains;
 mod occlusion;
 mod overlay;
+mod png;
 mod rig;
 mod settings;
 
 pub use camera::{OrbitCamera, apply_response};
 pub use colour::species_colour;
 pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
+pub use png::save_png;
 pub use rig::WorldCamera;
 pub use settings::{
     Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, ProjectionKind,

@@ -63,9 +63,22 @@ pub enum WindowError {
     /// The picture could not be taken.
     #[error("no picture was taken: {0}")]
     Picture(String),
+    /// The run met a physical fault before the moment of the picture.
+    #[error("no picture was taken: {0}")]
+    Fault(String),
     /// The app ended with an error that it has already told.
     #[error("the window ended with an error")]
     Ended,
+}
+
+impl WindowError {
+    /// What the process ends with: 3 for a physical fault, 1 for the rest.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Fault(_) => 3,
+            Self::Missing(_) | Self::Picture(_) | Self::Ended => 1,
+        }
+    }
 }
 
 /// Opens the laboratory and returns when it is closed.
@@ -85,7 +98,7 @@ pub fn run(job: Job) -> Result<(), WindowError> {
     let outcome = Outcome::default();
     let mut app = quietly(|| build(job, software, outcome.clone())).map_err(Missing::Libraries)?;
     let exit = app.run();
-    outcome.result().map_err(WindowError::Picture)?;
+    outcome.result()?;
     exit.is_success().then_some(()).ok_or(WindowError::Ended)
 }
 

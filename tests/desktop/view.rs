@@ -10,11 +10,11 @@ use glam::DVec3;
 use grainfall::scene::ContactLaw;
 use grainfall::view::{
     Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, Shown,
-    Side, ViewPlugin, ViewSettings, species_colour,
+    Side, ViewPlugin, ViewSettings, save_png, species_colour,
 };
 use grainfall::window::environment::adapters;
 use grainfall::window::picture::{
-    Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, save, screenshot,
+    Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use grainfall::world::{
     Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
@@ -29,7 +29,7 @@ const SIZE: UVec2 = UVec2::new(640, 360);
 static STUDIO: Mutex<()> = Mutex::new(());
 
 /// Leave to draw, or a word that the test `name` did not run.
-fn studio(name: &str) -> Option<MutexGuard<'static, ()>> {
+pub fn studio(name: &str) -> Option<MutexGuard<'static, ()>> {
     let guard = STUDIO.lock().unwrap_or_else(PoisonError::into_inner);
     if !adapters().is_empty() {
         return Some(guard);
@@ -115,7 +115,7 @@ fn photograph(
         })
         .expect("a picture within a hundred frames");
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
-    save(&image, &folder.join(format!("{name}.png"))).unwrap();
+    save_png(&image, &folder.join(format!("{name}.png"))).unwrap();
     Photograph {
         pixels: image.data.unwrap(),
         camera: app.world().resource::<OrbitCamera>().clone(),
@@ -402,4 +402,28 @@ fn drum_fills_the_picture_and_one_sees_in() {
     assert!(heights > 0.75 * SIZE.y as f32, "{heights}");
     let place = photograph.camera.project(grain.as_vec3()).unwrap().0;
     assert!(photograph.covered(place));
+}
+
+#[test]
+fn mark_turns_with_the_drum() {
+    let Some(_studio) = studio("mark_turns_with_the_drum") else {
+        return;
+    };
+    for angle in [0.4_f32, 2.0] {
+        let mut world = drum_of_grains();
+        world.grains = Grains::default();
+        world.container.angle = f64::from(angle);
+        let photograph = photograph("mark", world, |_, camera| camera.look_from(Side::Front));
+        // Across the bold spoke on the back plate, halfway out: red exceeds blue only at the mark.
+        let warmth = |azimuth: f32| {
+            let (sin, cos) = azimuth.sin_cos();
+            let x = Vec3::new(0.03 * cos, 0.03 * sin, -0.011);
+            let [red, _, blue] = photograph.at(photograph.camera.project(x).unwrap().0);
+            i16::from(red) - i16::from(blue)
+        };
+        assert!(warmth(angle) > 20, "{}", warmth(angle));
+        for away in [0.3, 1.0, 3.0] {
+            assert!(warmth(angle + away) < 0, "{away}");
+        }
+    }
 }
