@@ -6,7 +6,7 @@ use crate::simulation::Simulation;
 use crate::view::{ViewSettings, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Fulfils every request in the order in which it was made.
 pub fn fulfil_requests(

@@ -28,6 +28,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::PathBuf;
 use std::time::Duration;
 
+/// Least time between two updates without a display, so that the solver has the cores.
+const FRAME: Duration = Duration::from_millis(16);
+
 /// What to open and how.
 #[derive(Clone, Debug)]
 pub struct Job {
@@ -110,7 +113,7 @@ fn build(job: Job, software: bool, outcome: Outcome) -> App {
         Some(picture) if picture.offscreen => app.add_plugins((
             offscreen_plugins().set(log()),
             CanvasPlugin(picture.size),
-            ScheduleRunnerPlugin::run_loop(Duration::ZERO),
+            ScheduleRunnerPlugin::run_loop(FRAME),
         )),
         picture => app.add_plugins(window_plugins(title, picture.as_ref())),
     };
