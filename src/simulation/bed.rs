@@ -18,8 +18,12 @@ const MAGIC: &[u8; 12] = b"grainfallbed";
 /// Bytes before the contents: magic, format, key, checksum.
 const HEADER: usize = MAGIC.len() + 4 + 2 * blake3::OUT_LEN;
 
-/// Beds that come with the program.
-static SHIPPED: &[&[u8]] = &[];
+/// Beds that come with the program, those of the paper's scenes; `grainfall bed SCENE --out FILE` makes them.
+static SHIPPED: [&[u8]; 3] = [
+    include_bytes!("../../assets/beds/dry-r3.bed"),
+    include_bytes!("../../assets/beds/dry-r2.bed"),
+    include_bytes!("../../assets/beds/dry-r1.25.bed"),
+];
 
 /// Identity of a bed: a hash of everything that determines it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +88,14 @@ impl BedStore {
         Self {
             shipped: true,
             folder,
+        }
+    }
+
+    /// The shipped beds alone; none is kept.
+    pub fn shipped() -> Self {
+        Self {
+            shipped: true,
+            folder: None,
         }
     }
 

@@ -269,6 +269,31 @@ fn kept_bed_is_the_settled_bed_to_the_bit() {
 }
 
 #[test]
+fn paper_scenes_open_on_shipped_beds() {
+    for name in ["dry-r3", "dry-r2", "dry-r1.25"] {
+        let scene = Arc::new(scene(name));
+        let time_step = advise(&scene).time_step;
+        let mut preparation = Preparation::new(scene, time_step, 1, BedStore::shipped());
+        assert!(
+            matches!(preparation.advance(), Ok(Prepared::Ready(_))),
+            "the bed of {name} is stale: make it anew with `cargo run --release -- bed {name} --out assets/beds/{name}.bed`"
+        );
+    }
+}
+
+#[test]
+fn shipped_bed_is_the_settled_bed_to_the_bit() {
+    let scene = scene("dry-r3");
+    let (shipped, _) = prepared(&scene, 1, BedStore::shipped());
+    let (settled, _) = prepared(&scene, 2, BedStore::none());
+    assert_eq!(
+        shipped.world().hash(),
+        settled.world().hash(),
+        "settling or the solver's arithmetic changed: raise the beds' format and make the files in assets/beds anew"
+    );
+}
+
+#[test]
 fn damaged_bed_is_settled_anew() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene("small-drum");
