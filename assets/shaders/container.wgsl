@@ -98,7 +98,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
     let to_eye = normalize(view.world_position - in.world_position.xyz);
     let normal = normalize(in.world_normal) * select(-1.0, 1.0, front);
     let pane = vec4<f32>(look.surface.rgb * matt_light(normal) + 0.05 * gloss(normal, to_eye, 12.0), look.surface.a);
-    var colour = mix(pane, vec4<f32>(look.line.rgb, max(look.line.a, pane.a)), drawn.x * look.line.a);
-    colour = mix(colour, vec4<f32>(look.mark.rgb, max(look.mark.a, pane.a)), drawn.y * look.mark.a);
+    var colour = mix(pane, vec4<f32>(look.line.rgb, max(look.line.a, pane.a)), drawn.x);
+    colour = mix(colour, vec4<f32>(look.mark.rgb, max(look.mark.a, pane.a)), drawn.y);
     return vec4<f32>(colour.rgb, colour.a * veil);
 }

@@ -7,7 +7,14 @@ struct Grain {
     centre: vec3<f32>,
     radius: f32,
     colour: vec3<f32>,
-    unused: f32,
+    // Share of the sky that neighbours hide: mean, gradient and quadrupole over the normal.
+    hidden_mean: f32,
+    hidden_gradient: vec3<f32>,
+    hidden_xx: f32,
+    hidden_yy: f32,
+    hidden_xy: f32,
+    hidden_yz: f32,
+    hidden_zx: f32,
 }
 
 struct Picture {
@@ -120,18 +127,30 @@ fn fragment(covered: Covered) -> Painted {
         hit = ray.origin + t * ray.direction;
         light = section(grain, hit, covered.pixel * grain.radius);
     } else {
-        light = surface(grain.colour, normal, to_eye);
+        light = surface(grain, normal, to_eye);
     }
 
     let clip = view.clip_from_world * vec4<f32>(hit, 1.0);
     return Painted(vec4<f32>(light, coverage), clip.z / clip.w);
 }
 
-// A grain's skin: matt, a soft gloss, darker where it turns away so that neighbours stand apart.
-fn surface(colour: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+// How much of the sky the neighbours leave open where the surface has this normal.
+fn open_sky(grain: Grain, n: vec3<f32>) -> f32 {
+    let squares = grain.hidden_xx * n.x * n.x + grain.hidden_yy * n.y * n.y
+        - (grain.hidden_xx + grain.hidden_yy) * n.z * n.z;
+    let products = grain.hidden_xy * n.x * n.y + grain.hidden_yz * n.y * n.z + grain.hidden_zx * n.z * n.x;
+    let hidden = grain.hidden_mean + dot(grain.hidden_gradient, n) + squares + 2.0 * products;
+    // Three orders blur what a neighbour hides; half as much again brings the depth of a gap back.
+    return clamp(1.0 - 1.5 * hidden, 0.0, 1.0);
+}
+
+// A grain's skin: matt with a soft gloss, darker in the gaps between grains and a little where it turns away.
+fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let facing = max(dot(normal, to_eye), 0.0);
-    let turned = mix(0.42, 1.0, smoothstep(0.0, 0.75, facing));
-    return colour * matt_light(normal) * turned + vec3<f32>(0.16 * gloss(normal, to_eye, 28.0));
+    let turned = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
+    let sky = mix(0.16, 1.0, open_sky(grain, normal));
+    let shine = 0.18 * sky * gloss(normal, to_eye, 28.0);
+    return grain.colour * matt_light(normal) * turned * sky + vec3<f32>(shine);
 }
 
 // A flat section with a darker rim.

@@ -11,7 +11,7 @@ fn key_direction() -> vec3<f32> {
 
 // Light that a matt surface of this normal sends back.
 fn matt_light(normal: vec3<f32>) -> f32 {
-    let sky = mix(0.34, 0.62, 0.5 + 0.5 * normal.y);
+    let sky = mix(0.38, 0.68, 0.5 + 0.5 * normal.y);
     // Wrapped, so that the terminator is soft.
     let key = max((dot(normal, key_direction()) + 0.25) / 1.25, 0.0);
     return sky + 0.62 * key;

@@ -11,10 +11,13 @@ use super::{Ending, HeadlessError, Job};
 use crate::measure::{Summary, summarise};
 use crate::simulation::{SMALLEST_DROP, Simulation};
 use crate::world::{Clock, World};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Share of a run, from its start, that results leave out: the paper averages over the last 30 of 50 s.
 const LEFT_OUT: f64 = 0.4;
+
+/// Wall-clock time after which a run that goes on writes its series anew, for those who look at it meanwhile.
+const LISTING_TIME: Duration = Duration::from_secs(10);
 
 /// Writes a run's files.
 pub struct Recorder<'a> {
@@ -22,7 +25,11 @@ pub struct Recorder<'a> {
     folder: OutputFolder,
     /// Times of the grains' files written [s].
     times: Vec<f64>,
+    /// Outputs that are done or past.
+    outputs: u64,
     started: Instant,
+    /// When the lists of what was written were last written themselves.
+    listed: Instant,
 }
 
 impl<'a> Recorder<'a> {
@@ -35,7 +42,9 @@ impl<'a> Recorder<'a> {
             job,
             folder: OutputFolder::open(&job.out)?,
             times: Vec::new(),
+            outputs: 0,
             started: Instant::now(),
+            listed: Instant::now(),
         };
         recorder.write_summary(simulation, "running", None)?;
         Ok(recorder)
@@ -43,7 +52,7 @@ impl<'a> Recorder<'a> {
 
     /// The step at which the run should hold next: an output time or the end.
     pub fn next_stop(&self, clock: &Clock) -> u64 {
-        let output = self.times.len() as f64 * self.job.scene.output_interval;
+        let output = self.outputs as f64 * self.job.scene.output_interval;
         clock.step_at(output.min(self.job.scene.duration))
     }
 
@@ -56,10 +65,18 @@ impl<'a> Recorder<'a> {
         simulation: &Simulation,
         world: &World,
     ) -> Result<bool, HeadlessError> {
-        let over = world.clock.step >= world.clock.step_at(self.job.scene.duration);
-        if over || world.clock.step >= self.next_stop(&world.clock) {
-            self.write_grains(world)?;
+        let clock = &world.clock;
+        let over = clock.step >= clock.step_at(self.job.scene.duration);
+        if clock.step < self.next_stop(clock) {
+            return Ok(over);
+        }
+        self.write_grains(world)?;
+        while !over && self.next_stop(clock) <= clock.step {
+            self.outputs += 1;
+        }
+        if self.listed.elapsed() > LISTING_TIME {
             self.write_lists(simulation)?;
+            self.listed = Instant::now();
         }
         Ok(over)
     }

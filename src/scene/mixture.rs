@@ -48,7 +48,7 @@ pub fn size_classes(count: usize, species: &[SceneSpecies]) -> Vec<SizeClass> {
 }
 
 /// `total` split in proportion to `shares` by the method of the largest remainder; the first wins a tie.
-pub fn apportion(total: usize, shares: &[f64]) -> Vec<usize> {
+fn apportion(total: usize, shares: &[f64]) -> Vec<usize> {
     let sum: f64 = shares.iter().sum();
     if sum <= 0.0 {
         let mut all_to_the_first = vec![0; shares.len()];

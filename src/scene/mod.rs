@@ -18,7 +18,7 @@ mod syntax;
 pub use built_in::{BuiltIn, built_in};
 pub use error::SceneError;
 pub use lattice::Lattice;
-pub use mixture::{SizeClass, apportion, size_classes};
+pub use mixture::{SizeClass, size_classes};
 pub use set::seconds;
 
 use file::SceneFile;

@@ -7,7 +7,7 @@
 use super::settling::{motions, standing, start};
 use crate::files::write_whole;
 use crate::world::{Contact, Partner, World};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::PathBuf;
@@ -32,15 +32,23 @@ pub struct BedStore {
     folder: Option<PathBuf>,
 }
 
-/// What settling adds to a built world.
+/// What settling adds to a built world. Beds have forces and springs in single precision ([`start`]).
 #[derive(Serialize, Deserialize)]
 struct Bed {
     position: Vec<DVec3>,
-    force: Vec<DVec3>,
-    torque: Vec<DVec3>,
-    rolling_torque: Vec<DVec3>,
+    force: Vec<Vec3>,
+    torque: Vec<Vec3>,
+    rolling_torque: Vec<Vec3>,
     contact_count: Vec<u32>,
-    contacts: Vec<Contact>,
+    contacts: Vec<BedContact>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct BedContact {
+    grain: u32,
+    partner: Partner,
+    spring: Vec3,
+    force: Vec3,
 }
 
 /// Why a file is not the bed that was looked for.
@@ -165,45 +173,80 @@ impl Bed {
         let grains = &settled.grains;
         Self {
             position: grains.position.clone(),
-            force: grains.force.clone(),
-            torque: grains.torque.clone(),
-            rolling_torque: grains.rolling_torque.clone(),
+            force: single(&grains.force),
+            torque: single(&grains.torque),
+            rolling_torque: single(&grains.rolling_torque),
             contact_count: grains.contact_count.clone(),
-            contacts: settled.contacts.clone(),
+            contacts: settled.contacts.iter().map(BedContact::of).collect(),
         }
     }
 
     /// One finite entry per grain in each column, and contacts only between grains and walls that exist.
     fn fits(&self, built: &World) -> bool {
         let count = built.grains.len();
-        let columns = [
-            &self.position,
-            &self.force,
-            &self.torque,
-            &self.rolling_torque,
-        ];
+        let walls = built.container.walls.len();
         let whole =
-            |column: &Vec<DVec3>| column.len() == count && column.iter().all(|v| v.is_finite());
-        let exists = |contact: &Contact| {
-            let partner = match contact.partner {
-                Partner::Grain(j) => (j as usize) < count,
-                Partner::Wall(w) => (w as usize) < built.container.walls.len(),
-            };
-            partner && (contact.grain as usize) < count && contact.spring.is_finite()
-        };
-        columns.into_iter().all(whole)
+            |column: &Vec<Vec3>| column.len() == count && column.iter().all(|v| v.is_finite());
+        self.position.len() == count
+            && self.position.iter().all(|x| x.is_finite())
+            && [&self.force, &self.torque, &self.rolling_torque]
+                .into_iter()
+                .all(whole)
             && self.contact_count.len() == count
-            && self.contacts.iter().all(exists)
+            && self
+                .contacts
+                .iter()
+                .all(|contact| contact.is_between(count, walls))
     }
 
     fn laid_into(self, built: &World) -> World {
         let mut world = built.clone();
         world.grains.position = self.position;
-        world.grains.force = self.force;
-        world.grains.torque = self.torque;
-        world.grains.rolling_torque = self.rolling_torque;
+        world.grains.force = double(&self.force);
+        world.grains.torque = double(&self.torque);
+        world.grains.rolling_torque = double(&self.rolling_torque);
         world.grains.contact_count = self.contact_count;
-        world.contacts = self.contacts;
+        world.contacts = self.contacts.iter().map(BedContact::laid).collect();
         start(world, &motions(built))
     }
+}
+
+impl BedContact {
+    fn of(contact: &Contact) -> Self {
+        Self {
+            grain: contact.grain,
+            partner: contact.partner,
+            spring: contact.spring.as_vec3(),
+            force: contact.force.as_vec3(),
+        }
+    }
+
+    fn laid(&self) -> Contact {
+        Contact {
+            grain: self.grain,
+            partner: self.partner,
+            spring: self.spring.as_dvec3(),
+            force: self.force.as_dvec3(),
+        }
+    }
+
+    /// Whether it is a finite contact of one of `grains` grains with another or with one of `walls` walls.
+    fn is_between(&self, grains: usize, walls: usize) -> bool {
+        let partner = match self.partner {
+            Partner::Grain(other) => (other as usize) < grains,
+            Partner::Wall(wall) => (wall as usize) < walls,
+        };
+        partner
+            && (self.grain as usize) < grains
+            && self.spring.is_finite()
+            && self.force.is_finite()
+    }
+}
+
+fn single(column: &[DVec3]) -> Vec<Vec3> {
+    column.iter().map(|v| v.as_vec3()).collect()
+}
+
+fn double(column: &[Vec3]) -> Vec<DVec3> {
+    column.iter().map(|v| v.as_dvec3()).collect()
 }

@@ -298,6 +298,9 @@ impl Simulation {
         self.status = update.status.unwrap_or(self.status.clone());
         self.parameters = update.parameters.unwrap_or(self.parameters.clone());
         self.profile = update.profile.unwrap_or(std::mem::take(&mut self.profile));
+        if self.status != Status::Running {
+            self.rate.since = None;
+        }
         if let Some(world) = update.world {
             self.rate.follow(world.time());
             self.world = Some(world);

@@ -6,10 +6,14 @@
 use super::bed::{BedKey, BedStore};
 use super::settling::{Settling, needs_settling};
 use super::{Run, bed};
+use crate::measure::elastic_energy;
 use crate::scene::Scene;
-use crate::solver::Fault;
-use crate::world::{self, World};
+use crate::solver::{Fault, Solver};
+use crate::world::{self, Clock, World};
 use std::sync::Arc;
+
+/// A time so short that nothing moves, in time steps.
+const NO_TIME: f64 = 1e-12;
 
 /// A run that is being prepared.
 pub struct Preparation {
@@ -90,7 +94,7 @@ impl Preparation {
     fn place(&mut self) -> Prepared {
         let built = world::build(&self.scene, self.time_step);
         if !needs_settling(&self.scene) {
-            return self.ready(built);
+            return self.ready(with_forces(built, self.threads));
         }
         let key = BedKey::of(&built);
         if let Some(settled) = self.beds.find(key, &built) {
@@ -114,6 +118,28 @@ impl Preparation {
     fn ready(&self, bed: World) -> Prepared {
         Prepared::Ready(Box::new(Run::new(self.scene.clone(), bed, self.threads)))
     }
+}
+
+/// `built` with the contacts and forces of grains that touch from the start, their elastic energy in the ledger.
+///
+/// A step of next to no length leaves every grain in its place and the forces there behind.
+fn with_forces(built: World, threads: usize) -> World {
+    let mut probe = built.clone();
+    probe.clock = Clock::new(NO_TIME * built.clock.time_step);
+    if Solver::new(threads).advance(&mut probe, 1).is_err() {
+        return built;
+    }
+    let mut world = World {
+        clock: built.clock,
+        container: built.container,
+        ..probe
+    };
+    world.grains.position = built.grains.position;
+    world.grains.velocity = built.grains.velocity;
+    world.grains.spin = built.grains.spin;
+    let elastic = elastic_energy(&world);
+    world.restart_clock(elastic);
+    world
 }
 
 /// The file of the settled bed of `scene`, made anew: what `assets/beds` holds.

@@ -22,7 +22,7 @@ pub struct Body {
     pub velocity: Row,
     /// Spin half a step ago [rad/s]; radius [m].
     pub spin: Row,
-    /// Spin after the step if nothing resisted rolling [rad/s]; inertia over time step and contact count [N m s].
+    /// Spin after the step if nothing resisted rolling [rad/s]; time step and contact count over inertia [1/(N m s)].
     pub free_spin: Row,
 }
 
@@ -60,24 +60,39 @@ pub struct Action {
     pub exchanged: Row,
 }
 
-/// How a grain meets its partner, side by side for as many pairs as there are lanes.
-struct Meeting<N> {
-    /// Unit vector from the grain to its partner.
+/// Partners side by side, as many as there are lanes. What a law needs of them is read when it is needed: registers are
+/// few.
+trait Partners<N: Lanes>: Copy {
+    /// Whether the second side is a wall: its velocity is taken at the contact, so that it needs no arm.
+    const WALL: bool;
+
+    /// Unit vectors from the grains to their partners, and the overlaps (negative at a gap), for these radii.
+    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N);
+    /// Velocity of the partner at the contact, where it is a wall.
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3];
+    /// Velocity of the grain relative to its partner.
+    fn velocity(self, processor: N::Processor) -> [N; 3];
+    /// Spins of both.
+    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]);
+    /// Relative spin for rolling friction, and how much of it a unit of torque stops.
+    fn rolling(self, processor: N::Processor) -> ([N; 3], N);
+}
+
+/// Pairs of grains.
+#[derive(Clone, Copy)]
+struct TwoGrains<'a> {
+    first: [&'a Body; 4],
+    second: [&'a Body; 4],
+}
+
+/// Grains at one wall.
+#[derive(Clone, Copy)]
+struct GrainAndWall<'a, N> {
+    grain: [&'a Body; 4],
+    wall: &'a WallBody,
     normal: [N; 3],
-    /// Overlap, negative at a gap.
-    depth: N,
-    radius: N,
-    /// Zero for a wall: its velocity is taken at the contact.
-    partner_radius: N,
-    /// Of the grain relative to its partner.
-    velocity: [N; 3],
-    spin: [N; 3],
-    partner_spin: [N; 3],
-    /// Relative spin for rolling friction, and the inertia that stops it.
-    rolling_spin: [N; 3],
-    stopping: N,
-    /// Velocity of a wall at the contact.
-    wall_velocity: [N; 3],
+    gap: N,
+    foot: [N; 3],
 }
 
 #[inline(always)]
@@ -90,88 +105,143 @@ fn rows<'a>(bodies: [&'a Body; 4], row: impl Fn(&'a Body) -> &'a Row) -> [&'a Ro
     ]
 }
 
-/// Four grains, of which the first [`Lanes::COUNT`] are those of `pairs`.
+/// Four grains, of which the first [`Lanes::COUNT`] are named by `pairs`.
 #[inline(always)]
-fn first_bodies<'a, N: Lanes>(bodies: &'a [Body], pairs: &[Pair]) -> [&'a Body; 4] {
-    let body = |k: usize| &bodies[pairs[k.min(N::COUNT - 1)].grain as usize];
-    [body(0), body(1), body(2), body(3)]
+fn bodies_of<'a, N: Lanes>(
+    bodies: &'a [Body],
+    pairs: &[Pair],
+    side: impl Fn(&Pair) -> u32,
+) -> [&'a Body; 4] {
+    let last = N::COUNT - 1;
+    [
+        &bodies[side(&pairs[0]) as usize],
+        &bodies[side(&pairs[1.min(last)]) as usize],
+        &bodies[side(&pairs[2.min(last)]) as usize],
+        &bodies[side(&pairs[3.min(last)]) as usize],
+    ]
 }
 
-#[inline(always)]
-fn second_bodies<'a, N: Lanes>(bodies: &'a [Body], pairs: &[Pair]) -> [&'a Body; 4] {
-    let body = |k: usize| &bodies[pairs[k.min(N::COUNT - 1)].partner as usize];
-    [body(0), body(1), body(2), body(3)]
-}
+impl<N: Lanes> Partners<N> for TwoGrains<'_> {
+    const WALL: bool = false;
 
-#[inline(always)]
-fn meet_grains<N: Lanes>(processor: N::Processor, a: [&Body; 4], b: [&Body; 4]) -> Meeting<N> {
-    let [ax, ay, az, _] = N::gather(processor, rows(a, |body| &body.position));
-    let [bx, by, bz, _] = N::gather(processor, rows(b, |body| &body.position));
-    let distance = minus([bx, by, bz], [ax, ay, az]);
-    let length = dot(distance, distance).sqrt();
-    let [ax, ay, az, _] = N::gather(processor, rows(a, |body| &body.velocity));
-    let [bx, by, bz, _] = N::gather(processor, rows(b, |body| &body.velocity));
-    let velocity = minus([ax, ay, az], [bx, by, bz]);
-    let [sx, sy, sz, radius] = N::gather(processor, rows(a, |body| &body.spin));
-    let [px, py, pz, partner_radius] = N::gather(processor, rows(b, |body| &body.spin));
-    let [ax, ay, az, stop_a] = N::gather(processor, rows(a, |body| &body.free_spin));
-    let [bx, by, bz, stop_b] = N::gather(processor, rows(b, |body| &body.free_spin));
-    Meeting {
-        normal: times(distance, N::splat(processor, 1.0) / length),
-        depth: radius + partner_radius - length,
-        radius,
-        partner_radius,
-        velocity,
-        spin: [sx, sy, sz],
-        partner_spin: [px, py, pz],
-        rolling_spin: minus([ax, ay, az], [bx, by, bz]),
-        // Half the smaller inertia never exceeds the pair's reduced one.
-        stopping: N::splat(processor, 0.5) * N::choose(stop_a.exceeds(stop_b), stop_b, stop_a),
-        wall_velocity: [N::splat(processor, 0.0); 3],
+    #[inline(always)]
+    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
+        let (a, b) = (
+            rows(self.first, |body| &body.position),
+            rows(self.second, |body| &body.position),
+        );
+        let [x, y, z, _] = N::gather_difference(processor, b, a);
+        let length = dot([x, y, z], [x, y, z]).sqrt();
+        let inverse = N::splat(processor, 1.0) / length;
+        (times([x, y, z], inverse), radii[0] + radii[1] - length)
+    }
+
+    #[inline(always)]
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
+        [N::splat(processor, 0.0); 3]
+    }
+
+    #[inline(always)]
+    fn velocity(self, processor: N::Processor) -> [N; 3] {
+        let (a, b) = (
+            rows(self.first, |body| &body.velocity),
+            rows(self.second, |body| &body.velocity),
+        );
+        let [x, y, z, _] = N::gather_difference(processor, a, b);
+        [x, y, z]
+    }
+
+    #[inline(always)]
+    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]) {
+        let [ax, ay, az, _] = N::gather(processor, rows(self.first, |body| &body.spin));
+        let [bx, by, bz, _] = N::gather(processor, rows(self.second, |body| &body.spin));
+        ([ax, ay, az], [bx, by, bz])
+    }
+
+    #[inline(always)]
+    fn rolling(self, processor: N::Processor) -> ([N; 3], N) {
+        let (a, b) = (
+            rows(self.first, |body| &body.free_spin),
+            rows(self.second, |body| &body.free_spin),
+        );
+        let [x, y, z, compliance] = N::gather_difference_and_sum(processor, a, b);
+        ([x, y, z], compliance)
     }
 }
 
-#[inline(always)]
-fn meet_wall<N: Lanes>(processor: N::Processor, a: [&Body; 4], wall: &WallBody) -> Meeting<N> {
-    let zero = N::splat(processor, 0.0);
-    let [x, y, z, _] = N::gather(processor, rows(a, |body| &body.position));
-    let position = [x, y, z];
-    let (gap, normal) = match wall.surface {
-        Surface::Plane { point, normal } => {
-            let normal = splat_vector::<N>(processor, normal);
-            (
-                dot(minus(position, splat_vector(processor, point)), normal),
-                [-normal[0], -normal[1], -normal[2]],
-            )
+impl<'a, N: Lanes> GrainAndWall<'a, N> {
+    #[inline(always)]
+    fn new(processor: N::Processor, grain: [&'a Body; 4], wall: &'a WallBody) -> Self {
+        let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
+        let position = [x, y, z];
+        let (gap, normal) = match wall.surface {
+            Surface::Plane { point, normal } => {
+                let inward = splat_vector::<N>(processor, normal);
+                (
+                    dot(minus(position, splat_vector(processor, point)), inward),
+                    splat_vector(processor, -normal),
+                )
+            }
+            Surface::Cylinder { radius } => {
+                let rho = (x * x + y * y).sqrt();
+                (
+                    N::splat(processor, radius) - rho,
+                    [x / rho, y / rho, N::splat(processor, 0.0)],
+                )
+            }
+        };
+        // A centre on or behind the surface is no contact any more: the check after the step reports it.
+        let gap = N::choose(
+            gap.exceeds(N::splat(processor, 0.0)),
+            gap,
+            N::splat(processor, f64::NAN),
+        );
+        Self {
+            grain,
+            wall,
+            normal,
+            gap,
+            foot: plus(position, times(normal, gap)),
         }
-        Surface::Cylinder { radius } => {
-            let rho = (x * x + y * y).sqrt();
-            (N::splat(processor, radius) - rho, [x / rho, y / rho, zero])
-        }
-    };
-    // A centre on or behind the surface is no contact any more: the check after the step reports it.
-    let gap = N::choose(gap.exceeds(zero), gap, N::splat(processor, f64::NAN));
-    let foot = plus(position, times(normal, gap));
-    let partner_spin = splat_vector(processor, wall.motion.spin);
-    let wall_velocity = plus(
-        splat_vector(processor, wall.motion.velocity),
-        cross(partner_spin, foot),
-    );
-    let [x, y, z, _] = N::gather(processor, rows(a, |body| &body.velocity));
-    let velocity = minus([x, y, z], wall_velocity);
-    let [sx, sy, sz, radius] = N::gather(processor, rows(a, |body| &body.spin));
-    let [x, y, z, stopping] = N::gather(processor, rows(a, |body| &body.free_spin));
-    Meeting {
-        normal,
-        depth: radius - gap,
-        radius,
-        partner_radius: zero,
-        velocity,
-        spin: [sx, sy, sz],
-        partner_spin,
-        rolling_spin: minus([x, y, z], partner_spin),
-        stopping,
-        wall_velocity,
+    }
+}
+
+impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
+    const WALL: bool = true;
+
+    #[inline(always)]
+    fn geometry(self, _processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
+        (self.normal, radii[0] - self.gap)
+    }
+
+    #[inline(always)]
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
+        let motion = &self.wall.motion;
+        plus(
+            splat_vector(processor, motion.velocity),
+            cross(splat_vector(processor, motion.spin), self.foot),
+        )
+    }
+
+    #[inline(always)]
+    fn velocity(self, processor: N::Processor) -> [N; 3] {
+        let [x, y, z, _] = N::gather(processor, rows(self.grain, |body| &body.velocity));
+        minus([x, y, z], self.wall_velocity(processor))
+    }
+
+    #[inline(always)]
+    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]) {
+        let [x, y, z, _] = N::gather(processor, rows(self.grain, |body| &body.spin));
+        ([x, y, z], splat_vector(processor, self.wall.motion.spin))
+    }
+
+    #[inline(always)]
+    fn rolling(self, processor: N::Processor) -> ([N; 3], N) {
+        let [x, y, z, compliance] = N::gather(processor, rows(self.grain, |body| &body.free_spin));
+        (
+            minus([x, y, z], splat_vector(processor, self.wall.motion.spin)),
+            compliance,
+        )
     }
 }
 
@@ -184,104 +254,84 @@ fn splat_vector<N: Lanes>(processor: N::Processor, v: DVec3) -> [N; 3] {
     ]
 }
 
-/// Constants of the pairs: as a rule all of one kind.
+/// Constants of pairs side by side: the law's, then friction, rolling arm and both radii.
+type Constants<N> = ([N; 4], [N; 4]);
+
 #[inline(always)]
-fn pair_constants<N: Lanes>(
+fn common_constants<N: Lanes>(processor: N::Processor, constants: &PairConstants) -> Constants<N> {
+    (
+        N::spread(processor, &constants.coefficients),
+        N::spread(processor, &constants.contact),
+    )
+}
+
+#[inline(always)]
+fn own_constants<N: Lanes>(
     processor: N::Processor,
     constants: &[PairConstants],
     pairs: &[Pair],
-) -> ([N; 4], [N; 4]) {
-    let kind = |k: usize| pairs[k.min(N::COUNT - 1)].kind;
-    let first = &constants[kind(0) as usize];
-    if kind(1) == kind(0) && kind(2) == kind(0) && kind(3) == kind(0) {
-        return (
-            N::spread(processor, &first.coefficients),
-            N::spread(processor, &first.friction),
-        );
-    }
-    let all = [
-        first,
-        &constants[kind(1) as usize],
-        &constants[kind(2) as usize],
-        &constants[kind(3) as usize],
-    ];
+) -> Constants<N> {
+    let of = |k: usize| &constants[pairs[k.min(N::COUNT - 1)].kind as usize];
+    let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
     (
         N::gather(
             processor,
             [
-                &all[0].coefficients,
-                &all[1].coefficients,
-                &all[2].coefficients,
-                &all[3].coefficients,
+                &a.coefficients,
+                &b.coefficients,
+                &c.coefficients,
+                &d.coefficients,
             ],
         ),
-        N::gather(
-            processor,
-            [
-                &all[0].friction,
-                &all[1].friction,
-                &all[2].friction,
-                &all[3].friction,
-            ],
-        ),
+        N::gather(processor, [&a.contact, &b.contact, &c.contact, &d.contact]),
     )
 }
 
 /// Contact law, sliding and rolling of as many pairs as there are lanes.
 #[inline(always)]
-fn interact<N: Lanes, L: Law, const WALL: bool>(
+fn interact<N: Lanes, L: Law, P: Partners<N>>(
     processor: N::Processor,
-    all: &Surroundings<'_, L>,
-    meeting: &Meeting<N>,
-    pairs: &[Pair],
+    law: L,
+    dt: f64,
+    partners: P,
+    constants: &Constants<N>,
     springs: &mut [Row],
     actions: &mut [Action],
 ) {
-    let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
-    let (one, dt) = (N::splat(processor, 1.0), N::splat(processor, all.dt));
-    let &Meeting {
-        normal,
-        depth,
-        radius,
-        partner_radius,
-        velocity,
-        spin,
-        partner_spin,
-        ..
-    } = meeting;
-    let &Meeting {
-        rolling_spin,
-        stopping,
-        wall_velocity,
-        ..
-    } = meeting;
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let (half, dt) = (N::splat(processor, 0.5), N::splat(processor, dt));
+    let (law_constants, [friction, rolling_arm, radius, partner_radius]) = *constants;
+
+    let (normal, depth) = partners.geometry(processor, [radius, partner_radius]);
     let touching = depth.exceeds(zero);
     let overlap = N::choose(touching, depth, zero);
     let arm = radius - half * overlap;
-    let partner_arm = if WALL {
+    let partner_arm = if P::WALL {
         zero
     } else {
         partner_radius - half * overlap
     };
 
     // Normal force.
+    let velocity = partners.velocity(processor);
     let approach = dot(velocity, normal);
-    let (law_constants, [friction, rolling_arm, _, _]) =
-        pair_constants(processor, all.constants, pairs);
     let Coefficients {
         normal_stiffness,
         normal_damping,
         tangential_stiffness,
         tangential_damping,
-    } = all.law.coefficients(law_constants, overlap);
+    } = law.coefficients(law_constants, overlap);
     let normal_damping = N::choose(touching, normal_damping, zero);
     let elastic = normal_stiffness * overlap;
-    let repulsion = all
-        .law
-        .normal_force(elastic, normal_damping * approach, zero);
+    let repulsion = law.normal_force(elastic, normal_damping * approach, zero);
 
     // Slip of the grain's surface over its partner's, and the spring it stretches.
-    let rolling_sum = plus(times(spin, arm), times(partner_spin, partner_arm));
+    let (spin, partner_spin) = partners.spins(processor);
+    let rolling_sum = if P::WALL {
+        times(spin, arm)
+    } else {
+        plus(times(spin, arm), times(partner_spin, partner_arm))
+    };
     let slip = plus(
         minus(velocity, times(normal, approach)),
         cross(rolling_sum, normal),
@@ -298,10 +348,9 @@ fn interact<N: Lanes, L: Law, const WALL: bool>(
     let stretched = minus(stretched, times(normal, dot(stretched, normal)));
     let stretch_squared = dot(stretched, stretched);
     let trial = tangential_stiffness * stretch_squared.sqrt();
-    let bound = friction * all.law.coulomb_force(elastic, repulsion, zero);
+    let bound = friction * law.coulomb_force(elastic, repulsion, zero);
     let slides = trial.exceeds(bound);
-    let kept = N::choose(slides, bound / trial, one);
-    let kept = N::choose(touching, kept, zero);
+    let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
     let damping = N::choose(touching, N::choose(slides, zero, tangential_damping), zero);
     let spring = times(stretched, kept);
     let new = N::rows([spring[0], spring[1], spring[2], zero]);
@@ -309,39 +358,38 @@ fn interact<N: Lanes, L: Law, const WALL: bool>(
         *spring = new.row();
     }
     let tangential = minus(times(spring, -tangential_stiffness), times(slip, damping));
-
-    // Rolling.
-    let gain = rolling_gain(
-        rolling_arm * elastic,
-        stopping,
-        dot(rolling_spin, rolling_spin).sqrt(),
-    );
-    let without_twist = minus(rolling_spin, times(normal, dot(rolling_spin, normal)));
-    let rolling = times(without_twist, -gain);
-
-    // What it does, and where the energy goes.
     let force = minus(tangential, times(normal, repulsion));
     let twist = cross(normal, tangential);
     let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
     let in_sliding = tangential_stiffness * stretch_squared * kept * (one - kept);
+
+    // Rolling.
+    let (rolling_spin, compliance) = partners.rolling(processor);
+    let speed = dot(rolling_spin, rolling_spin).sqrt();
+    let gain = rolling_gain(rolling_arm * elastic, compliance, speed, zero, one);
+    let without_twist = minus(rolling_spin, times(normal, dot(rolling_spin, normal)));
+    let rolling = times(without_twist, -gain);
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
-    let by_wall = if WALL {
-        dt * (dot(force, wall_velocity) + dot(rolling, partner_spin))
+    let by_wall = if P::WALL {
+        dt * (dot(force, partners.wall_velocity(processor)) + dot(rolling, partner_spin))
     } else {
         zero
     };
-    let touches = N::choose(touching, one, zero);
+
     let force = N::rows([force[0], force[1], force[2], arm]);
     let twist = N::rows([twist[0], twist[1], twist[2], partner_arm]);
-    let rolling = N::rows([rolling[0], rolling[1], rolling[2], touches]);
+    let rolling = N::rows([
+        rolling[0],
+        rolling[1],
+        rolling[2],
+        N::choose(touching, one, zero),
+    ]);
     let exchanged = N::rows([in_dashpots, in_sliding, in_rolling, by_wall]);
     for (k, action) in actions.iter_mut().enumerate() {
-        *action = Action {
-            force: force[k].row(),
-            twist: twist[k].row(),
-            rolling: rolling[k].row(),
-            exchanged: exchanged[k].row(),
-        };
+        action.force = force[k].row();
+        action.twist = twist[k].row();
+        action.rolling = rolling[k].row();
+        action.exchanged = exchanged[k].row();
     }
 }
 
@@ -386,17 +434,29 @@ fn between_grains<N: Lanes, L: Law>(
     all: &Surroundings<'_, L>,
     rows: PairRows<'_>,
 ) {
+    let Some(kind) = rows.pairs.first().map(|pair| pair.kind) else {
+        return;
+    };
+    // As a rule all grains are of one class, and the constants are the same throughout.
+    let uniform = rows.pairs.iter().all(|pair| pair.kind == kind);
+    let common = common_constants::<N>(processor, &all.constants[kind as usize]);
     let outputs = rows
         .springs
         .chunks_exact_mut(N::COUNT)
         .zip(rows.actions.chunks_exact_mut(N::COUNT));
     for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
-        let (a, b) = (
-            first_bodies::<N>(all.bodies, pairs),
-            second_bodies::<N>(all.bodies, pairs),
-        );
-        let meeting = meet_grains::<N>(processor, a, b);
-        interact::<N, L, false>(processor, all, &meeting, pairs, springs, actions);
+        let partners = TwoGrains {
+            first: bodies_of::<N>(all.bodies, pairs, |pair| pair.grain),
+            second: bodies_of::<N>(all.bodies, pairs, |pair| pair.partner),
+        };
+        if uniform {
+            interact(
+                processor, all.law, all.dt, partners, &common, springs, actions,
+            );
+        } else {
+            let own = own_constants::<N>(processor, all.constants, pairs);
+            interact(processor, all.law, all.dt, partners, &own, springs, actions);
+        }
     }
 }
 
@@ -412,9 +472,11 @@ fn at_walls<N: Lanes, L: Law>(
         .chunks_exact_mut(N::COUNT)
         .zip(rows.actions.chunks_exact_mut(N::COUNT));
     for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
-        let a = first_bodies::<N>(all.bodies, pairs);
-        let meeting = meet_wall::<N>(processor, a, &all.walls[pairs[0].partner as usize]);
-        interact::<N, L, true>(processor, all, &meeting, pairs, springs, actions);
+        let grain = bodies_of::<N>(all.bodies, pairs, |pair| pair.grain);
+        let partners =
+            GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
+        let own = own_constants::<N>(processor, all.constants, pairs);
+        interact(processor, all.law, all.dt, partners, &own, springs, actions);
     }
 }
 

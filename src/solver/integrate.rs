@@ -80,8 +80,8 @@ pub struct Load {
     pub total: Total<Row>,
     /// Energy exchanged since the start [J].
     pub exchanged: Row,
-    /// Moment of inertia over the time step [N m s].
-    pub stopping: f64,
+    /// Time step over moment of inertia [1/(N m s)].
+    pub compliance: f64,
     /// Largest speed that is not absurd, squared [m²/s²].
     pub speed_limit_squared: f64,
 }
@@ -172,7 +172,7 @@ fn drift<Q: Quad>(
     let free =
         Q::load(processor, &body.spin) + total.torque * Q::repeat(processor, dt * body.velocity[3]);
     let free = free.row();
-    body.free_spin = [free[0], free[1], free[2], load.stopping / contacts];
+    body.free_spin = [free[0], free[1], free[2], load.compliance * contacts];
     body.position = position.row();
     (position - Q::load(processor, reference)).length_squared() > motion.slack_squared
 }

@@ -31,6 +31,14 @@ pub trait Lanes:
     fn splat(processor: Self::Processor, x: f64) -> Self;
     /// Column by column, from the first [`Lanes::COUNT`] of the rows.
     fn gather(processor: Self::Processor, rows: [&Row; 4]) -> [Self; 4];
+    /// Column by column, from `a − b`.
+    fn gather_difference(processor: Self::Processor, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4];
+    /// Column by column: the vectors of `a − b`, the companions of `a + b`.
+    fn gather_difference_and_sum(
+        processor: Self::Processor,
+        a: [&Row; 4],
+        b: [&Row; 4],
+    ) -> [Self; 4];
     /// The four numbers of one row, each in every lane.
     fn spread(processor: Self::Processor, row: &Row) -> [Self; 4];
     /// Rows again; the first [`Lanes::COUNT`] of them count.
@@ -143,6 +151,28 @@ impl Lanes for One {
     #[inline(always)]
     fn gather((): (), rows: [&Row; 4]) -> [Self; 4] {
         Self::spread((), rows[0])
+    }
+
+    #[inline(always)]
+    fn gather_difference((): (), a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+        let (a, b) = (a[0], b[0]);
+        [
+            Self(a[0] - b[0]),
+            Self(a[1] - b[1]),
+            Self(a[2] - b[2]),
+            Self(a[3] - b[3]),
+        ]
+    }
+
+    #[inline(always)]
+    fn gather_difference_and_sum((): (), a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+        let (a, b) = (a[0], b[0]);
+        [
+            Self(a[0] - b[0]),
+            Self(a[1] - b[1]),
+            Self(a[2] - b[2]),
+            Self(a[3] + b[3]),
+        ]
     }
 
     #[inline(always)]
@@ -304,6 +334,37 @@ mod avx {
             ];
             let [a, b, c, d] = transpose(v3, rows);
             [Self(v3, a), Self(v3, b), Self(v3, c), Self(v3, d)]
+        }
+
+        #[inline(always)]
+        fn gather_difference(v3: V3, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+            let avx = v3.avx;
+            let [x, y, z, w] = transpose(
+                v3,
+                [
+                    avx._mm256_sub_pd(register(a[0]), register(b[0])),
+                    avx._mm256_sub_pd(register(a[1]), register(b[1])),
+                    avx._mm256_sub_pd(register(a[2]), register(b[2])),
+                    avx._mm256_sub_pd(register(a[3]), register(b[3])),
+                ],
+            );
+            [Self(v3, x), Self(v3, y), Self(v3, z), Self(v3, w)]
+        }
+
+        #[inline(always)]
+        fn gather_difference_and_sum(v3: V3, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+            let avx = v3.avx;
+            let companion = avx._mm256_set_pd(-0.0, 0.0, 0.0, 0.0);
+            let [x, y, z, w] = transpose(
+                v3,
+                [
+                    avx._mm256_sub_pd(register(a[0]), avx._mm256_xor_pd(register(b[0]), companion)),
+                    avx._mm256_sub_pd(register(a[1]), avx._mm256_xor_pd(register(b[1]), companion)),
+                    avx._mm256_sub_pd(register(a[2]), avx._mm256_xor_pd(register(b[2]), companion)),
+                    avx._mm256_sub_pd(register(a[3]), avx._mm256_xor_pd(register(b[3]), companion)),
+                ],
+            );
+            [Self(v3, x), Self(v3, y), Self(v3, z), Self(v3, w)]
         }
 
         #[inline(always)]

@@ -140,7 +140,7 @@ impl State {
                     exchanged: [0.0; 4],
                 },
                 exchanged: grains.exchanged[i],
-                stopping: grains.inertia[i] / dt,
+                compliance: dt / grains.inertia[i],
                 speed_limit_squared: speed_limit * speed_limit,
             });
         }

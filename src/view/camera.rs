@@ -12,7 +12,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 /// Vertical field of view of the perspective [rad].
 const FIELD_OF_VIEW: f32 = 0.5;
 /// Direction of the view that a scene opens with: a little from the right and from above [rad].
-const HOME: (f32, f32) = (0.24, 0.2);
+const HOME: (f32, f32) = (0.2, 0.17);
 /// Share of the picture that [`OrbitCamera::fit`] leaves free in all.
 const MARGIN: f32 = 0.09;
 

@@ -56,10 +56,10 @@ impl Scheme {
             },
             Background::Light => Self {
                 background: Color::srgb_u8(0xF7, 0xF7, 0xF4),
-                surface: Color::srgb_u8(0xB4, 0xC0, 0xCE),
-                line: Color::srgb_u8(0x6E, 0x7E, 0x92),
+                surface: Color::srgb_u8(0x9D, 0xAF, 0xC4),
+                line: Color::srgb_u8(0x3F, 0x50, 0x66),
                 mark: Color::srgb_u8(0xD4, 0x55, 0x2A),
-                frame: Color::srgb_u8(0x6C, 0x7A, 0x8C),
+                frame: Color::srgb_u8(0x7C, 0x8C, 0xA0),
                 text: [0x1E, 0x24, 0x2C],
                 faint_text: [0x5D, 0x67, 0x74],
             },
@@ -165,7 +165,7 @@ pub fn linear([r, g, b]: [u8; 3]) -> [f32; 3] {
 /// A little lighter or darker, so that the eye can follow single grains of one species.
 fn individual_lightness(i: usize) -> f32 {
     let scrambled = (i as u32).wrapping_mul(2_654_435_761) >> 16;
-    0.88 + 0.24 * (scrambled as f32 / 65_535.0)
+    0.92 + 0.16 * (scrambled as f32 / 65_535.0)
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ const SHADER: Handle<Shader> = uuid_handle!("f1b2a8a4-5d51-4a1e-8a2a-0d6ad0c3d0b
 /// Segments of a circle.
 const SEGMENTS: u32 = 180;
 /// Breadth of a drum's hoops in its radius.
-const HOOP_BREADTH: f32 = 0.055;
+const HOOP_BREADTH: f32 = 0.045;
 
 /// Adds the walls' material and what keeps them up to date.
 pub(super) fn plugin(app: &mut App) {
@@ -55,10 +55,29 @@ pub fn outline(world: &World) -> Vec<Vec3> {
                 .collect()
         }
         Shape::Box { min, max } => corners(min.as_vec3(), max.as_vec3()).to_vec(),
-        Shape::Planes => grain_box(world).map_or_else(Vec::new, |(min, max)| {
+        Shape::Planes => surroundings(world).map_or_else(Vec::new, |(min, max)| {
             corners(min.as_vec3(), max.as_vec3()).to_vec()
         }),
     }
+}
+
+/// The box round all grains with some room to move, and what they stand on.
+fn surroundings(world: &World) -> Option<(DVec3, DVec3)> {
+    let (min, max) = grain_box(world)?;
+    let largest = world.grains.radius.iter().copied().fold(0.0, f64::max);
+    let (mut low, mut high) = (min - 2.0 * largest, max + 2.0 * largest);
+    let middle = (min + max) / 2.0;
+    let size = (high - low).max_element();
+    for wall in &world.container.walls {
+        if let Surface::Plane { point, normal } = wall.surface {
+            let distance = (middle - point).dot(normal);
+            if distance.abs() < 4.0 * size {
+                let foot = middle - distance * normal;
+                (low, high) = (low.min(foot), high.max(foot));
+            }
+        }
+    }
+    Some((low, high))
 }
 
 /// The box round all grains.
@@ -93,8 +112,13 @@ enum Piece {
     Turning,
     /// Stays where it is.
     Fixed,
-    /// Lies in the plane of the wall of this index.
-    Plane(usize),
+    /// Lies in the plane of a wall.
+    Plane {
+        /// The wall's index.
+        wall: usize,
+        /// The point whose foot on the plane is the piece's middle.
+        near: DVec3,
+    },
 }
 
 /// What a piece is painted as.
@@ -119,7 +143,7 @@ enum Pattern {
 }
 
 /// Cells from the middle to where a floor has faded away.
-const FLOOR_CELLS: f32 = 30.0;
+const FLOOR_CELLS: f32 = 40.0;
 
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
 #[bind_group_data(BothSides)]
@@ -259,18 +283,18 @@ fn place(shown: Res<Shown>, mut pieces: Query<(&Piece, &mut Transform)>) {
             Piece::Turning => {
                 Transform::from_rotation(Quat::from_rotation_z(world.container.angle as f32))
             }
-            Piece::Plane(wall) => plane_transform(&world.container, wall),
+            Piece::Plane { wall, near } => plane_transform(&world.container, wall, near),
         });
     }
 }
 
-/// Where the piece of the plane `wall` lies: its z axis along the normal, its middle at the foot of the origin.
-fn plane_transform(container: &Container, wall: usize) -> Transform {
+/// Where the piece of the plane `wall` lies: its z axis along the normal, its middle at the foot of `near`.
+fn plane_transform(container: &Container, wall: usize, near: DVec3) -> Transform {
     let Some(Surface::Plane { point, normal }) = container.walls.get(wall).map(|wall| wall.surface)
     else {
         return Transform::IDENTITY;
     };
-    let foot = normal * point.dot(normal);
+    let foot = near - normal * (near - point).dot(normal);
     Transform::from_translation(foot.as_vec3())
         .with_rotation(Quat::from_rotation_arc(Vec3::Z, normal.as_vec3()))
 }
@@ -291,7 +315,7 @@ fn look(paint: Paint, settings: &ViewSettings) -> Look {
     let frame = matches!(paint, Paint::Frame(_));
     Look {
         surface,
-        line: with_alpha(scheme.line, if frame { 0.8 } else { 0.7 * opacity }),
+        line: with_alpha(scheme.line, if frame { 0.8 } else { 0.8 * opacity }),
         mark: with_alpha(scheme.mark, if frame { 1.0 } else { 0.9 * opacity.sqrt() }),
         pattern: pattern as u32,
         fade,
@@ -349,8 +373,9 @@ fn box_panes(min: Vec3, max: Vec3) -> Vec<(Piece, Paint, Mesh)> {
 
 /// A fading floor for each plane.
 fn planes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
-    let size = grain_box(world).map_or(1.0, |(min, max)| (max - min).max_element());
-    let cell = round_up(size / 10.0) as f32;
+    let (min, max) = surroundings(world).unwrap_or((DVec3::ZERO, DVec3::ONE));
+    let near = (min + max) / 2.0;
+    let cell = round_up((max - min).max_element() / 16.0) as f32;
     (0..world.container.walls.len())
         .map(|wall| {
             let mut builder = Builder::default();
@@ -359,7 +384,7 @@ fn planes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
                 builder.vertex(Vec3::new(x * cell, y * cell, 0.0), Vec3::Z, [x, y]);
             }
             builder.indices.extend([0, 1, 2, 2, 3, 0]);
-            (Piece::Plane(wall), Paint::Floor, builder.mesh())
+            (Piece::Plane { wall, near }, Paint::Floor, builder.mesh())
         })
         .collect()
 }

@@ -4,6 +4,7 @@
 //! radius and colour in a buffer that is rewritten when the world or the colours change, and raymarches the sphere. So
 //! nothing is done per grain on the processor but filling that buffer. What is cut away is decided in the shader too.
 
+use super::occlusion::occlusions;
 use super::{ColourBy, ColourMap, ColourRange, Cut, Shown, ViewSettings, colour};
 use crate::world::World;
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
@@ -43,7 +44,10 @@ struct DrawnGrain {
     centre: [f32; 3],
     radius: f32,
     colour: [f32; 3],
-    unused: f32,
+    /// [`Occlusion`], in its order.
+    hidden_mean: f32,
+    hidden_gradient: [f32; 3],
+    hidden_quadrupole: [f32; 5],
 }
 
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
@@ -59,6 +63,15 @@ struct GrainMaterial {
 struct Picture {
     cut_normal: Vec3,
     cut_offset: f32,
+}
+
+impl Picture {
+    fn of(cut: Option<Cut>) -> Self {
+        cut.map_or_else(Self::default, |Cut { axis, position }| Self {
+            cut_normal: axis.unit().as_vec3(),
+            cut_offset: position as f32,
+        })
+    }
 }
 
 impl Material for GrainMaterial {
@@ -110,12 +123,8 @@ fn spawn(
     mut materials: ResMut<Assets<GrainMaterial>>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
-    let grains = buffers.add(ShaderBuffer::new(
-        bytemuck::bytes_of(&DrawnGrain::zeroed()),
-        RenderAssetUsages::RENDER_WORLD,
-    ));
     let material = GrainMaterial {
-        grains,
+        grains: buffers.add(buffer(&[DrawnGrain::zeroed()])),
         picture: Picture::default(),
     };
     commands.spawn((
@@ -126,8 +135,8 @@ fn spawn(
     ));
 }
 
-/// What decides the colours beside the world.
-type Colouring = (ColourBy, ColourMap, ColourRange);
+/// What decides the grains' colours and shadows beside the world.
+type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>);
 
 /// Rewrites the buffer when the world or the colouring is another.
 fn colour_and_place(
@@ -143,7 +152,12 @@ fn colour_and_place(
     mut materials: ResMut<Assets<GrainMaterial>>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
-    let colouring = (settings.colour_by, settings.colour_map, settings.range);
+    let colouring = (
+        settings.colour_by,
+        settings.colour_map,
+        settings.range,
+        settings.cut,
+    );
     if !shown.is_changed() && *last == Some(colouring) {
         return;
     }
@@ -153,31 +167,41 @@ fn colour_and_place(
         settings.legend = colour::legend(world, settings.colour_by, settings.range);
         drawn_grains(world, &settings)
     });
-    let count = grains.len().max(1);
+    // A buffer cannot be empty: where there is no grain, one of no size is drawn.
     let grains = if grains.is_empty() {
         vec![DrawnGrain::zeroed()]
     } else {
         grains
     };
-    let Some(buffer) = materials
-        .get(&material.0)
-        .map(|material| material.grains.clone())
-    else {
+    let Some(mut material) = materials.get_mut(&material.0) else {
         return;
     };
-    if let Some(mut buffer) = buffers.get_mut(&buffer) {
-        buffer.data = Some(bytemuck::cast_slice(&grains).to_vec());
+    if grains.len() == drawn.count {
+        if let Some(mut buffer) = buffers.get_mut(&material.grains) {
+            buffer.data = Some(bytemuck::cast_slice(&grains).to_vec());
+        }
+    } else {
+        drawn.count = grains.len();
+        mesh.0 = meshes.add(quads(grains.len()));
+        material.grains = buffers.add(buffer(&grains));
     }
-    if count != drawn.count {
-        drawn.count = count;
-        mesh.0 = meshes.add(quads(count));
-        // A buffer of another size is another buffer: the material must bind it anew.
-        let _ = materials.get_mut(&material.0);
-    }
+}
+
+/// A buffer that holds `grains`.
+fn buffer(grains: &[DrawnGrain]) -> ShaderBuffer {
+    ShaderBuffer::new(
+        bytemuck::cast_slice(grains),
+        RenderAssetUsages::RENDER_WORLD,
+    )
 }
 
 fn drawn_grains(world: &World, settings: &ViewSettings) -> Vec<DrawnGrain> {
     let grains = &world.grains;
+    let spheres: Vec<(Vec3, f32)> = (0..grains.len())
+        .map(|i| (grains.position[i].as_vec3(), grains.radius[i] as f32))
+        .collect();
+    let picture = Picture::of(settings.cut);
+    let hidden = occlusions(&spheres, |x| picture.cut_normal.dot(x) > picture.cut_offset);
     let mut drawn = Vec::with_capacity(grains.len());
     colour::colours(
         world,
@@ -186,11 +210,14 @@ fn drawn_grains(world: &World, settings: &ViewSettings) -> Vec<DrawnGrain> {
         settings.legend.as_ref(),
         |colour| {
             let i = drawn.len();
+            let hidden = hidden[i];
             drawn.push(DrawnGrain {
-                centre: grains.position[i].as_vec3().to_array(),
-                radius: grains.radius[i] as f32,
+                centre: spheres[i].0.to_array(),
+                radius: spheres[i].1,
                 colour,
-                unused: 0.0,
+                hidden_mean: hidden.mean,
+                hidden_gradient: hidden.gradient.to_array(),
+                hidden_quadrupole: hidden.quadrupole,
             });
         },
     );
@@ -203,12 +230,7 @@ fn cut(
     drawn: Single<&MeshMaterial3d<GrainMaterial>, With<DrawnGrains>>,
     mut materials: ResMut<Assets<GrainMaterial>>,
 ) {
-    let picture = settings
-        .cut
-        .map_or_else(Picture::default, |Cut { axis, position }| Picture {
-            cut_normal: axis.unit().as_vec3(),
-            cut_offset: position as f32,
-        });
+    let picture = Picture::of(settings.cut);
     let handle = &drawn.0;
     if materials
         .get(handle)

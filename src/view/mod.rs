@@ -13,6 +13,7 @@
 //! | `settings` | what a person chose to see |
 //! | `colour` | every colour, the legend |
 //! | `grains` | all grains as one draw of exact spheres |
+//! | `occlusion` | the soft shadow in the gaps between grains |
 //! | `container` | drum, box and planes as one-sided panes |
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `rig` | Bevy's camera entity that follows it |
@@ -22,6 +23,7 @@ mod camera;
 mod colour;
 mod container;
 mod grains;
+mod occlusion;
 mod overlay;
 mod rig;
 mod settings;

@@ -64,6 +64,7 @@ pub(super) fn carry_out(
     mut commission: ResMut<Commission>,
     mut simulation: ResMut<Simulation>,
     canvas: Option<Res<Canvas>>,
+    mut cameras: Query<&mut Camera>,
     mut exit: MessageWriter<AppExit>,
     mut commands: Commands,
 ) {
@@ -97,6 +98,11 @@ pub(super) fn carry_out(
         Stage::Drawing(frames) => Stage::Drawing(frames - 1),
         Stage::Taking => Stage::Taking,
     };
+    // Nobody watches without a display: until the moment comes the cores belong to the solver.
+    let rests = canvas.is_some() && matches!(commission.stage, Stage::Preparing | Stage::Running(_));
+    for mut camera in &mut cameras {
+        camera.is_active = !rests;
+    }
 }
 
 /// Takes the picture, writes it and ends the app.

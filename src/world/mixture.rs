@@ -5,7 +5,7 @@
 //! larger share only adds grains to a species, and going back takes the same ones away.
 
 use super::{SpeciesId, World};
-use crate::scene::{Scene, SceneGrains, SceneSpecies, SizeClass, apportion, size_classes};
+use crate::scene::{Scene, SizeClass};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -45,51 +45,41 @@ pub(super) fn assign_species(
     labels
 }
 
-/// Gives the species `species` of a filling the share `share` of all grains, by relabelling grains of its radius. The
-/// other species of that radius divide the rest in the proportions that the scene states. The share is cut to what the
-/// grains of that radius allow; a species that shares its radius with no other, or a listed one, keeps its grains.
+/// Makes the share by number of the species `species` of a filling as near `share` as whole grains allow.
 ///
-/// A grain that changes its species keeps its place and its motion and takes the other material's density. The ledger
-/// keeps gravity's work; kinetic and elastic energy change by what the caller can measure before and after.
+/// The difference goes to, or comes from, the species of the same radius that follow in the scene's list, the next one
+/// first and round: so giving the shares of all but the last one after another reaches any mixture. A species that shares
+/// its radius with no other keeps its grains, and so do listed grains.
+///
+/// A grain that changes its species keeps its place and its motion and takes the other material's density. What that does
+/// to the energies is for the caller to book.
 pub fn set_share(world: &mut World, scene: &Scene, species: SpeciesId, share: f64) {
-    let SceneGrains::Fill {
-        count,
-        species: kinds,
-    } = &scene.grains
-    else {
+    let members = scene.species_of_same_radius(usize::from(species.0));
+    let Some(own) = members.iter().position(|&m| m == usize::from(species.0)) else {
         return;
     };
-    let index = usize::from(species.0);
-    let classes = size_classes(*count, kinds);
-    let holds = |class: &&SizeClass| class.species.iter().any(|&(member, _)| member == index);
-    let Some(class) = classes.iter().find(holds) else {
-        return;
-    };
-    let part = (share * *count as f64 / class.count.max(1) as f64).clamp(0.0, 1.0);
-    let counts = apportion(class.count, &shares_beside(part, index, class, kinds));
-    let wanted: Vec<(usize, usize)> = class.species.iter().map(|m| m.0).zip(counts).collect();
+    let mut counts: Vec<usize> = members.iter().map(|&m| count(world, m)).collect();
+    let target = (share.max(0.0) * world.grains.len() as f64).round() as usize;
+    for step in 1..members.len() {
+        let other = (own + step) % members.len();
+        let wanted = target.saturating_sub(counts[own]).min(counts[other]);
+        let spare = counts[own].saturating_sub(target);
+        counts[own] = counts[own] + wanted - spare;
+        counts[other] = counts[other] + spare - wanted;
+    }
+    let wanted: Vec<(usize, usize)> = members.into_iter().zip(counts).collect();
     relabel(world, scene.seed, &wanted);
 }
 
-/// Shares within `class` when the species `index` has the part `part` of it.
-fn shares_beside(part: f64, index: usize, class: &SizeClass, kinds: &[SceneSpecies]) -> Vec<f64> {
-    let members = || class.species.iter().map(|&(member, _)| member);
-    let others: f64 = members()
-        .filter(|&member| member != index)
-        .map(|member| kinds[member].share)
-        .sum();
-    members()
-        .map(|member| match member {
-            _ if member == index => part,
-            _ if others > 0.0 => (1.0 - part) * kinds[member].share / others,
-            _ => (1.0 - part) / (class.species.len() - 1) as f64,
-        })
-        .collect()
+fn count(world: &World, species: usize) -> usize {
+    let labels = world.grains.species.iter();
+    labels
+        .filter(|label| usize::from(label.0) == species)
+        .count()
 }
 
 /// Labels the grains of the species in `wanted` anew, so that each has its number of grains.
 fn relabel(world: &mut World, seed: u64, wanted: &[(usize, usize)]) {
-    let before = world.potential_energy();
     let members: Vec<usize> = (0..world.grains.len())
         .filter(|&grain| {
             let label = usize::from(world.grains.species[grain].0);
@@ -103,8 +93,6 @@ fn relabel(world: &mut World, seed: u64, wanted: &[(usize, usize)]) {
             world.grains.relabel(grain, species, density);
         }
     }
-    let after = world.potential_energy();
-    world.ledger.close_gravity_segment(before, after);
 }
 
 /// The grains `members` in label order, each with its species: the first run is of the first species, and so on.

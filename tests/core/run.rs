@@ -1,5 +1,6 @@
 //! Claims about runs: what slices, drivers, snapshots and commands do to a trajectory.
 
+use glam::DVec3;
 use grainfall::measure::{EnergyLedger, Series};
 use grainfall::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
 use grainfall::simulation::{
@@ -450,6 +451,33 @@ fn absurd_state_is_a_fault_and_the_last_good_state_stays() {
     simulation.send(Command::Reset);
     tick_until(&mut simulation, |s| *s.status() == Status::Paused);
     assert_eq!(step(&simulation), Some(0));
+}
+
+#[test]
+fn grains_that_overlap_at_the_start_push_from_the_start() {
+    let mut scene = scene("two-grains");
+    scene.gravity = DVec3::ZERO;
+    let SceneGrains::List(grains) = &mut scene.grains else {
+        panic!("no list");
+    };
+    grains.truncate(2);
+    let radius = grains[0].radius;
+    for (grain, side) in grains.iter_mut().zip([-1.0, 1.0]) {
+        grain.position = DVec3::X * side * 0.99 * radius;
+        grain.velocity = DVec3::ZERO;
+        grain.spin = DVec3::ZERO;
+    }
+    let name = grains[0].material.clone();
+    let material = scene.material(&name).unwrap().1.clone();
+    let run = run_of(&scene);
+    // Hertz with E* = E / 2 (1 - ν²) and r* = r / 2, exact to rounding but for the step of 1e-12 that evaluates it.
+    let modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio.powi(2)));
+    let (reduced, overlap) = (radius / 2.0, 0.02 * radius);
+    let force = 4.0 / 3.0 * modulus * reduced.sqrt() * overlap.powf(1.5);
+    assert!((run.world().grains.force[1].x / force - 1.0).abs() < 1e-9);
+    let ledger = EnergyLedger::of(run.world());
+    assert_eq!(ledger.initial, ledger.elastic);
+    assert!((ledger.elastic / (0.4 * force * overlap) - 1.0).abs() < 1e-9);
 }
 
 #[test]

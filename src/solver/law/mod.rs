@@ -23,8 +23,8 @@ use crate::world::{MaterialId, Materials, Partner, World};
 pub struct PairConstants {
     /// The law's own constants, in the order of its [`Coefficients`].
     pub coefficients: Row,
-    /// Coefficient of sliding friction μ; `μ_R r*`, the arm of rolling friction [m].
-    pub friction: Row,
+    /// Coefficient of sliding friction μ; `μ_R r*`, the arm of rolling friction [m]; radii of both, 0 for a wall [m].
+    pub contact: Row,
 }
 
 /// Stiffnesses and dashpots of contacts at some overlap, side by side.
@@ -59,6 +59,8 @@ pub struct Pairing {
     pub effective_radius: f64,
     /// `m* = m_i m_j / (m_i + m_j)` [kg].
     pub effective_mass: f64,
+    /// Radii of both, 0 for a wall [m].
+    pub radii: (f64, f64),
     /// Materials of both sides.
     pub materials: (MaterialId, MaterialId),
 }
@@ -74,12 +76,14 @@ impl Pairing {
                 Self {
                     effective_radius: reduced(grains.radius[grain], grains.radius[j]),
                     effective_mass: reduced(grains.mass[grain], grains.mass[j]),
+                    radii: (grains.radius[grain], grains.radius[j]),
                     materials: (material(grain), material(j)),
                 }
             }
             Partner::Wall(w) => Self {
                 effective_radius: grains.radius[grain],
                 effective_mass: grains.mass[grain],
+                radii: (grains.radius[grain], 0.0),
                 materials: (material(grain), world.container.walls[w as usize].material),
             },
         }
@@ -102,11 +106,11 @@ impl Pairing {
         };
         PairConstants {
             coefficients,
-            friction: [
+            contact: [
                 pair.friction,
                 pair.rolling_friction * self.effective_radius,
-                0.0,
-                0.0,
+                self.radii.0,
+                self.radii.1,
             ],
         }
     }

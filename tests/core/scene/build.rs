@@ -1,7 +1,7 @@
 //! What world a scene becomes.
 
 use glam::DVec3;
-use grainfall::scene::Scene;
+use grainfall::scene::{Scene, built_in};
 use grainfall::world::{self, MaterialId, Shape, SpeciesId, Surface, World};
 
 const BOX: &str = "tests/core/scene/good/two-sizes-box.ron";
@@ -199,6 +199,29 @@ fn a_larger_share_only_adds_and_going_back_takes_the_same_away() {
     // The other species' slider is the same slider seen from its other end.
     world::set_share(&mut world, &scene, SpeciesId(0), 0.9);
     assert_eq!(rough(&world).len(), 47);
+}
+
+#[test]
+fn shares_given_one_after_another_reach_any_mixture() {
+    let text = built_in()[0].text.replace(
+        r#"[(radius_mm: 3, material: "glass")]"#,
+        r#"[
+            (name: "a", radius_mm: 3, material: "glass", share: 0.5),
+            (name: "b", radius_mm: 3, material: "glass", share: 0.3),
+            (name: "c", radius_mm: 3, material: "glass", share: 0.2),
+        ]"#,
+    );
+    let scene = Scene::parse("three", &text).unwrap();
+    let mut world = world::build(&scene, 1e-5);
+    let counts = |world: &World| [0, 1, 2].map(|species| count_of(world, species));
+    assert_eq!(counts(&world), [235, 141, 94]);
+    world::set_share(&mut world, &scene, SpeciesId(0), 0.1);
+    world::set_share(&mut world, &scene, SpeciesId(1), 0.2);
+    assert_eq!(counts(&world), [47, 94, 329]);
+    world::set_share(&mut world, &scene, SpeciesId(2), 1.5);
+    assert_eq!(counts(&world), [0, 0, 470]);
+    world::set_share(&mut world, &scene, SpeciesId(2), f64::NAN);
+    assert_eq!(counts(&world), [470, 0, 0]);
 }
 
 #[test]
