@@ -41,7 +41,12 @@ struct PictureArguments {
     #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
     screenshot: Option<PathBuf>,
     /// Simulated time at which the picture is taken, in seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, requires = "screenshot")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        requires = "screenshot"
+    )]
     at: f64,
     /// Take the picture without a display
     #[arg(long, requires = "screenshot")]

@@ -48,10 +48,7 @@ impl Occlusion {
 }
 
 /// What hides the sky from each sphere (centre, radius); spheres for which `absent` holds hide nothing.
-pub(super) fn occlusions(
-    spheres: &[(Vec3, f32)],
-    absent: impl Fn(Vec3) -> bool,
-) -> Vec<Occlusion> {
+pub(super) fn occlusions(spheres: &[(Vec3, f32)], absent: impl Fn(Vec3) -> bool) -> Vec<Occlusion> {
     let mut occlusions = vec![Occlusion::default(); spheres.len()];
     let largest = spheres.iter().fold(0.0, |most: f32, s| most.max(s.1));
     if largest <= 0.0 {
@@ -150,13 +147,16 @@ mod tests {
             let mu = -1.0 + (i as f32 + 0.5) * 2.0 / steps as f32;
             let legendre = [1.0, mu, 1.5 * mu * mu - 0.5];
             for (l, sum) in projected.iter_mut().enumerate() {
-                let weight = (2.0 * l as f32 + 1.0) / 2.0 * 2.0 / steps as f32;
+                let weight = (2.0 * l as f32 + 1.0) / steps as f32;
                 *sum += weight * legendre[l] * touching(mu);
             }
         }
         for (projected, constant) in projected.into_iter().zip(TOUCHING) {
             // The constants have three digits.
-            assert!((projected - constant).abs() < 1e-3, "{projected} {constant}");
+            assert!(
+                (projected - constant).abs() < 1e-3,
+                "{projected} {constant}"
+            );
         }
     }
 
@@ -165,7 +165,10 @@ mod tests {
         let spheres = [(Vec3::ZERO, 1.0), (Vec3::new(2.0, 0.0, 0.0), 1.0)];
         let hidden = occlusions(&spheres, |_| false);
         let [towards, aside, away] = [Vec3::X, Vec3::Y, Vec3::NEG_X].map(|n| hidden[0].at(n));
-        assert!(towards > 0.4 && aside < 0.1 && away < 0.2, "{towards} {aside} {away}");
+        assert!(
+            towards > 0.4 && aside < 0.1 && away < 0.2,
+            "{towards} {aside} {away}"
+        );
         // What one does to the other, the other does to it.
         assert_eq!(hidden[1].at(Vec3::NEG_X), towards);
         assert_eq!(occlusions(&spheres, |_| true)[0], Occlusion::default());
@@ -189,7 +192,10 @@ mod tests {
                     let bits = (i * 3 + k).wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
                     bits.wrapping_mul(0x85EB_CA6B) as f32 / u32::MAX as f32
                 };
-                (12.0 * Vec3::new(scrambled(0), scrambled(1), scrambled(2)), 0.5)
+                (
+                    12.0 * Vec3::new(scrambled(0), scrambled(1), scrambled(2)),
+                    0.5,
+                )
             })
             .collect();
         let mut found = Vec::new();

@@ -99,7 +99,8 @@ pub(super) fn carry_out(
         Stage::Taking => Stage::Taking,
     };
     // Nobody watches without a display: until the moment comes the cores belong to the solver.
-    let rests = canvas.is_some() && matches!(commission.stage, Stage::Preparing | Stage::Running(_));
+    let rests =
+        canvas.is_some() && matches!(commission.stage, Stage::Preparing | Stage::Running(_));
     for mut camera in &mut cameras {
         camera.is_active = !rests;
     }

@@ -26,7 +26,10 @@ impl fmt::Display for Missing {
         match self {
             Self::Display(tried) => {
                 writeln!(f, "there is no display to open a window on: {tried}.")?;
-                writeln!(f, "  On a desktop: start it from a terminal of that desktop.")?;
+                writeln!(
+                    f,
+                    "  On a desktop: start it from a terminal of that desktop."
+                )?;
                 writeln!(f, "  Over ssh: log in with `ssh -X`.")?;
                 writeln!(
                     f,
@@ -198,10 +201,22 @@ mod tests {
 
     #[test]
     fn absent_or_malformed_displays_do_not_answer() {
-        for name in ["", "nonsense", ":", ":x", ":65001", "host.invalid:0", ":60999.0", "/no/such/socket"] {
+        for name in [
+            "",
+            "nonsense",
+            ":",
+            ":x",
+            ":65001",
+            "host.invalid:0",
+            ":60999.0",
+            "/no/such/socket",
+        ] {
             assert!(!x11_answers(name), "{name}");
         }
-        assert!(!wayland_answers("wayland-77", Some(Path::new("/no/such/folder"))));
+        assert!(!wayland_answers(
+            "wayland-77",
+            Some(Path::new("/no/such/folder"))
+        ));
         assert!(!wayland_answers("wayland-77", None));
     }
 

@@ -83,8 +83,7 @@ pub fn run(job: Job) -> Result<(), WindowError> {
     }
     let software = adapters.iter().all(|adapter| adapter.software);
     let outcome = Outcome::default();
-    let mut app = quietly(|| build(job, software, outcome.clone()))
-        .map_err(|panic| Missing::Libraries(panic))?;
+    let mut app = quietly(|| build(job, software, outcome.clone())).map_err(Missing::Libraries)?;
     let exit = app.run();
     outcome.result().map_err(WindowError::Picture)?;
     exit.is_success().then_some(()).ok_or(WindowError::Ended)
@@ -156,7 +155,8 @@ fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGro
 fn log() -> LogPlugin {
     LogPlugin {
         level: Level::WARN,
-        filter: "wgpu=error,naga=error,bevy_render::renderer=error,winit=error".to_owned(),
+        filter: "wgpu=error,naga=error,bevy_render::renderer=error,winit=error,bevy_egui=error"
+            .to_owned(),
         ..default()
     }
 }

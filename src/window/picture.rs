@@ -94,8 +94,6 @@ pub fn save(image: &Image, path: &Path) -> io::Result<()> {
     let png = ImageFormat::Png.as_image_crate_format();
     let png = png.ok_or_else(|| io::Error::other("this build knows no PNG"))?;
     let mut bytes = Cursor::new(Vec::new());
-    pixels
-        .write_to(&mut bytes, png)
-        .map_err(io::Error::other)?;
+    pixels.write_to(&mut bytes, png).map_err(io::Error::other)?;
     write_whole(path, |file| file.write_all(bytes.get_ref()))
 }
