@@ -22,6 +22,8 @@ const RECENT: f64 = 20.0;
 const SHORTEST: f64 = 0.2;
 /// Columns of pixels between two labels of avalanches at least.
 const BETWEEN_LABELS: f64 = 46.0;
+/// How far above its avalanche's start a label stands, as a share of the plot's height.
+const LABEL_LIFT: f64 = 0.035;
 /// Room below and above a curve, as shares of its height; labels stand above.
 const BELOW: f64 = 0.08;
 const ABOVE: f64 = 0.2;
@@ -442,17 +444,18 @@ impl<'a> Marks<'a> {
                 .radius(4.5)
                 .color(self.palette.minimum),
         );
+        let lift = LABEL_LIFT * plot.plot_bounds().height();
         let mut free_from = f64::NEG_INFINITY;
         for avalanche in self.avalanches {
             if avalanche.start >= free_from {
-                plot.text(self.drop_label(avalanche));
+                plot.text(self.drop_label(avalanche, lift));
                 free_from = avalanche.start + self.between_labels;
             }
         }
     }
 
-    fn drop_label(&self, avalanche: &Avalanche) -> Text {
-        let at = PlotPoint::new(avalanche.start, avalanche.theta_m * DEGREES);
+    fn drop_label(&self, avalanche: &Avalanche, lift: f64) -> Text {
+        let at = PlotPoint::new(avalanche.start, avalanche.theta_m * DEGREES + lift);
         let drop = RichText::new(format!("{:.1}°", avalanche.drop() * DEGREES)).small();
         Text::new("Δθ", at, drop.color(self.palette.maximum)).anchor(Align2::CENTER_BOTTOM)
     }
