@@ -425,7 +425,7 @@ impl<'a> Marks<'a> {
         }
     }
 
-    fn angle_ui<'p>(&self, plot: &mut PlotUi<'p>) {
+    fn angle_ui(&self, plot: &mut PlotUi) {
         self.changes_ui(plot);
         let points = |ends: fn(&Avalanche) -> [f64; 2]| -> Vec<[f64; 2]> {
             self.avalanches.iter().map(ends).collect()
@@ -460,7 +460,7 @@ impl<'a> Marks<'a> {
         Text::new("Δθ", at, drop.color(self.palette.maximum)).anchor(Align2::CENTER_BOTTOM)
     }
 
-    fn temperature_ui<'p>(&self, plot: &mut PlotUi<'p>, decades: bool) {
+    fn temperature_ui(&self, plot: &mut PlotUi, decades: bool) {
         self.changes_ui(plot);
         plot.hline(
             HLine::new("flowing above", on_axis(NON_RIGID_TEMPERATURE, decades))
@@ -469,7 +469,7 @@ impl<'a> Marks<'a> {
         );
     }
 
-    fn changes_ui<'p>(&self, plot: &mut PlotUi<'p>) {
+    fn changes_ui(&self, plot: &mut PlotUi) {
         for time in &self.changes {
             plot.vline(
                 VLine::new("parameter changed", *time)

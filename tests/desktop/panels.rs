@@ -283,7 +283,7 @@ fn a_parameter_is_shown_in_the_unit_people_think_in() {
     let shown = harness
         .get_by_role_and_label(Role::SpinButton, "share red")
         .value();
-    assert_eq!(shown.as_deref(), Some("30.0 %"));
+    assert_eq!(shown.as_deref(), Some("30.00 %"));
     type_number(&mut harness, "share red", "50");
     assert_eq!(
         harness.state().first(),
@@ -462,7 +462,7 @@ fn view_settings_change_what_they_name() {
         .get_by_role_and_label(Role::ComboBox, "Colour by")
         .click();
     harness.run_steps(3);
-    harness.get_by_label("Speed").click();
+    harness.get_by_role_and_label(Role::Button, "Speed").click();
     harness.run_steps(3);
     assert_eq!(harness.state().view.colour_by, ColourBy::Speed);
     harness.get_by_label("Fixed").click();
