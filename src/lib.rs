@@ -32,6 +32,7 @@
 //! | [`files`] | files that appear whole or not at all |
 //! | `view` | a world as pixels: grains, container, camera, colours |
 //! | `ui` | the egui panels |
+//! | `window` | the app that opens them in a window, or draws them into a picture |
 //!
 //! # Conventions
 //! SI units everywhere in state, files and output; other units only in panels and in scene keys that name their unit.
@@ -49,4 +50,6 @@ pub mod solver;
 pub mod ui;
 #[cfg(feature = "desktop")]
 pub mod view;
+#[cfg(feature = "desktop")]
+pub mod window;
 pub mod world;

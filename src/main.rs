@@ -28,8 +28,35 @@ struct Arguments {
     /// Folder for the files of a run without a window [default: out/<scene>]
     #[arg(long, value_name = "DIR", requires = "no_render")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
     #[command(subcommand)]
     task: Option<Task>,
+}
+
+/// A picture that the program takes by itself.
+#[derive(Args)]
+struct PictureArguments {
+    /// Take a picture of the window and end
+    #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
+    screenshot: Option<PathBuf>,
+    /// Simulated time at which the picture is taken, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, requires = "screenshot")]
+    at: f64,
+    /// Take the picture without a display
+    #[arg(long, requires = "screenshot")]
+    offscreen: bool,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "screenshot", value_parser = size)]
+    size: (u32, u32),
+}
+
+/// `1280x720`.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (64..=8192).contains(side));
+    text.split_once('x')
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| "expected WIDTHxHEIGHT, each 64 to 8192, such as 1280x720".to_owned())
 }
 
 /// What to open and what to change about it.
@@ -94,7 +121,8 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     let name = what.scene.clone().unwrap_or_else(first_scene);
     let (scene, script) = changed_scene(&name, &what)?;
     if !arguments.no_render {
-        return open_window(scene, window_options(&what, script));
+        let options = window_options(&what, script);
+        return open_window(name, scene, options, arguments.picture);
     }
     let name = short_name(&name);
     let job = Job {
@@ -187,8 +215,37 @@ fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
     }
 }
 
+#[cfg(feature = "desktop")]
+fn open_window(
+    name: String,
+    scene: Scene,
+    options: Options,
+    picture: PictureArguments,
+) -> Result<u8, HeadlessError> {
+    use grainfall::window::{Job, PictureJob, run};
+    let picture = picture.screenshot.map(|path| PictureJob {
+        path,
+        at: picture.at,
+        size: picture.size.into(),
+        offscreen: picture.offscreen,
+    });
+    run(Job {
+        name,
+        scene,
+        options,
+        picture,
+    })
+    .map_err(|error| HeadlessError::Input(error.to_string()))?;
+    Ok(0)
+}
+
 #[cfg(not(feature = "desktop"))]
-fn open_window(_scene: Scene, _options: Options) -> Result<u8, HeadlessError> {
+fn open_window(
+    _name: String,
+    _scene: Scene,
+    _options: Options,
+    _picture: PictureArguments,
+) -> Result<u8, HeadlessError> {
     Err(HeadlessError::Input(
         "this grainfall was built without a window: add --no-render, or build it with the feature `desktop`".into(),
     ))

@@ -242,14 +242,49 @@ impl Quad for Elementwise {
 /// Four lanes of AVX.
 #[cfg(target_arch = "x86_64")]
 mod avx {
-    use super::{Lanes, Quad, Row};
-    use pulp::x86::V3;
-    use std::arch::x86_64::__m256d;
+    #![expect(
+        unsafe_code,
+        reason = "the pair loop is three times faster in lanes than one number at a time"
+    )]
+    #![expect(
+        clippy::inline_always,
+        reason = "an intrinsic that is not inlined costs a call"
+    )]
+
+    use super::{Lanes, Quad, Row, Work};
+    use std::arch::x86_64::{
+        __m256d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd,
+        _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set_pd, _mm256_set1_pd,
+        _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
+        _mm256_xor_pd,
+    };
     use std::ops::{Add, Div, Mul, Neg, Sub};
+
+    /// Proof that the processor has AVX2: only [`Avx::detect`] makes one. Every intrinsic below rests on it.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Avx(());
+
+    impl Avx {
+        /// The proof, if there is one.
+        pub fn detect() -> Option<Self> {
+            std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
+        }
+
+        /// Does `work` in code compiled for AVX2.
+        #[inline(always)]
+        pub fn run<W: Work>(self, work: W) -> W::Output {
+            #[target_feature(enable = "avx2")]
+            fn entered<W: Work>(avx: Avx, work: W) -> W::Output {
+                work.run::<Four>(avx)
+            }
+            // SAFETY: `self` proves that the processor has what `entered` is compiled for.
+            unsafe { entered(self, work) }
+        }
+    }
 
     /// Four numbers in a register, with the proof that there is one.
     #[derive(Clone, Copy, Debug)]
-    pub struct Four(V3, __m256d);
+    pub struct Four(Avx, __m256d);
 
     macro_rules! vector {
         ($($operator:ident $function:ident $instruction:ident),*) => {$(
@@ -257,7 +292,8 @@ mod avx {
                 type Output = Self;
                 #[inline(always)]
                 fn $function(self, other: Self) -> Self {
-                    Self(self.0, self.0.avx.$instruction(self.1, other.1))
+                    // SAFETY: AVX is there, as `self.0` proves.
+                    Self(self.0, unsafe { $instruction(self.1, other.1) })
                 }
             }
         )*};
@@ -268,139 +304,143 @@ mod avx {
         type Output = Self;
         #[inline(always)]
         fn neg(self) -> Self {
-            let sign = self.0.avx._mm256_set1_pd(-0.0);
-            Self(self.0, self.0.avx._mm256_xor_pd(self.1, sign))
+            // SAFETY: AVX is there, as `self.0` proves.
+            Self(self.0, unsafe {
+                _mm256_xor_pd(self.1, _mm256_set1_pd(-0.0))
+            })
         }
     }
 
     #[inline(always)]
-    fn register(row: &Row) -> __m256d {
-        pulp::cast(pulp::f64x4(row[0], row[1], row[2], row[3]))
+    fn register(_: Avx, row: &Row) -> __m256d {
+        // SAFETY: AVX is there, as the argument proves; a row is four numbers, of any alignment.
+        unsafe { _mm256_loadu_pd(row.as_ptr()) }
     }
 
     /// Turns four rows into four columns, or back.
     #[inline(always)]
-    fn transpose(v3: V3, rows: [__m256d; 4]) -> [__m256d; 4] {
-        let avx = v3.avx;
+    fn transpose(avx: Avx, rows: [__m256d; 4]) -> [Four; 4] {
         let [a, b, c, d] = rows;
-        let (low_ab, high_ab) = (avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b));
-        let (low_cd, high_cd) = (avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d));
-        [
-            avx._mm256_permute2f128_pd::<0x20>(low_ab, low_cd),
-            avx._mm256_permute2f128_pd::<0x20>(high_ab, high_cd),
-            avx._mm256_permute2f128_pd::<0x31>(low_ab, low_cd),
-            avx._mm256_permute2f128_pd::<0x31>(high_ab, high_cd),
-        ]
+        // SAFETY: AVX is there, as `avx` proves.
+        unsafe {
+            let (low_ab, high_ab) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+            let (low_cd, high_cd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+            [
+                Four(avx, _mm256_permute2f128_pd::<0x20>(low_ab, low_cd)),
+                Four(avx, _mm256_permute2f128_pd::<0x20>(high_ab, high_cd)),
+                Four(avx, _mm256_permute2f128_pd::<0x31>(low_ab, low_cd)),
+                Four(avx, _mm256_permute2f128_pd::<0x31>(high_ab, high_cd)),
+            ]
+        }
     }
 
     impl Quad for Four {
-        type Processor = V3;
+        type Processor = Avx;
 
         #[inline(always)]
-        fn load(v3: V3, row: &Row) -> Self {
-            Self(v3, register(row))
+        fn load(avx: Avx, row: &Row) -> Self {
+            Self(avx, register(avx, row))
         }
 
         #[inline(always)]
-        fn repeat(v3: V3, x: f64) -> Self {
-            Self(v3, v3.avx._mm256_set1_pd(x))
+        fn repeat(avx: Avx, x: f64) -> Self {
+            // SAFETY: AVX is there, as `avx` proves.
+            Self(avx, unsafe { _mm256_set1_pd(x) })
         }
 
         #[inline(always)]
         fn row(self) -> Row {
-            let value: pulp::f64x4 = pulp::cast(self.1);
-            [value.0, value.1, value.2, value.3]
+            let mut row = [0.0; 4];
+            // SAFETY: AVX is there, as `self.0` proves; a row is four numbers, of any alignment.
+            unsafe { _mm256_storeu_pd(row.as_mut_ptr(), self.1) };
+            row
         }
     }
 
     impl Lanes for Four {
         const COUNT: usize = 4;
-        type Processor = V3;
+        type Processor = Avx;
         type Mask = __m256d;
         type Quad = Self;
 
         #[inline(always)]
-        fn splat(v3: V3, x: f64) -> Self {
-            Self(v3, v3.avx._mm256_set1_pd(x))
+        fn splat(avx: Avx, x: f64) -> Self {
+            Self::repeat(avx, x)
         }
 
         #[inline(always)]
-        fn gather(v3: V3, rows: [&Row; 4]) -> [Self; 4] {
-            let rows = [
-                register(rows[0]),
-                register(rows[1]),
-                register(rows[2]),
-                register(rows[3]),
-            ];
-            let [a, b, c, d] = transpose(v3, rows);
-            [Self(v3, a), Self(v3, b), Self(v3, c), Self(v3, d)]
-        }
-
-        #[inline(always)]
-        fn gather_difference(v3: V3, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
-            let avx = v3.avx;
-            let [x, y, z, w] = transpose(
-                v3,
+        fn gather(avx: Avx, rows: [&Row; 4]) -> [Self; 4] {
+            let [a, b, c, d] = rows;
+            transpose(
+                avx,
                 [
-                    avx._mm256_sub_pd(register(a[0]), register(b[0])),
-                    avx._mm256_sub_pd(register(a[1]), register(b[1])),
-                    avx._mm256_sub_pd(register(a[2]), register(b[2])),
-                    avx._mm256_sub_pd(register(a[3]), register(b[3])),
+                    register(avx, a),
+                    register(avx, b),
+                    register(avx, c),
+                    register(avx, d),
                 ],
-            );
-            [Self(v3, x), Self(v3, y), Self(v3, z), Self(v3, w)]
+            )
         }
 
         #[inline(always)]
-        fn gather_difference_and_sum(v3: V3, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
-            let avx = v3.avx;
-            let companion = avx._mm256_set_pd(-0.0, 0.0, 0.0, 0.0);
-            let [x, y, z, w] = transpose(
-                v3,
-                [
-                    avx._mm256_sub_pd(register(a[0]), avx._mm256_xor_pd(register(b[0]), companion)),
-                    avx._mm256_sub_pd(register(a[1]), avx._mm256_xor_pd(register(b[1]), companion)),
-                    avx._mm256_sub_pd(register(a[2]), avx._mm256_xor_pd(register(b[2]), companion)),
-                    avx._mm256_sub_pd(register(a[3]), avx._mm256_xor_pd(register(b[3]), companion)),
-                ],
-            );
-            [Self(v3, x), Self(v3, y), Self(v3, z), Self(v3, w)]
+        fn gather_difference(avx: Avx, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+            let (a0, a1) = (Self::load(avx, a[0]), Self::load(avx, a[1]));
+            let (a2, a3) = (Self::load(avx, a[2]), Self::load(avx, a[3]));
+            let (b0, b1) = (Self::load(avx, b[0]), Self::load(avx, b[1]));
+            let (b2, b3) = (Self::load(avx, b[2]), Self::load(avx, b[3]));
+            transpose(avx, [(a0 - b0).1, (a1 - b1).1, (a2 - b2).1, (a3 - b3).1])
         }
 
         #[inline(always)]
-        fn spread(v3: V3, row: &Row) -> [Self; 4] {
+        fn gather_difference_and_sum(avx: Avx, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+            // SAFETY: AVX is there, as `avx` proves.
+            let flip = unsafe { _mm256_set_pd(-0.0, 0.0, 0.0, 0.0) };
+            let (a0, a1) = (Self::load(avx, a[0]), Self::load(avx, a[1]));
+            let (a2, a3) = (Self::load(avx, a[2]), Self::load(avx, a[3]));
+            // SAFETY: likewise.
+            let (b0, b1, b2, b3) = unsafe {
+                (
+                    Self(avx, _mm256_xor_pd(register(avx, b[0]), flip)),
+                    Self(avx, _mm256_xor_pd(register(avx, b[1]), flip)),
+                    Self(avx, _mm256_xor_pd(register(avx, b[2]), flip)),
+                    Self(avx, _mm256_xor_pd(register(avx, b[3]), flip)),
+                )
+            };
+            transpose(avx, [(a0 - b0).1, (a1 - b1).1, (a2 - b2).1, (a3 - b3).1])
+        }
+
+        #[inline(always)]
+        fn spread(avx: Avx, row: &Row) -> [Self; 4] {
             [
-                Self::splat(v3, row[0]),
-                Self::splat(v3, row[1]),
-                Self::splat(v3, row[2]),
-                Self::splat(v3, row[3]),
+                Self::splat(avx, row[0]),
+                Self::splat(avx, row[1]),
+                Self::splat(avx, row[2]),
+                Self::splat(avx, row[3]),
             ]
         }
 
         #[inline(always)]
         fn rows(columns: [Self; 4]) -> [Self; 4] {
             let [a, b, c, d] = columns;
-            let v3 = a.0;
-            let [a, b, c, d] = transpose(v3, [a.1, b.1, c.1, d.1]);
-            [Self(v3, a), Self(v3, b), Self(v3, c), Self(v3, d)]
+            transpose(a.0, [a.1, b.1, c.1, d.1])
         }
 
         #[inline(always)]
         fn sqrt(self) -> Self {
-            Self(self.0, self.0.avx._mm256_sqrt_pd(self.1))
+            // SAFETY: AVX is there, as `self.0` proves.
+            Self(self.0, unsafe { _mm256_sqrt_pd(self.1) })
         }
 
         #[inline(always)]
         fn exceeds(self, other: Self) -> __m256d {
-            const GREATER_ORDERED_QUIET: i32 = 30;
-            self.0
-                .avx
-                ._mm256_cmp_pd::<GREATER_ORDERED_QUIET>(self.1, other.1)
+            // SAFETY: AVX is there, as `self.0` proves.
+            unsafe { _mm256_cmp_pd::<_CMP_GT_OQ>(self.1, other.1) }
         }
 
         #[inline(always)]
         fn choose(mask: __m256d, a: Self, b: Self) -> Self {
-            Self(a.0, a.0.avx._mm256_blendv_pd(b.1, a.1, mask))
+            // SAFETY: AVX is there, as `a.0` proves.
+            Self(a.0, unsafe { _mm256_blendv_pd(b.1, a.1, mask) })
         }
     }
 }
@@ -421,36 +461,25 @@ pub enum Processor {
     Scalar,
     /// Four at a time.
     #[cfg(target_arch = "x86_64")]
-    Avx(pulp::x86::V3),
+    Avx(avx::Avx),
 }
 
 impl Processor {
     /// The widest that this processor has.
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        if let Some(v3) = pulp::x86::V3::try_new() {
-            return Self::Avx(v3);
+        if let Some(avx) = avx::Avx::detect() {
+            return Self::Avx(avx);
         }
         Self::Scalar
     }
 
     /// Does `work` with these lanes.
-    #[inline(always)]
     pub fn run<W: Work>(self, work: W) -> W::Output {
         match self {
             Self::Scalar => work.run::<One>(()),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx(v3) => {
-                struct Entered<W>(pulp::x86::V3, W);
-                impl<W: Work> pulp::NullaryFnOnce for Entered<W> {
-                    type Output = W::Output;
-                    #[inline(always)]
-                    fn call(self) -> W::Output {
-                        self.1.run::<avx::Four>(self.0)
-                    }
-                }
-                v3.vectorize(Entered(v3, work))
-            }
+            Self::Avx(avx) => avx.run(work),
         }
     }
 }

@@ -1,1 +1,152 @@
 //! The egui panels.
+//!
+//! In: the [`Simulation`], read only, and the [`ViewSettings`]. Out: [`Request`]s, fulfilled in one place
+//! ([`carry_out`]), and what is left free for the picture. A panel is one file, one
+//! struct and one function `ui`; it needs neither Bevy nor a GPU, and every control has an accessible label.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `desk` | the register of panels, where they stand, what lies over them |
+//! | `request`, `carry_out` | what panels ask for, and how it is fulfilled |
+//! | `shortcuts` | what each key does |
+//! | `menu`, `transport` | menu bar, bar under the picture |
+//! | `about_scene`, `parameters`, `picture`, `profile` | panels on the left |
+//! | `plots`, `results` | panels on the right |
+//! | `sheets`, `path_dialog` | windows over the rest |
+//! | `theme` | every colour, size and font |
+//! | `number`, `symbol`, `table`, `decimate` | numbers and symbols in text, tables, fewer points for the same picture |
+
+mod about_scene;
+mod carry_out;
+mod decimate;
+mod desk;
+mod menu;
+mod number;
+mod parameters;
+mod path_dialog;
+mod picture;
+mod plots;
+mod profile;
+mod request;
+mod results;
+mod sheets;
+mod shortcuts;
+mod symbol;
+mod table;
+pub mod theme;
+mod transport;
+
+pub use about_scene::AboutScene;
+pub use desk::Desk;
+pub use parameters::{Parameters, parameter_ui};
+pub use path_dialog::{PathDialog, Purpose};
+pub use picture::Picture;
+pub use plots::{Curves, Plots};
+pub use profile::{SolverProfile, advice_ui, profile_ui};
+pub use request::{Request, Sheet};
+pub use results::Results;
+pub use sheets::{scene_error_ui, sheet_ui};
+pub use transport::{Transport, status_ui};
+
+use crate::simulation::{Options, Simulation};
+use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
+use bevy::prelude::*;
+use bevy::window::FileDragAndDrop;
+use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+
+/// A part of the window: one file, one struct, one function.
+pub trait Panel: Send + Sync + 'static {
+    /// What stands over it.
+    fn title(&self) -> &'static str;
+
+    /// Draws it; what is asked for goes into `out`.
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    );
+}
+
+/// Draws the panels and fulfils what they ask for. Needs Bevy's default plugins, `EguiPlugin` and the view's plugin.
+#[derive(Clone, Debug, Default)]
+pub struct UiPlugin {
+    /// How scenes are opened.
+    pub options: Options,
+}
+
+/// How scenes that a person opens are run.
+#[derive(Resource, Clone, Debug)]
+struct OpenWith(Options);
+
+/// What has been asked for and not yet fulfilled.
+#[derive(Resource, Default)]
+struct Requests(Vec<Request>);
+
+impl Plugin for UiPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(OpenWith(self.options.clone()))
+            .init_resource::<Requests>()
+            .init_resource::<Desk>()
+            .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain())
+            .add_systems(
+                Update,
+                (take_dropped_files, carry_out::fulfil_requests).chain(),
+            );
+    }
+}
+
+/// Gives a new window its look.
+fn install_theme(mut contexts: EguiContexts, mut installed: Local<bool>) -> Result {
+    if !*installed {
+        theme::install(contexts.ctx_mut()?);
+        *installed = true;
+    }
+    Ok(())
+}
+
+/// Draws everything round the picture, writes into the picture, and lets the pointer over the rest move the camera.
+fn draw_panels(
+    mut contexts: EguiContexts,
+    mut desk: ResMut<Desk>,
+    mut view: ResMut<ViewSettings>,
+    mut camera: ResMut<OrbitCamera>,
+    mut requests: ResMut<Requests>,
+    simulation: Option<Res<Simulation>>,
+) -> Result {
+    let ctx = contexts.ctx_mut()?.clone();
+    let builder = egui::UiBuilder::new()
+        .layer_id(egui::LayerId::background())
+        .max_rect(ctx.viewport_rect());
+    let mut root = egui::Ui::new(ctx, "root".into(), builder);
+    let simulation = simulation.as_deref();
+    desk.ui(&mut root, simulation, &mut view, &mut requests.0);
+    viewport_ui(&mut root, caption(simulation), &mut view, &mut camera);
+    desk.over_picture_ui(&root, simulation);
+    Ok(())
+}
+
+fn caption(simulation: Option<&Simulation>) -> Caption<'_> {
+    let factor = simulation.map_or(0.0, Simulation::real_time_factor);
+    Caption {
+        world: simulation.and_then(|simulation| simulation.world().map(AsRef::as_ref)),
+        real_time_factor: (factor > 0.0).then_some(factor),
+    }
+}
+
+/// Asks to open what is dropped on the window.
+fn take_dropped_files(
+    mut files: MessageReader<FileDragAndDrop>,
+    mut desk: ResMut<Desk>,
+    mut requests: ResMut<Requests>,
+) {
+    for file in files.read() {
+        desk.file_hovers = matches!(file, FileDragAndDrop::HoveredFile { .. });
+        if let FileDragAndDrop::DroppedFile { path_buf, .. } = file {
+            requests
+                .0
+                .push(Request::Open(path_buf.display().to_string()));
+        }
+    }
+}

@@ -1,1 +1,119 @@
 //! A world as pixels.
+//!
+//! ```text
+//! Simulation ──▶ Shown ──▶ grains, container ──▶ WorldCamera ──▶ the free part of the window
+//!                             ▲                      ▲
+//!                       ViewSettings            OrbitCamera ◀── viewport_ui (pointer, overlay)
+//! ```
+//! In: the newest world that the simulation has published, the settings, the pointer over the picture. Out: the picture.
+//! The view only reads a world; it never steps or changes one.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `settings` | what a person chose to see |
+//! | `colour` | every colour, the legend |
+//! | `grains` | all grains as one draw of exact spheres |
+//! | `occlusion` | the soft shadow in the gaps between grains |
+//! | `container` | drum, box and planes as one-sided panes |
+//! | `camera` | the orbiting eye, without Bevy's entities |
+//! | `rig` | Bevy's camera entity that follows it |
+//! | `overlay` | scale bar, clock, legend in the picture |
+
+mod camera;
+mod colour;
+mod container;
+mod grains;
+mod occlusion;
+mod overlay;
+mod rig;
+mod settings;
+
+pub use camera::{OrbitCamera, apply_response};
+pub use colour::species_colour;
+pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
+pub use rig::WorldCamera;
+pub use settings::{
+    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, ProjectionKind,
+    Side, ViewSettings,
+};
+
+use crate::simulation::Simulation;
+use crate::world::World;
+use bevy::asset::{load_internal_asset, uuid_handle};
+use bevy::camera::CameraUpdateSystems;
+use bevy::prelude::*;
+use bevy_egui::EguiPostUpdateSet;
+use std::sync::Arc;
+
+const LIGHT: Handle<Shader> = uuid_handle!("0b7c4df4-9d2e-4b0d-93b4-0e3f5a1c7a10");
+
+/// Draws the world of [`Shown`] as [`ViewSettings`] and [`OrbitCamera`] say.
+pub struct ViewPlugin;
+
+/// When the view works in an update.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub enum ViewSystems {
+    /// Takes the newest world.
+    Take,
+    /// Turns it into meshes and buffers.
+    Draw,
+}
+
+impl Plugin for ViewPlugin {
+    fn build(&self, app: &mut App) {
+        load_internal_asset!(
+            app,
+            LIGHT,
+            "../../assets/shaders/light.wgsl",
+            Shader::from_wgsl
+        );
+        app.init_resource::<ViewSettings>()
+            .init_resource::<OrbitCamera>()
+            .init_resource::<Shown>()
+            .configure_sets(Update, (ViewSystems::Take, ViewSystems::Draw).chain())
+            .add_plugins((grains::plugin, container::plugin))
+            .add_systems(Startup, rig::spawn)
+            .add_systems(Update, take_newest.in_set(ViewSystems::Take))
+            .add_systems(
+                PostUpdate,
+                (rig::steer, rig::follow)
+                    .chain()
+                    .after(EguiPostUpdateSet::EndPass)
+                    .before(CameraUpdateSystems)
+                    .before(TransformSystems::Propagate),
+            );
+    }
+}
+
+/// The world in the picture.
+#[derive(Resource, Default)]
+pub struct Shown {
+    world: Option<Arc<World>>,
+}
+
+impl Shown {
+    /// Shows this world from now on.
+    pub fn show(&mut self, world: Option<Arc<World>>) {
+        self.world = world;
+    }
+
+    /// The world in the picture.
+    pub fn world(&self) -> Option<&World> {
+        self.world.as_deref()
+    }
+}
+
+/// Shows the newest state that the simulation has published. Two states are never at the same address while one of them
+/// is shown.
+fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<Shown>) {
+    let Some(simulation) = simulation else { return };
+    let newest = simulation.world();
+    let same = match (newest, &shown.world) {
+        (Some(newest), Some(shown)) => Arc::ptr_eq(newest, shown),
+        (None, None) => true,
+        _ => false,
+    };
+    if !same {
+        shown.show(newest.cloned());
+    }
+}

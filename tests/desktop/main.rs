@@ -1,1 +1,4 @@
 //! Claims about the window: panels by their accessible labels, pictures through any Vulkan driver.
+
+mod panels;
+mod view;

@@ -1,0 +1,48 @@
+//! What the scene is, what to look for, where its numbers come from.
+
+use super::{Panel, Request};
+use crate::scene::{ContactLaw, Scene, SceneGrains};
+use crate::simulation::Simulation;
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText};
+
+/// The panel about the scene.
+#[derive(Default)]
+pub struct AboutScene;
+
+impl Panel for AboutScene {
+    fn title(&self) -> &'static str {
+        "Scene"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        _out: &mut Vec<Request>,
+    ) {
+        let scene = simulation.scene();
+        ui.label(RichText::new(&scene.title).strong());
+        if !scene.look_for.is_empty() {
+            ui.label(&scene.look_for);
+        }
+        if !scene.source.is_empty() {
+            ui.label(RichText::new(&scene.source).small().weak());
+        }
+        ui.label(RichText::new(outline(scene)).small().weak());
+    }
+}
+
+/// Grains, law and seed in one line.
+fn outline(scene: &Scene) -> String {
+    let grains = match &scene.grains {
+        SceneGrains::Fill { count, .. } => *count,
+        SceneGrains::List(grains) => grains.len(),
+    };
+    let law = match scene.law {
+        ContactLaw::HertzMindlin => "Hertz–Mindlin",
+        ContactLaw::Hooke { .. } => "Hooke",
+    };
+    format!("{grains} grains · {law} · seed {}", scene.seed)
+}

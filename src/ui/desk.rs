@@ -1,0 +1,247 @@
+//! Everything that is drawn round the picture: which panels there are, where they stand, what lies over them.
+//!
+//! In: the simulation and the view's settings. Out: requests, and what is left free for the picture. Needs no Bevy app.
+
+use super::about_scene::AboutScene;
+use super::menu::{Shown, menu_ui};
+use super::parameters::Parameters;
+use super::path_dialog::PathDialog;
+use super::picture::Picture;
+use super::plots::Plots;
+use super::profile::SolverProfile;
+use super::results::Results;
+use super::theme::{self, Palette};
+use super::transport::Transport;
+use super::{Panel, Request, Sheet, sheets, shortcuts};
+use crate::simulation::Simulation;
+use crate::view::ViewSettings;
+use bevy::prelude::Resource;
+use bevy_egui::egui::{self, Align2, CollapsingHeader, FontId, Id, Margin, RichText, ScrollArea};
+use std::time::{Duration, Instant};
+
+/// How long a notice stays.
+const NOTICE_TIME: Duration = Duration::from_secs(6);
+/// Recent scenes kept.
+const RECENT_SCENES: usize = 8;
+
+/// All that surrounds the picture.
+#[derive(Resource)]
+pub struct Desk {
+    left: Vec<Section>,
+    right: Vec<Section>,
+    transport: Transport,
+    shown: Shown,
+    recent: Vec<String>,
+    /// Choosing a file.
+    pub path_dialog: PathDialog,
+    sheet: Option<Sheet>,
+    scene_error: Option<String>,
+    notice: Option<(String, Instant)>,
+    /// Whether a file hovers over the window.
+    pub file_hovers: bool,
+}
+
+/// A panel in its place.
+struct Section {
+    panel: Box<dyn Panel>,
+    open_at_first: bool,
+}
+
+/// The register of panels on the left, from top to bottom, and whether each is open at first.
+fn left() -> Vec<Section> {
+    vec![
+        section(AboutScene, true),
+        section(Parameters, true),
+        section(Picture, false),
+        section(SolverProfile, false),
+    ]
+}
+
+/// The register of panels on the right.
+fn right() -> Vec<Section> {
+    vec![
+        section(Plots::default(), true),
+        section(Results::default(), true),
+    ]
+}
+
+fn section(panel: impl Panel, open_at_first: bool) -> Section {
+    Section {
+        panel: Box::new(panel),
+        open_at_first,
+    }
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        Self {
+            left: left(),
+            right: right(),
+            transport: Transport,
+            shown: Shown {
+                left: true,
+                right: true,
+            },
+            recent: Vec::new(),
+            path_dialog: PathDialog::default(),
+            sheet: None,
+            scene_error: None,
+            notice: None,
+            file_hovers: false,
+        }
+    }
+}
+
+impl Desk {
+    /// Draws everything into `root`, which spans the window and keeps what is free, and reads the keyboard.
+    pub fn ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        theme::show(root.ctx(), view.background);
+        out.extend(shortcuts::pressed(
+            root.ctx(),
+            simulation.map(Simulation::status),
+        ));
+        self.menu_bar_ui(root, simulation, view, out);
+        if let Some(simulation) = simulation {
+            self.sides_ui(root, simulation, view, out);
+            let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
+            bar.show(root, |ui| self.transport.ui(ui, simulation, out));
+        }
+        self.windows_ui(root.ctx(), out);
+    }
+
+    /// Paints over the picture, which fills what `root` keeps free, without taking its pointer.
+    pub fn over_picture_ui(&self, root: &egui::Ui, simulation: Option<&Simulation>) {
+        let free = root.available_rect_before_wrap();
+        let painter = root.painter_at(free);
+        let visuals = root.visuals();
+        let write = |text: &str, size, colour| {
+            let font = FontId::proportional(size);
+            painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
+        };
+        if simulation.is_none() {
+            let text = "Open a scene: File menu, Ctrl+O, or drop a .ron file here";
+            write(text, 18.0, visuals.text_color());
+        }
+        if self.file_hovers {
+            painter.rect_filled(free, 0.0, Palette::of(visuals).veil);
+            write("Drop to open the scene", 24.0, visuals.strong_text_color());
+        }
+    }
+
+    /// Shows a sheet.
+    pub fn show_sheet(&mut self, sheet: Sheet) {
+        self.sheet = Some(sheet);
+    }
+
+    /// Shows why a scene could not be opened.
+    pub fn show_scene_error(&mut self, reason: String) {
+        self.scene_error = Some(reason);
+    }
+
+    /// Says `text` for a few seconds.
+    pub fn notify(&mut self, text: impl Into<String>) {
+        self.notice = Some((text.into(), Instant::now()));
+    }
+
+    /// Puts the scene called `name` first among the recent ones, and starts the panels afresh for it.
+    pub fn scene_opened(&mut self, name: &str) {
+        self.recent.retain(|recent| recent != name);
+        self.recent.insert(0, name.to_owned());
+        self.recent.truncate(RECENT_SCENES);
+        (self.left, self.right) = (left(), right());
+    }
+
+    fn menu_bar_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let title = simulation.map_or("", |simulation| &simulation.scene().title);
+        egui::Panel::top("menu").show(root, |ui| {
+            menu_ui(ui, title, &self.recent, &mut self.shown, view, out);
+        });
+    }
+
+    fn sides_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: &Simulation,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let width = root.available_width();
+        let size = |share: f32, least: f32, most: f32| (share * width).clamp(least, most);
+        egui::Panel::left("controls")
+            .default_size(size(0.235, 290.0, 380.0))
+            .size_range(240.0..=520.0)
+            .show_collapsible(root, &mut self.shown.left, |ui| {
+                sections_ui(ui, &mut self.left, simulation, view, out);
+            });
+        egui::Panel::right("measures")
+            .default_size(size(0.285, 350.0, 560.0))
+            .size_range(280.0..=900.0)
+            .show_collapsible(root, &mut self.shown.right, |ui| {
+                sections_ui(ui, &mut self.right, simulation, view, out);
+            });
+    }
+
+    fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
+        self.path_dialog.ui(ctx, out);
+        self.sheet = self.sheet.filter(|sheet| sheets::sheet_ui(ctx, *sheet));
+        let open = |reason: &String| sheets::scene_error_ui(ctx, reason);
+        self.scene_error = self.scene_error.take().filter(open);
+        self.notice_ui(ctx);
+    }
+
+    fn notice_ui(&mut self, ctx: &egui::Context) {
+        self.notice = self
+            .notice
+            .take()
+            .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
+        let waiting = "Waiting for the system's file dialog; Ctrl+O again to type a path";
+        let said = self.notice.as_ref().map(|(text, _)| text.as_str());
+        let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
+            return;
+        };
+        egui::Area::new(Id::new("notice"))
+            .anchor(Align2::CENTER_TOP, [0.0, 44.0])
+            .interactable(false)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style())
+                    .inner_margin(10)
+                    .show(ui, |ui| ui.label(text));
+            });
+        ctx.request_repaint_after(NOTICE_TIME);
+    }
+}
+
+fn sections_ui(
+    ui: &mut egui::Ui,
+    sections: &mut [Section],
+    simulation: &Simulation,
+    view: &mut ViewSettings,
+    out: &mut Vec<Request>,
+) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        // Room for the scroll bar, so that it never lies over a number.
+        ui.set_width(ui.available_width() - 6.0);
+        for section in sections {
+            let title = RichText::new(section.panel.title()).strong().size(17.0);
+            CollapsingHeader::new(title)
+                .default_open(section.open_at_first)
+                .show_unindented(ui, |ui| section.panel.ui(ui, simulation, view, out));
+        }
+    });
+}
+
+fn bar_frame(ui: &egui::Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(10, 8))
+}

@@ -1,0 +1,109 @@
+//! The menu bar.
+
+use super::shortcuts::SHORTCUTS;
+use super::{Request, Sheet};
+use crate::scene::built_in;
+use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
+use bevy_egui::egui::{self, RichText};
+
+/// Which of the side panels are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Controls.
+    pub left: bool,
+    /// Plots and results.
+    pub right: bool,
+}
+
+/// Draws the menu bar, with `title` at its right end.
+pub fn menu_ui(
+    ui: &mut egui::Ui,
+    title: &str,
+    recent: &[String],
+    shown: &mut Shown,
+    view: &mut ViewSettings,
+    out: &mut Vec<Request>,
+) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file_ui(ui, recent, out));
+        ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
+        ui.menu_button("Help", |ui| {
+            item_ui(ui, "Shortcuts", Request::Show(Sheet::Shortcuts), out);
+            item_ui(ui, "About Grainfall", Request::Show(Sheet::About), out);
+        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.add(egui::Label::new(RichText::new(title).weak()).truncate());
+        });
+    });
+}
+
+fn file_ui(ui: &mut egui::Ui, recent: &[String], out: &mut Vec<Request>) {
+    item_ui(ui, "Open…", Request::ChooseScene, out);
+    ui.menu_button("Built-in scenes", |ui| {
+        for scene in built_in() {
+            item_ui(ui, scene.name, Request::Open(scene.name.into()), out);
+        }
+    });
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Recent", |ui| {
+            for name in recent {
+                item_ui(ui, name, Request::Open(name.clone()), out);
+            }
+        });
+    });
+    ui.separator();
+    item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
+    ui.separator();
+    item_ui(ui, "Quit", Request::Quit, out);
+}
+
+fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &mut Vec<Request>) {
+    item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
+    item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
+    for side in Side::ALL {
+        item_ui(
+            ui,
+            side.label(),
+            Request::Camera(CameraRequest::From(side)),
+            out,
+        );
+    }
+    ui.separator();
+    let mut parallel = view.projection == ProjectionKind::Orthographic;
+    if ui.checkbox(&mut parallel, "Parallel projection").changed() {
+        view.projection = if parallel {
+            ProjectionKind::Orthographic
+        } else {
+            ProjectionKind::Perspective
+        };
+    }
+    let mut light = view.background == Background::Light;
+    if ui
+        .checkbox(&mut light, "Light, for projectors and print")
+        .changed()
+    {
+        view.background = if light {
+            Background::Light
+        } else {
+            Background::Dark
+        };
+    }
+    ui.separator();
+    ui.checkbox(&mut shown.left, "Controls on the left");
+    ui.checkbox(&mut shown.right, "Plots and results on the right");
+}
+
+/// An entry that asks for `request`, with its shortcut.
+fn item_ui(ui: &mut egui::Ui, name: &str, request: Request, out: &mut Vec<Request>) {
+    let shortcut = SHORTCUTS
+        .iter()
+        .find(|shortcut| shortcut.asks_for(&request));
+    let keys = shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ui.ctx()));
+    if ui
+        .add(egui::Button::new(name).shortcut_text(keys))
+        .clicked()
+    {
+        out.push(request);
+        ui.close();
+    }
+}

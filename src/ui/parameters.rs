@@ -1,0 +1,272 @@
+//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
+
+use super::{Panel, Request, number, symbol};
+use crate::scene::{Scene, SceneContainer, SceneGrains};
+use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+
+/// Width of the field with the number and its unit, in points.
+const NUMBER_WIDTH: f32 = 96.0;
+
+/// The panel of live parameters.
+#[derive(Default)]
+pub struct Parameters;
+
+/// What a parameter belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Group {
+    GrainGrain,
+    GrainWall,
+    Drum,
+    Gravity,
+    Mixture,
+}
+
+impl Group {
+    const ALL: [Self; 5] = [
+        Self::GrainGrain,
+        Self::GrainWall,
+        Self::Drum,
+        Self::Gravity,
+        Self::Mixture,
+    ];
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::GrainGrain => "Grain – grain",
+            Self::GrainWall => "Grain – wall",
+            Self::Drum => "Drum",
+            Self::Gravity => "Gravity",
+            Self::Mixture => "Mixture",
+        }
+    }
+
+    fn of(parameter: &Parameter, scene: &Scene) -> Self {
+        match parameter {
+            Parameter::DrumSpeed => Self::Drum,
+            Parameter::Gravity => Self::Gravity,
+            Parameter::Share(_) => Self::Mixture,
+            Parameter::Friction(a, b)
+            | Parameter::Restitution(a, b)
+            | Parameter::RollingFriction(a, b) => {
+                if is_of_grains(scene, a) && is_of_grains(scene, b) {
+                    Self::GrainGrain
+                } else {
+                    Self::GrainWall
+                }
+            }
+        }
+    }
+}
+
+/// Whether grains of `scene` are made of `material`.
+fn is_of_grains(scene: &Scene, material: &str) -> bool {
+    match &scene.grains {
+        SceneGrains::Fill { species, .. } => species.iter().any(|s| s.material == material),
+        SceneGrains::List(grains) => grains.iter().any(|g| g.material == material),
+    }
+}
+
+/// Whether walls of `scene` are made of `material`.
+fn is_of_walls(scene: &Scene, material: &str) -> bool {
+    match &scene.container {
+        SceneContainer::Nothing => false,
+        SceneContainer::Drum { material: own, .. } | SceneContainer::Box { material: own, .. } => {
+            own == material
+        }
+        SceneContainer::Planes(planes) => planes.iter().any(|plane| plane.material == material),
+    }
+}
+
+impl Panel for Parameters {
+    fn title(&self) -> &'static str {
+        "Parameters"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let list = simulation.parameters();
+        if list.is_empty() {
+            ui.weak("The parameters appear when the bed stands.");
+            return;
+        }
+        let grouped = |group| {
+            let own = move |info: &&ParameterInfo| {
+                Group::of(&info.parameter, simulation.scene()) == group
+            };
+            list.iter().filter(own)
+        };
+        for group in Group::ALL {
+            let mut pair = None;
+            for info in grouped(group) {
+                let own = pair_of(&info.parameter);
+                if pair != Some(own) {
+                    heading_ui(ui, group, own, simulation.scene());
+                    pair = Some(own);
+                }
+                let value = simulation.value(&info.parameter);
+                out.extend(parameter_ui(ui, info, value).map(Request::Command));
+            }
+        }
+        ui.add_space(4.0);
+        let changed = list
+            .iter()
+            .any(|info| simulation.value(&info.parameter) != info.default);
+        let button = ui.add_enabled(changed, egui::Button::new("Reset all"));
+        if button
+            .on_hover_text("Every parameter back to the scene's value")
+            .clicked()
+        {
+            let away = list
+                .iter()
+                .filter(|info| simulation.value(&info.parameter) != info.default);
+            out.extend(away.map(|info| Request::Command(set(info, info.default))));
+        }
+    }
+}
+
+/// The two materials that a parameter is about.
+fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
+    match parameter {
+        Parameter::Friction(a, b)
+        | Parameter::Restitution(a, b)
+        | Parameter::RollingFriction(a, b) => Some((a, b)),
+        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => None,
+    }
+}
+
+/// What stands beside a slider, under a heading that says the rest.
+fn short_name(info: &ParameterInfo) -> String {
+    match &info.parameter {
+        Parameter::Friction(..) => "Friction".into(),
+        Parameter::Restitution(..) => "Restitution".into(),
+        Parameter::RollingFriction(..) => "Rolling friction".into(),
+        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => {
+            number::capitalised(&info.label)
+        }
+    }
+}
+
+fn heading_ui(ui: &mut egui::Ui, group: Group, pair: Option<(&str, &str)>, scene: &Scene) {
+    ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(group.title()).strong());
+        let Some((a, b)) = pair else {
+            return;
+        };
+        let names = ui.weak(format!("{a} – {b}"));
+        if group == Group::GrainGrain && (is_of_walls(scene, a) || is_of_walls(scene, b)) {
+            names.on_hover_text("Walls are made of it too: these values hold for them as well.");
+        }
+    });
+}
+
+/// The row of one parameter whose present value is `value` (SI); the command that a change asks for.
+pub fn parameter_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<Command> {
+    let mut shown = value * info.display.factor;
+    let range = in_display_units(info);
+    let decimals = decimals(range.end() - range.start());
+    let mut reset = false;
+    let edited = ui.push_id(info.parameter.to_string(), |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        let field = egui::DragValue::new(&mut shown)
+            .range(range.clone())
+            .clamp_existing_to_range(false)
+            .speed((range.end() - range.start()) / 400.0)
+            .max_decimals(decimals)
+            .min_decimals(decimals.min(2))
+            .suffix(suffix(info))
+            .update_while_editing(false);
+        let (name, field) = egui::Sides::new().shrink_left().truncate().show(
+            ui,
+            |ui| ui.label(symbol::named(ui, &short_name(info), info.symbol)),
+            |ui| {
+                reset = reset_ui(ui, info, value != info.default);
+                ui.add_sized([NUMBER_WIDTH, 22.0], field)
+            },
+        );
+        ui.spacing_mut().slider_width = ui.available_width();
+        ui.spacing_mut().interact_size.y = 18.0;
+        let slider = egui::Slider::new(&mut shown, range.clone())
+            .show_value(false)
+            .clamping(egui::SliderClamping::Edits);
+        let slider = ui.add(slider);
+        slider.widget_info(|| WidgetInfo::slider(true, shown, &info.label));
+        field.widget_info(|| WidgetInfo {
+            label: Some(info.label.clone()),
+            ..WidgetInfo::drag_value(true, shown)
+        });
+        let explained =
+            |response: egui::Response| response.on_hover_ui(|ui| explanation_ui(ui, info));
+        explained(name);
+        explained(slider).changed() | explained(field).changed()
+    });
+    let wanted = match (reset, edited.inner) {
+        (true, _) => info.default,
+        (false, true) => in_si(info, shown),
+        (false, false) => value,
+    };
+    (wanted != value && wanted.is_finite()).then(|| set(info, wanted))
+}
+
+fn reset_ui(ui: &mut egui::Ui, info: &ParameterInfo, away: bool) -> bool {
+    let hint = format!(
+        "Back to {}{}",
+        number::short(info.default * info.display.factor),
+        suffix(info)
+    );
+    let button = ui
+        .add_enabled(away, egui::Button::new("↺").frame(false))
+        .on_hover_text(hint);
+    let name = format!("Reset {}", info.label);
+    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, away, &name));
+    button.clicked()
+}
+
+fn explanation_ui(ui: &mut egui::Ui, info: &ParameterInfo) {
+    let shown = |value: f64| number::short(value * info.display.factor);
+    ui.label(info.description);
+    ui.weak(format!(
+        "{} from {} to {}{}, {} in the scene",
+        info.symbol,
+        shown(*info.range.start()),
+        shown(*info.range.end()),
+        suffix(info),
+        shown(info.default),
+    ));
+    ui.weak(format!("--set {}=… on the command line", info.parameter));
+}
+
+fn set(info: &ParameterInfo, value: f64) -> Command {
+    Command::Set {
+        parameter: info.parameter.clone(),
+        value,
+    }
+}
+
+fn in_display_units(info: &ParameterInfo) -> std::ops::RangeInclusive<f64> {
+    info.range.start() * info.display.factor..=info.range.end() * info.display.factor
+}
+
+fn in_si(info: &ParameterInfo, shown: f64) -> f64 {
+    (shown / info.display.factor).clamp(*info.range.start(), *info.range.end())
+}
+
+fn suffix(info: &ParameterInfo) -> String {
+    if info.display.name.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", info.display.name)
+    }
+}
+
+/// Digits after the point that a value in a range of this `width` deserves: a thousandth of it.
+fn decimals(width: f64) -> usize {
+    (3.0 - width.log10().ceil()).clamp(0.0, 6.0) as usize
+}

@@ -1,0 +1,201 @@
+//! Choosing a file: the system's own dialog, and a field to type a path into where there is none.
+//!
+//! The system's dialog runs on a thread of its own and may fail to appear (no D-Bus session, no portal); then, or when
+//! it is asked for again while it has not answered, the field appears. Nothing here waits.
+
+use super::Request;
+use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
+use bevy_egui::egui::{self, Id, Key, Modal};
+use rfd::{AsyncFileDialog, FileHandle};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// A dialog that ends sooner than this without a file was never seen by a person.
+const SHORTEST_CHOICE: Duration = Duration::from_millis(400);
+
+/// What a path is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A scene to open.
+    Scene,
+    /// Where a picture of the window goes.
+    Picture,
+}
+
+/// A choice of a file, if one is being made.
+#[derive(Default)]
+pub struct PathDialog {
+    asked: Option<Asked>,
+    typed: Option<Typed>,
+}
+
+/// A system dialog that has not answered yet.
+struct Asked {
+    purpose: Purpose,
+    since: Instant,
+    answer: Task<Option<FileHandle>>,
+}
+
+/// The field to type a path into.
+struct Typed {
+    purpose: Purpose,
+    text: String,
+    /// Why it appeared.
+    reason: &'static str,
+    fresh: bool,
+}
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Scene => "Open a scene",
+            Self::Picture => "Save a picture of the window",
+        }
+    }
+
+    fn field(self) -> &'static str {
+        match self {
+            Self::Scene => "Path of the scene file, or name of a built-in scene",
+            Self::Picture => "Path of the PNG file",
+        }
+    }
+
+    fn suggestion(self) -> String {
+        match self {
+            Self::Scene => String::new(),
+            Self::Picture => default_picture().display().to_string(),
+        }
+    }
+
+    fn request(self, path: PathBuf) -> Request {
+        match self {
+            Self::Scene => Request::Open(path.display().to_string()),
+            Self::Picture => Request::SavePicture(path.with_extension("png")),
+        }
+    }
+}
+
+impl PathDialog {
+    /// Asks for a path with the system's dialog; with the field where that has been asked for and has not answered.
+    pub fn ask(&mut self, purpose: Purpose) {
+        if self.asked.take().is_some() {
+            self.type_path(purpose, "The system's file dialog has not answered.");
+        } else if self.typed.is_none() {
+            let dialog = AsyncFileDialog::new().set_title(purpose.title());
+            let answer = match purpose {
+                Purpose::Scene => {
+                    IoTaskPool::get().spawn(dialog.add_filter("Scenes", &["ron"]).pick_file())
+                }
+                Purpose::Picture => IoTaskPool::get().spawn(
+                    dialog
+                        .add_filter("Pictures", &["png"])
+                        .set_file_name("grainfall.png")
+                        .save_file(),
+                ),
+            };
+            self.asked = Some(Asked {
+                purpose,
+                since: Instant::now(),
+                answer,
+            });
+        }
+    }
+
+    /// Asks for a path with the field.
+    pub fn type_path(&mut self, purpose: Purpose, reason: &'static str) {
+        self.typed = Some(Typed {
+            purpose,
+            text: purpose.suggestion(),
+            reason,
+            fresh: true,
+        });
+    }
+
+    /// Whether the system's dialog has not answered yet.
+    pub fn is_waiting(&self) -> bool {
+        self.asked.is_some()
+    }
+
+    /// Takes the system dialog's answer, or draws the field; what was chosen goes into `out`.
+    pub fn ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
+        self.take_answer(out);
+        if let Some(typed) = &mut self.typed {
+            match typed_ui(ctx, typed) {
+                Some(Answer::Path(path)) => {
+                    out.push(typed.purpose.request(path));
+                    self.typed = None;
+                }
+                Some(Answer::Nothing) => self.typed = None,
+                None => {}
+            }
+        }
+    }
+
+    fn take_answer(&mut self, out: &mut Vec<Request>) {
+        let Some(asked) = &mut self.asked else {
+            return;
+        };
+        let Some(answer) = check_ready(&mut asked.answer) else {
+            return;
+        };
+        let (purpose, unseen) = (asked.purpose, asked.since.elapsed() < SHORTEST_CHOICE);
+        self.asked = None;
+        match answer {
+            Some(file) => out.push(purpose.request(file.path().to_owned())),
+            None if unseen => self.type_path(
+                purpose,
+                "The system offers no file dialog here (it needs a D-Bus session and xdg-desktop-portal).",
+            ),
+            None => {}
+        }
+    }
+}
+
+/// How the field was left.
+enum Answer {
+    Path(PathBuf),
+    Nothing,
+}
+
+fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
+    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
+    let modal = Modal::new(Id::new("path")).frame(frame).show(ctx, |ui| {
+        ui.set_width(560.0_f32.min(0.9 * ui.ctx().content_rect().width()));
+        ui.heading(typed.purpose.title());
+        ui.weak(typed.reason);
+        let label = ui.label(typed.purpose.field());
+        let field = egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY);
+        let field = ui.add(field).labelled_by(label.id);
+        if std::mem::take(&mut typed.fresh) {
+            field.request_focus();
+        }
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        ui.add_space(4.0);
+        ui.horizontal(|ui| {
+            let verb = match typed.purpose {
+                Purpose::Scene => "Open",
+                Purpose::Picture => "Save",
+            };
+            let filled = !typed.text.trim().is_empty();
+            let done = ui.add_enabled(filled, egui::Button::new(verb)).clicked();
+            let left = ui.button("Cancel").clicked();
+            match (done || (entered && filled), left) {
+                (true, _) => Some(Answer::Path(PathBuf::from(typed.text.trim()))),
+                (false, true) => Some(Answer::Nothing),
+                (false, false) => None,
+            }
+        })
+        .inner
+    });
+    let closed = modal.should_close().then_some(Answer::Nothing);
+    modal.inner.or(closed)
+}
+
+/// `grainfall-1.png` in the working folder, or the next number that is free.
+fn default_picture() -> PathBuf {
+    let name = |number| PathBuf::from(format!("grainfall-{number}.png"));
+    (1..1000)
+        .map(name)
+        .find(|path| !path.exists())
+        .unwrap_or_else(|| name(1000))
+}

@@ -1,0 +1,497 @@
+//! Surface angle θ(t) and granular temperature Tg(t) over the same time, with avalanches and changes marked.
+//!
+//! In: columns of samples. Out: two plots that cost the same however long the run is. Which part of the run is in view
+//! is kept here, not in the plots, so both always show the same time and fit their height to what they show.
+
+use super::decimate::decimate;
+use super::theme::Palette;
+use super::{Panel, Request, number};
+use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE};
+use crate::simulation::{Command, Simulation};
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot,
+    PlotBounds, PlotPoint, PlotUi, Points, Text, VLine,
+};
+use std::ops::RangeInclusive;
+
+/// Length of the window that follows the run [s].
+const RECENT: f64 = 20.0;
+/// Shortest window that one can zoom to [s].
+const SHORTEST: f64 = 0.2;
+/// Avalanches in view beyond this number get no label.
+const LABELLED_AVALANCHES: usize = 14;
+/// Smallest height of the θ plot [°], so that noise at rest does not fill it.
+const SMALLEST_ANGLE_SPAN: f64 = 2.0;
+/// Smallest height of the Tg plot with a logarithmic axis, in powers of ten.
+const SMALLEST_DECADES: f64 = 2.0;
+/// Temperatures are drawn no lower than this [m²/s²]: below lies only rounding.
+const COLDEST: f64 = 1e-13;
+/// Grid lines stand this many times further apart than the plot would have them at the closest, which is 8 points.
+const SPARSE_X: f32 = 5.5;
+const SPARSE_Y: f32 = 3.5;
+/// Room for half of the last label of the time axis.
+const ROOM_AT_THE_RIGHT: f32 = 14.0;
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// Both plots.
+#[derive(Debug, PartialEq)]
+pub struct Plots {
+    span: Span,
+    logarithmic: bool,
+}
+
+/// Which part of the run is in view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Span {
+    /// The last [`RECENT`] seconds.
+    Recent,
+    /// All of it.
+    All,
+    /// What a person dragged and zoomed to [s].
+    Chosen(f64, f64),
+}
+
+/// What is drawn, all columns of equal length.
+pub struct Curves<'a> {
+    /// Time [s], ascending.
+    pub time: &'a [f64],
+    /// Surface angle [rad].
+    pub angle: &'a [f64],
+    /// Granular temperature [m²/s²].
+    pub temperature: &'a [f64],
+    /// Avalanches in order of time.
+    pub avalanches: &'a [Avalanche],
+    /// When parameters were changed [s], ascending.
+    pub changes: &'a [f64],
+}
+
+/// One of the two plots.
+struct Curve {
+    id: &'static str,
+    title: &'static str,
+    latest: String,
+    colour: Color32,
+    points: Vec<[f64; 2]>,
+    height: RangeInclusive<f64>,
+    decades: bool,
+    /// The unit behind a number of the vertical axis.
+    unit: &'static str,
+}
+
+/// What is marked in the part in view.
+struct Marks<'a> {
+    palette: Palette,
+    avalanches: &'a [Avalanche],
+    changes: Vec<f64>,
+}
+
+impl Default for Plots {
+    fn default() -> Self {
+        Self {
+            span: Span::Recent,
+            logarithmic: true,
+        }
+    }
+}
+
+impl Panel for Plots {
+    fn title(&self) -> &'static str {
+        "Plots"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        _out: &mut Vec<Request>,
+    ) {
+        let series = simulation.series();
+        let is_change = |command: &Command| matches!(command, Command::Set { .. });
+        let changes: Vec<f64> = (simulation.commands().iter())
+            .filter(|stamped| is_change(&stamped.command))
+            .map(|stamped| stamped.time)
+            .collect();
+        self.curves_ui(
+            ui,
+            &Curves {
+                time: series.time(),
+                angle: series.column(Measure::SurfaceAngle),
+                temperature: series.column(Measure::GranularTemperature),
+                avalanches: simulation.avalanches(),
+                changes: &changes,
+            },
+        );
+    }
+}
+
+impl Plots {
+    /// Draws `curves` and the choice of what part of them is in view.
+    pub fn curves_ui(&mut self, ui: &mut egui::Ui, curves: &Curves) {
+        self.choice_ui(ui);
+        let height = (0.215 * ui.ctx().content_rect().height()).clamp(110.0, 300.0);
+        let columns = (ui.available_width().max(100.0) * ui.ctx().pixels_per_point()) as usize;
+        let palette = Palette::of(ui.visuals());
+        let window = self.window(curves.time);
+        let marks = Marks::within(curves, &window, columns, palette);
+        let angle = angle_curve(curves, &window, columns, palette);
+        let first = curve_ui(ui, angle, &window, height, |plot| marks.angle_ui(plot));
+        let temperature = temperature_curve(curves, &window, columns, palette, self.logarithmic);
+        let decades = self.logarithmic;
+        let second = curve_ui(ui, temperature, &window, height, |plot| {
+            marks.temperature_ui(plot, decades);
+        });
+        for response in [first, second] {
+            self.follow_pointer(&response, &window);
+        }
+    }
+
+    fn choice_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.selectable_value(&mut self.span, Span::Recent, "Last 20 s")
+                .on_hover_text("Follow the run");
+            ui.selectable_value(&mut self.span, Span::All, "All")
+                .on_hover_text("From the start on");
+            if matches!(self.span, Span::Chosen(..)) {
+                ui.weak("double click to follow");
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.checkbox(&mut self.logarithmic, "log Tg")
+                    .on_hover_text("Powers of ten for the granular temperature");
+            });
+        });
+    }
+
+    /// The part of the run in view [s].
+    fn window(&self, time: &[f64]) -> RangeInclusive<f64> {
+        let start = time.first().copied().unwrap_or(0.0);
+        let end = time.last().copied().unwrap_or(0.0);
+        match self.span {
+            Span::Recent => (end - RECENT).max(start)..=end.max(start + RECENT),
+            Span::All => start..=end.max(start + 1.0),
+            Span::Chosen(from, to) => from..=to,
+        }
+    }
+
+    /// Lets the pointer move what is in view: drag to shift, Ctrl and scroll or pinch to zoom, double click to follow
+    /// the run again.
+    fn follow_pointer(&mut self, response: &egui::Response, window: &RangeInclusive<f64>) {
+        let (from, to) = (*window.start(), *window.end());
+        let per_point = (to - from) / f64::from(response.rect.width().max(1.0));
+        if response.double_clicked() {
+            self.span = Span::Recent;
+        } else if response.dragged() && response.drag_delta().x != 0.0 {
+            let shift = -f64::from(response.drag_delta().x) * per_point;
+            self.span = Span::Chosen(from + shift, to + shift);
+        }
+        let zoom = f64::from(response.ctx.input(egui::InputState::zoom_delta));
+        if let Some(pointer) = response.hover_pos().filter(|_| zoom != 1.0) {
+            let at = from + f64::from(pointer.x - response.rect.left()) * per_point;
+            let zoom = zoom.min((to - from) / SHORTEST);
+            self.span = Span::Chosen(at - (at - from) / zoom, at + (to - at) / zoom);
+        }
+    }
+}
+
+fn angle_curve(
+    curves: &Curves,
+    window: &RangeInclusive<f64>,
+    columns: usize,
+    palette: Palette,
+) -> Curve {
+    let points = decimate(curves.time, window, columns, |i| curves.angle[i] * DEGREES);
+    let latest = curves.angle.last().copied().unwrap_or(f64::NAN) * DEGREES;
+    Curve {
+        id: "angle",
+        title: "Surface angle θ [°]",
+        latest: number::fixed(latest, 2),
+        colour: palette.angle,
+        height: height_of(&points, SMALLEST_ANGLE_SPAN),
+        points,
+        decades: false,
+        unit: "°",
+    }
+}
+
+fn temperature_curve(
+    curves: &Curves,
+    window: &RangeInclusive<f64>,
+    columns: usize,
+    palette: Palette,
+    decades: bool,
+) -> Curve {
+    let threshold = on_axis(NON_RIGID_TEMPERATURE, decades);
+    let points = decimate(curves.time, window, columns, |i| {
+        on_axis(curves.temperature[i], decades)
+    });
+    // The threshold is always in view, and zero where it has a place.
+    let seen: Vec<[f64; 2]> = (points.iter().copied())
+        .chain([
+            [0.0, threshold],
+            [0.0, if decades { threshold } else { 0.0 }],
+        ])
+        .collect();
+    Curve {
+        id: "temperature",
+        title: "Granular temperature Tg [m²/s²]",
+        latest: number::short(curves.temperature.last().copied().unwrap_or(f64::NAN)),
+        colour: palette.temperature,
+        height: height_of(&seen, if decades { SMALLEST_DECADES } else { 0.0 }),
+        points,
+        decades,
+        unit: "m²/s²",
+    }
+}
+
+/// Where a temperature [m²/s²] stands on its axis.
+fn on_axis(temperature: f64, decades: bool) -> f64 {
+    if decades {
+        // Zero has no logarithm and is passed over.
+        if temperature > 0.0 {
+            temperature.max(COLDEST).log10()
+        } else {
+            f64::NAN
+        }
+    } else {
+        temperature
+    }
+}
+
+/// The range that shows all `points` with a little room, at least `smallest` high.
+fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
+    let values = || points.iter().map(|point| point[1]);
+    let (low, high) = (
+        values().fold(f64::INFINITY, f64::min),
+        values().fold(f64::NEG_INFINITY, f64::max),
+    );
+    if low > high {
+        return 0.0..=smallest.max(1.0);
+    }
+    let span = (high - low).max(smallest).max(f64::MIN_POSITIVE);
+    let (middle, half) = (0.5 * (low + high), 0.58 * span);
+    middle - half..=middle + half
+}
+
+fn curve_ui<'a>(
+    ui: &mut egui::Ui,
+    curve: Curve,
+    window: &RangeInclusive<f64>,
+    height: f32,
+    marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
+) -> egui::Response {
+    let grid = Palette::of(ui.visuals()).grid;
+    egui::Sides::new().shrink_left().truncate().show(
+        ui,
+        |ui| ui.label(RichText::new(curve.title).strong()),
+        |ui| ui.label(RichText::new(&curve.latest).color(curve.colour).strong()),
+    );
+    let bounds = PlotBounds::from_min_max(
+        [*window.start(), *curve.height.start()],
+        [*window.end(), *curve.height.end()],
+    );
+    let line = Line::new(curve.title, curve.points)
+        .color(curve.colour)
+        .width(1.7);
+    let (decades, unit) = (curve.decades, curve.unit);
+    let plot = Plot::new(curve.id)
+        .height(height)
+        .width(ui.available_width() - ROOM_AT_THE_RIGHT)
+        .show_crosshair(false)
+        .grid_color(grid)
+        .x_grid_spacer(|input| round_marks(input, SPARSE_X, 0.0))
+        .y_grid_spacer(move |input| {
+            let finest = if decades { 1.0 } else { 0.0 };
+            round_marks(input, SPARSE_Y, finest)
+        })
+        .auto_bounds(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .link_cursor("time", Vec2b::new(true, false))
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label_spacing(SPARSE_X * 6.0..=SPARSE_X * 8.0)
+                .formatter(|mark, _| format!("{} s", tidy(mark.value))),
+        ])
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .min_thickness(46.0)
+                .label_spacing(SPARSE_Y * 6.0..=SPARSE_Y * 8.0)
+                .formatter(move |mark, _| tick(mark.value, decades)),
+        ])
+        .label_formatter(move |hover| Some(hover_label(hover, decades, unit)));
+    let shown = plot.show(ui, move |plot| {
+        plot.set_plot_bounds(bounds);
+        plot.line(line);
+        marks(plot);
+    });
+    shown.response
+}
+
+/// Grid lines at round numbers at least `finest` apart, `sparse` times as far apart as the plot would have them at the
+/// closest.
+fn round_marks(input: GridInput, sparse: f32, finest: f64) -> Vec<GridMark> {
+    let step = round_step((input.base_step_size * f64::from(sparse)).max(finest));
+    let (first, last) = (
+        (input.bounds.0 / step).ceil(),
+        (input.bounds.1 / step).floor(),
+    );
+    (first as i64..=last as i64)
+        .map(|index| GridMark {
+            value: index as f64 * step,
+            step_size: step,
+        })
+        .collect()
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
+fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    let fits = |factor: &f64| factor * power >= least * (1.0 - 1e-9);
+    [1.0, 2.0, 5.0, 10.0].into_iter().find(fits).unwrap_or(10.0) * power
+}
+
+fn tick(value: f64, decades: bool) -> String {
+    if decades {
+        number::power_of_ten(value.round() as i32)
+    } else if value != 0.0 && value.abs() < 1e-3 {
+        number::short(value)
+    } else {
+        tidy(value)
+    }
+}
+
+/// `value` without digits that say nothing.
+fn tidy(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    format!("{}", rounded + 0.0).replacen('-', "−", 1)
+}
+
+fn hover_label(hover: &HoverPosition, decades: bool, unit: &str) -> String {
+    let (name, position) = match hover {
+        HoverPosition::NearDataPoint {
+            plot_name,
+            position,
+            ..
+        } => (*plot_name, *position),
+        HoverPosition::Elsewhere { position } => ("", *position),
+    };
+    let value = if decades {
+        10_f64.powf(position.y)
+    } else {
+        position.y
+    };
+    let place = format!("{:.2} s\n{} {unit}", position.x, number::short(value));
+    if name.is_empty() {
+        place
+    } else {
+        format!("{name}\n{place}")
+    }
+}
+
+impl<'a> Marks<'a> {
+    /// The marks of `curves` in `window`: its avalanches, and its changes, of which one is drawn per column of pixels.
+    fn within(
+        curves: &Curves<'a>,
+        window: &RangeInclusive<f64>,
+        columns: usize,
+        palette: Palette,
+    ) -> Self {
+        let first =
+            (curves.avalanches).partition_point(|avalanche| avalanche.end < *window.start());
+        let end = (curves.avalanches).partition_point(|avalanche| avalanche.start <= *window.end());
+        let apart = (window.end() - window.start()) / columns.max(1) as f64;
+        let mut changes: Vec<f64> = (curves.changes.iter().copied())
+            .filter(|time| window.contains(time))
+            .collect();
+        changes.dedup_by(|later, earlier| *later - *earlier < apart);
+        Self {
+            palette,
+            avalanches: &curves.avalanches[first.min(end)..end],
+            changes,
+        }
+    }
+
+    fn angle_ui<'p>(&self, plot: &mut PlotUi<'p>) {
+        self.changes_ui(plot);
+        let points = |ends: fn(&Avalanche) -> [f64; 2]| -> Vec<[f64; 2]> {
+            self.avalanches.iter().map(ends).collect()
+        };
+        let starts = points(|avalanche| [avalanche.start, avalanche.theta_m * DEGREES]);
+        let ends = points(|avalanche| [avalanche.end, avalanche.theta_r * DEGREES]);
+        plot.points(
+            Points::new("avalanche starts", starts)
+                .shape(MarkerShape::Up)
+                .radius(4.5)
+                .color(self.palette.maximum),
+        );
+        plot.points(
+            Points::new("avalanche ends", ends)
+                .shape(MarkerShape::Down)
+                .radius(4.5)
+                .color(self.palette.minimum),
+        );
+        if self.avalanches.len() <= LABELLED_AVALANCHES {
+            for avalanche in self.avalanches {
+                plot.text(self.drop_label(avalanche));
+            }
+        }
+    }
+
+    fn drop_label(&self, avalanche: &Avalanche) -> Text {
+        let at = PlotPoint::new(avalanche.start, avalanche.theta_m * DEGREES);
+        let drop = RichText::new(format!("{:.1}° ", avalanche.drop() * DEGREES)).small();
+        Text::new("Δθ", at, drop.color(self.palette.maximum)).anchor(Align2::RIGHT_CENTER)
+    }
+
+    fn temperature_ui<'p>(&self, plot: &mut PlotUi<'p>, decades: bool) {
+        self.changes_ui(plot);
+        plot.hline(
+            HLine::new("flowing above", on_axis(NON_RIGID_TEMPERATURE, decades))
+                .stroke(Stroke::new(1.2, self.palette.threshold))
+                .style(LineStyle::dashed_dense()),
+        );
+    }
+
+    fn changes_ui<'p>(&self, plot: &mut PlotUi<'p>) {
+        for time in &self.changes {
+            plot.vline(
+                VLine::new("parameter changed", *time)
+                    .stroke(Stroke::new(1.0, self.palette.change))
+                    .allow_hover(false),
+            );
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_recent_window_follows_the_run_and_starts_with_full_length() {
+        let plots = Plots::default();
+        assert_eq!(plots.window(&[0.0, 3.0]), 0.0..=20.0);
+        assert_eq!(plots.window(&[0.0, 50.0]), 30.0..=50.0);
+    }
+
+    #[test]
+    fn changes_of_one_drag_share_a_line() {
+        let changes = [1.0, 1.001, 1.002, 5.0];
+        let curves = Curves {
+            time: &[],
+            angle: &[],
+            temperature: &[],
+            avalanches: &[],
+            changes: &changes,
+        };
+        let palette = Palette::of(&egui::Visuals::dark());
+        let marks = Marks::within(&curves, &(0.0..=20.0), 400, palette);
+        assert_eq!(marks.changes, [1.0, 5.0]);
+    }
+}

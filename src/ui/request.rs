@@ -1,0 +1,36 @@
+//! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push requests, and one
+//! function ([`super::carry_out`]) fulfils them.
+
+use crate::simulation::Command;
+use crate::view::CameraRequest;
+use std::path::PathBuf;
+
+/// Something a person asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// A change of the run.
+    Command(Command),
+    /// Another view of the scene.
+    Camera(CameraRequest),
+    /// Let the person choose a scene file.
+    ChooseScene,
+    /// Open this scene: a file's path or a built-in scene's name.
+    Open(String),
+    /// Let the person choose where the picture of the window goes.
+    ChoosePicture,
+    /// Write a picture of the window to this PNG file.
+    SavePicture(PathBuf),
+    /// Show a sheet over the window.
+    Show(Sheet),
+    /// End the program.
+    Quit,
+}
+
+/// A sheet of text over the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sheet {
+    /// Keys and what they do.
+    Shortcuts,
+    /// What the program is.
+    About,
+}

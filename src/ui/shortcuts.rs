@@ -1,0 +1,165 @@
+//! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from it.
+
+use super::transport::{allows, play_or_pause};
+use super::{Request, Sheet};
+use crate::simulation::{Command, Status};
+use crate::view::{CameraRequest, Side};
+use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
+
+/// A key and what it does.
+pub struct Shortcut {
+    /// Keys that do it, any of them.
+    keys: &'static [KeyboardShortcut],
+    /// What it does, in words.
+    pub name: &'static str,
+    action: Action,
+}
+
+enum Action {
+    PlayOrPause,
+    Ask(Request),
+}
+
+const fn key(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn look_from(side: Side) -> Action {
+    Action::Ask(Request::Camera(CameraRequest::From(side)))
+}
+
+/// Every shortcut, in the order of the sheet.
+pub const SHORTCUTS: &[Shortcut] = &[
+    Shortcut {
+        keys: &[key(Key::Space)],
+        name: "Play or pause",
+        action: Action::PlayOrPause,
+    },
+    Shortcut {
+        keys: &[key(Key::Period), key(Key::ArrowRight)],
+        name: "One time step",
+        action: Action::Ask(Request::Command(Command::Step(1))),
+    },
+    Shortcut {
+        keys: &[key(Key::R)],
+        name: "Back to time zero",
+        action: Action::Ask(Request::Command(Command::Reset)),
+    },
+    Shortcut {
+        keys: &[key(Key::F)],
+        name: "Everything in view",
+        action: Action::Ask(Request::Camera(CameraRequest::Fit)),
+    },
+    Shortcut {
+        keys: &[key(Key::Home)],
+        name: "The view a scene opens with",
+        action: Action::Ask(Request::Camera(CameraRequest::Home)),
+    },
+    Shortcut {
+        keys: &[key(Key::Num1)],
+        name: "Look from the front",
+        action: look_from(Side::Front),
+    },
+    Shortcut {
+        keys: &[key(Key::Num2)],
+        name: "Look from the back",
+        action: look_from(Side::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::Num3)],
+        name: "Look from the left",
+        action: look_from(Side::Left),
+    },
+    Shortcut {
+        keys: &[key(Key::Num4)],
+        name: "Look from the right",
+        action: look_from(Side::Right),
+    },
+    Shortcut {
+        keys: &[key(Key::Num5)],
+        name: "Look from above",
+        action: look_from(Side::Above),
+    },
+    Shortcut {
+        keys: &[key(Key::Num6)],
+        name: "Look from below",
+        action: look_from(Side::Below),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::O)],
+        name: "Open a scene",
+        action: Action::Ask(Request::ChooseScene),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::P)],
+        name: "Save a picture of the window",
+        action: Action::Ask(Request::ChoosePicture),
+    },
+    Shortcut {
+        keys: &[key(Key::F1)],
+        name: "These shortcuts",
+        action: Action::Ask(Request::Show(Sheet::Shortcuts)),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::Q)],
+        name: "Quit",
+        action: Action::Ask(Request::Quit),
+    },
+];
+
+/// What the mouse does over the picture.
+pub const MOUSE: [(&str, &str); 4] = [
+    ("Drag", "Orbit"),
+    ("Right drag, Shift + drag", "Pan"),
+    ("Scroll, pinch", "Zoom"),
+    ("Double click", "Everything in view"),
+];
+
+impl Shortcut {
+    /// Its keys in words: `. or →`.
+    pub fn keys(&self, ctx: &egui::Context) -> String {
+        let names: Vec<String> = self
+            .keys
+            .iter()
+            .map(|key| ctx.format_shortcut(key))
+            .collect();
+        names.join(" or ")
+    }
+
+    /// Whether it asks for `request`.
+    pub fn asks_for(&self, request: &Request) -> bool {
+        matches!(&self.action, Action::Ask(own) if own == request)
+    }
+
+    fn is_pressed(&self, ctx: &egui::Context) -> bool {
+        ctx.input_mut(|input| {
+            // Every key is consumed, not only the first that is pressed.
+            let pressed = self.keys.iter().filter(|key| input.consume_shortcut(key));
+            pressed.count() > 0
+        })
+    }
+
+    /// What it asks for while the run is in `status`.
+    fn request(&self, status: Option<&Status>) -> Option<Request> {
+        match &self.action {
+            Action::PlayOrPause => play_or_pause(status?).map(Request::Command),
+            Action::Ask(Request::Command(command)) if !allows(status?, command) => None,
+            Action::Ask(request) => Some(request.clone()),
+        }
+    }
+}
+
+/// What the keys pressed now ask for; nothing while the keyboard writes into a field.
+pub fn pressed(ctx: &egui::Context, status: Option<&Status>) -> Vec<Request> {
+    if ctx.egui_wants_keyboard_input() {
+        return Vec::new();
+    }
+    let pressed = SHORTCUTS.iter().filter(|shortcut| shortcut.is_pressed(ctx));
+    pressed
+        .filter_map(|shortcut| shortcut.request(status))
+        .collect()
+}

@@ -1,0 +1,204 @@
+//! The colours of the picture, all of them.
+//!
+//! In: a world and what to colour by. Out: one linear colour per grain and the legend that explains it.
+
+use super::{Background, ColourBy, ColourMap, ColourRange, Legend};
+use crate::world::World;
+use bevy::color::{Color, ColorToComponents, LinearRgba};
+
+/// The colours of species in order of their index, readable side by side on a projector and by people with any kind of
+/// colour vision: they differ in lightness too.
+const SPECIES: [[u8; 3]; 6] = [
+    [0xE9, 0xA8, 0x3F],
+    [0x2F, 0x8F, 0xC4],
+    [0xF3, 0xE6, 0xC4],
+    [0xC4, 0x4E, 0x35],
+    [0x46, 0xB3, 0x93],
+    [0x7A, 0x5C, 0xA8],
+];
+
+/// The sRGB colour of a species.
+pub fn species_colour(species: usize) -> [u8; 3] {
+    SPECIES[species % SPECIES.len()]
+}
+
+/// The colours of everything that is no grain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// Behind everything.
+    pub background: Color,
+    /// Surfaces of the container.
+    pub surface: Color,
+    /// Lines on them.
+    pub line: Color,
+    /// The mark that shows how far a drum has turned.
+    pub mark: Color,
+    /// The hoops of a drum, the edges of a box.
+    pub frame: Color,
+    /// Text and scale bar, sRGB.
+    pub text: [u8; 3],
+    /// Text of less weight, sRGB.
+    pub faint_text: [u8; 3],
+}
+
+impl Scheme {
+    /// The colours that go with a background.
+    pub fn of(background: Background) -> Self {
+        match background {
+            Background::Dark => Self {
+                background: Color::srgb_u8(0x15, 0x19, 0x20),
+                surface: Color::srgb_u8(0x5C, 0x6B, 0x80),
+                line: Color::srgb_u8(0x9F, 0xB0, 0xC6),
+                mark: Color::srgb_u8(0xF2, 0x7D, 0x52),
+                frame: Color::srgb_u8(0x7C, 0x8B, 0x9F),
+                text: [0xEC, 0xEF, 0xF4],
+                faint_text: [0x9A, 0xA5, 0xB4],
+            },
+            Background::Light => Self {
+                background: Color::srgb_u8(0xF7, 0xF7, 0xF4),
+                surface: Color::srgb_u8(0x9D, 0xAF, 0xC4),
+                line: Color::srgb_u8(0x3F, 0x50, 0x66),
+                mark: Color::srgb_u8(0xD4, 0x55, 0x2A),
+                frame: Color::srgb_u8(0x7C, 0x8C, 0xA0),
+                text: [0x1E, 0x24, 0x2C],
+                faint_text: [0x5D, 0x67, 0x74],
+            },
+        }
+    }
+}
+
+/// What the colours of `world` mean; `None` for species.
+pub fn legend(world: &World, colour_by: ColourBy, range: ColourRange) -> Option<Legend> {
+    if colour_by == ColourBy::Species {
+        return None;
+    }
+    let (min, max) = match range {
+        ColourRange::Fixed(min, max) => (min, max),
+        ColourRange::Automatic => (0.0, automatic_maximum(world, colour_by)),
+    };
+    Some(Legend {
+        title: colour_by.label(),
+        min,
+        max,
+        unit: colour_by.unit(),
+    })
+}
+
+/// Calls `paint` with the linear colour of each grain in turn.
+pub fn colours(
+    world: &World,
+    colour_by: ColourBy,
+    map: ColourMap,
+    legend: Option<&Legend>,
+    mut paint: impl FnMut([f32; 3]),
+) {
+    let grains = &world.grains;
+    let Some(legend) = legend else {
+        for i in 0..grains.len() {
+            let colour = species_colour(usize::from(grains.species[i].0));
+            paint(linear(colour).map(|c| c * individual_lightness(i)));
+        }
+        return;
+    };
+    let table: Vec<[f32; 3]> = (0..=255)
+        .map(|t| linear(map.colour(f64::from(t) / 255.0)))
+        .collect();
+    let scale = if legend.max > legend.min {
+        255.0 / (legend.max - legend.min)
+    } else {
+        0.0
+    };
+    for i in 0..grains.len() {
+        let place = (value(world, colour_by, i) - legend.min) * scale;
+        paint(table[place.round().clamp(0.0, 255.0) as usize]);
+    }
+}
+
+/// The number behind the colour of grain `i`, in its SI unit.
+fn value(world: &World, colour_by: ColourBy, i: usize) -> f64 {
+    let grains = &world.grains;
+    match colour_by {
+        ColourBy::Species => f64::from(grains.species[i].0),
+        ColourBy::Speed => grains.velocity[i].length(),
+        ColourBy::Spin => grains.spin[i].length(),
+        ColourBy::Coordination => f64::from(grains.contact_count[i]),
+    }
+}
+
+/// A round number that all but a fiftieth of the grains stay below; for counts an even number, at least 8.
+fn automatic_maximum(world: &World, colour_by: ColourBy) -> f64 {
+    let mut values: Vec<f64> = (0..world.grains.len())
+        .map(|i| value(world, colour_by, i))
+        .filter(|value| value.is_finite())
+        .collect();
+    if values.is_empty() {
+        return 1.0;
+    }
+    let rank = (values.len() - 1) * 49 / 50;
+    let (_, most, _) = values.select_nth_unstable_by(rank, f64::total_cmp);
+    if colour_by == ColourBy::Coordination {
+        (*most / 2.0).ceil().max(4.0) * 2.0
+    } else {
+        round_up(*most)
+    }
+}
+
+/// The next of … 1, 2, 5, 10, 20, 50 … at or above `x`; 1 for zero.
+pub fn round_up(x: f64) -> f64 {
+    if x <= 0.0 || !x.is_finite() {
+        return 1.0;
+    }
+    let decade = 10_f64.powf(x.log10().floor());
+    // A billionth above a round number is that number: rounding of the logarithm.
+    let digit = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|digit| digit * decade >= x * (1.0 - 1e-9));
+    digit.unwrap_or(10.0) * decade
+}
+
+/// sRGB to linear light.
+pub fn linear([r, g, b]: [u8; 3]) -> [f32; 3] {
+    let colour = LinearRgba::from(Color::srgb_u8(r, g, b));
+    colour.to_f32_array_no_alpha()
+}
+
+/// A little lighter or darker, so that the eye can follow single grains of one species.
+fn individual_lightness(i: usize) -> f32 {
+    let scrambled = (i as u32).wrapping_mul(2_654_435_761) >> 16;
+    0.92 + 0.16 * (scrambled as f32 / 65_535.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn range_ends_at_round_numbers() {
+        for (x, round) in [
+            (0.0, 1.0),
+            (0.0031, 0.005),
+            (1.0, 1.0),
+            (1.2, 2.0),
+            (6.0, 10.0),
+            (0.2, 0.2),
+            (900.0, 1000.0),
+        ] {
+            // A relative billionth: rounding of the power of ten.
+            assert!((round_up(x) / round - 1.0).abs() < 1e-9, "{x}");
+        }
+    }
+
+    #[test]
+    fn colour_maps_grow_lighter_all_the_way() {
+        for map in ColourMap::ALL {
+            let lightness = |t: f64| {
+                let [r, g, b] = linear(map.colour(t));
+                0.2126 * r + 0.7152 * g + 0.0722 * b
+            };
+            for i in 0..20 {
+                let t = f64::from(i) / 20.0;
+                assert!(lightness(t + 0.05) > lightness(t), "{map:?} at {t}");
+            }
+        }
+    }
+}

@@ -1,0 +1,491 @@
+//! The container: walls that one sees, and sees through.
+//!
+//! In: the container of the world shown. Out: a few meshes, rebuilt when the container is another, turned and moved with
+//! it. Every pane faces the grains and is drawn only from that side, so the near walls never stand in the way.
+
+use super::colour::{Scheme, round_up};
+use super::{Shown, ViewSettings};
+use crate::world::{Container, Shape, Surface, World};
+use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
+use bevy::camera::visibility::NoFrustumCulling;
+use bevy::math::DVec3;
+use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};
+use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
+use bevy::prelude::*;
+use bevy::render::render_resource::{
+    AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
+};
+use bevy::shader::ShaderRef;
+use std::f32::consts::TAU;
+
+const SHADER: Handle<Shader> = uuid_handle!("f1b2a8a4-5d51-4a1e-8a2a-0d6ad0c3d0b2");
+/// Segments of a circle.
+const SEGMENTS: u32 = 180;
+/// Breadth of a drum's hoops in its radius.
+const HOOP_BREADTH: f32 = 0.045;
+
+/// Adds the walls' material and what keeps them up to date.
+pub(super) fn plugin(app: &mut App) {
+    load_internal_asset!(
+        app,
+        SHADER,
+        "../../assets/shaders/container.wgsl",
+        Shader::from_wgsl
+    );
+    app.add_plugins(MaterialPlugin::<WallMaterial>::default())
+        .add_systems(
+            Update,
+            (rebuild, paint, place)
+                .chain()
+                .in_set(super::ViewSystems::Draw),
+        );
+}
+
+/// Points that a picture of `world` should hold: its container's, or, where that is unbounded, its grains'.
+pub fn outline(world: &World) -> Vec<Vec3> {
+    match world.container.shape {
+        Shape::Drum { radius, width } => {
+            let radius = radius as f32 * (1.0 + HOOP_BREADTH);
+            let half = width as f32 / 2.0;
+            (0..64)
+                .flat_map(|i| {
+                    let (sin, cos) = (TAU * i as f32 / 64.0).sin_cos();
+                    [-half, half].map(|z| Vec3::new(radius * cos, radius * sin, z))
+                })
+                .collect()
+        }
+        Shape::Box { min, max } => corners(min.as_vec3(), max.as_vec3()).to_vec(),
+        Shape::Planes => surroundings(world).map_or_else(Vec::new, |(min, max)| {
+            corners(min.as_vec3(), max.as_vec3()).to_vec()
+        }),
+    }
+}
+
+/// The box round all grains with some room to move, and what they stand on.
+fn surroundings(world: &World) -> Option<(DVec3, DVec3)> {
+    let (min, max) = grain_box(world)?;
+    let largest = world.grains.radius.iter().copied().fold(0.0, f64::max);
+    let (mut low, mut high) = (min - 2.0 * largest, max + 2.0 * largest);
+    let middle = (min + max) / 2.0;
+    let size = (high - low).max_element();
+    for wall in &world.container.walls {
+        if let Surface::Plane { point, normal } = wall.surface {
+            let distance = (middle - point).dot(normal);
+            if distance.abs() < 4.0 * size {
+                let foot = middle - distance * normal;
+                (low, high) = (low.min(foot), high.max(foot));
+            }
+        }
+    }
+    Some((low, high))
+}
+
+/// The box round all grains.
+fn grain_box(world: &World) -> Option<(DVec3, DVec3)> {
+    let grains = &world.grains;
+    let reach = |i: usize| DVec3::splat(grains.radius[i]);
+    (!grains.is_empty()).then(|| {
+        (0..grains.len()).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), i| {
+            let x = grains.position[i];
+            (min.min(x - reach(i)), max.max(x + reach(i)))
+        })
+    })
+}
+
+fn corners(min: Vec3, max: Vec3) -> [Vec3; 8] {
+    std::array::from_fn(|i| {
+        let pick = |axis: usize| {
+            if i >> axis & 1 == 0 {
+                min[axis]
+            } else {
+                max[axis]
+            }
+        };
+        Vec3::new(pick(0), pick(1), pick(2))
+    })
+}
+
+/// One drawn piece of the container.
+#[derive(Component, Clone, Copy, PartialEq)]
+enum Piece {
+    /// Turns with the drum.
+    Turning,
+    /// Stays where it is.
+    Fixed,
+    /// Lies in the plane of a wall.
+    Plane {
+        /// The wall's index.
+        wall: usize,
+        /// The point whose foot on the plane is the piece's middle.
+        near: DVec3,
+    },
+}
+
+/// What a piece is painted as.
+#[derive(Component, Clone, Copy, PartialEq)]
+enum Paint {
+    /// A pane with lines of this pattern.
+    Pane(Pattern),
+    /// A floor whose lines fade with distance.
+    Floor,
+    /// Opaque frame.
+    Frame(Pattern),
+}
+
+/// The lines on a piece and what its `uv` means, as the shader numbers them.
+#[derive(Clone, Copy, PartialEq)]
+enum Pattern {
+    Plain = 0,
+    Plate = 1,
+    Rim = 2,
+    Grid = 3,
+    Hoop = 4,
+}
+
+/// Cells from the middle to where a floor has faded away.
+const FLOOR_CELLS: f32 = 40.0;
+
+#[derive(Asset, TypePath, AsBindGroup, Clone)]
+#[bind_group_data(BothSides)]
+struct WallMaterial {
+    #[uniform(0)]
+    look: Look,
+    alpha_mode: AlphaMode,
+    both_sides: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, ShaderType)]
+struct Look {
+    surface: Vec4,
+    line: Vec4,
+    mark: Vec4,
+    pattern: u32,
+    fade: f32,
+    unused: Vec2,
+}
+
+/// Whether a piece is drawn from both sides; part of the pipeline's key.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(C)]
+struct BothSides(bool);
+
+impl From<&WallMaterial> for BothSides {
+    fn from(material: &WallMaterial) -> Self {
+        Self(material.both_sides)
+    }
+}
+
+impl Material for WallMaterial {
+    fn fragment_shader() -> ShaderRef {
+        SHADER.into()
+    }
+
+    fn alpha_mode(&self) -> AlphaMode {
+        self.alpha_mode
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _pipeline: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        _layout: &MeshVertexBufferLayoutRef,
+        key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        if key.bind_group_data.0 {
+            descriptor.primitive.cull_mode = None;
+        }
+        Ok(())
+    }
+}
+
+/// What decides the meshes: the shape, and for planes how many there are.
+type Built = (Shape, usize);
+
+/// Builds the pieces anew when the container is another.
+fn rebuild(
+    mut commands: Commands,
+    shown: Res<Shown>,
+    mut built: Local<Option<Built>>,
+    pieces: Query<Entity, With<Piece>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<WallMaterial>>,
+) {
+    let Some(world) = shown.world().filter(|_| shown.is_changed()) else {
+        return;
+    };
+    let now = (world.container.shape, world.container.walls.len());
+    if *built == Some(now) {
+        return;
+    }
+    *built = Some(now);
+    for piece in &pieces {
+        commands.entity(piece).despawn();
+    }
+    for (piece, paint, mesh) in build(world) {
+        commands.spawn((
+            piece,
+            paint,
+            Mesh3d(meshes.add(mesh)),
+            MeshMaterial3d(materials.add(WallMaterial {
+                look: look(paint, &ViewSettings::default()),
+                alpha_mode: AlphaMode::Blend,
+                both_sides: false,
+            })),
+            NoFrustumCulling,
+        ));
+    }
+}
+
+/// Gives each piece the colours of the settings.
+fn paint(
+    settings: Res<ViewSettings>,
+    mut pieces: Query<(Ref<Paint>, &MeshMaterial3d<WallMaterial>, &mut Visibility)>,
+    mut materials: ResMut<Assets<WallMaterial>>,
+) {
+    for (paint, material, mut visibility) in &mut pieces {
+        visibility.set_if_neq(if settings.show_container {
+            Visibility::Inherited
+        } else {
+            Visibility::Hidden
+        });
+        let look = look(*paint, &settings);
+        let stale = materials
+            .get(&material.0)
+            .is_some_and(|material| material.look != look);
+        if (stale || paint.is_added())
+            && let Some(mut material) = materials.get_mut(&material.0)
+        {
+            let frame = matches!(*paint, Paint::Frame(_));
+            material.look = look;
+            material.both_sides = frame;
+            material.alpha_mode = if frame {
+                AlphaMode::Opaque
+            } else {
+                AlphaMode::Blend
+            };
+        }
+    }
+}
+
+/// Turns and moves each piece with its wall.
+fn place(shown: Res<Shown>, mut pieces: Query<(&Piece, &mut Transform)>) {
+    let Some(world) = shown.world() else { return };
+    for (piece, mut transform) in &mut pieces {
+        transform.set_if_neq(match *piece {
+            Piece::Fixed => Transform::IDENTITY,
+            Piece::Turning => {
+                Transform::from_rotation(Quat::from_rotation_z(world.container.angle as f32))
+            }
+            Piece::Plane { wall, near } => plane_transform(&world.container, wall, near),
+        });
+    }
+}
+
+/// Where the piece of the plane `wall` lies: its z axis along the normal, its middle at the foot of `near`.
+fn plane_transform(container: &Container, wall: usize, near: DVec3) -> Transform {
+    let Some(Surface::Plane { point, normal }) = container.walls.get(wall).map(|wall| wall.surface)
+    else {
+        return Transform::IDENTITY;
+    };
+    let foot = near - normal * (near - point).dot(normal);
+    Transform::from_translation(foot.as_vec3())
+        .with_rotation(Quat::from_rotation_arc(Vec3::Z, normal.as_vec3()))
+}
+
+fn look(paint: Paint, settings: &ViewSettings) -> Look {
+    let scheme = Scheme::of(settings.background);
+    let opacity = settings.container_opacity.clamp(0.0, 1.0);
+    let with_alpha = |colour: Color, alpha: f32| colour.to_linear().with_alpha(alpha).to_vec4();
+    let (pattern, surface, fade) = match paint {
+        Paint::Pane(pattern) => (pattern, with_alpha(scheme.surface, 0.55 * opacity), 0.0),
+        Paint::Floor => (
+            Pattern::Grid,
+            with_alpha(scheme.surface, 0.45 * opacity),
+            FLOOR_CELLS,
+        ),
+        Paint::Frame(pattern) => (pattern, with_alpha(scheme.frame, 1.0), 0.0),
+    };
+    let frame = matches!(paint, Paint::Frame(_));
+    Look {
+        surface,
+        line: with_alpha(scheme.line, if frame { 0.8 } else { 0.8 * opacity }),
+        mark: with_alpha(scheme.mark, if frame { 1.0 } else { 0.9 * opacity.sqrt() }),
+        pattern: pattern as u32,
+        fade,
+        unused: Vec2::ZERO,
+    }
+}
+
+fn build(world: &World) -> Vec<(Piece, Paint, Mesh)> {
+    match world.container.shape {
+        Shape::Drum { radius, width } => drum(radius as f32, width as f32),
+        Shape::Box { min, max } => box_panes(min.as_vec3(), max.as_vec3()),
+        Shape::Planes => planes(world),
+    }
+}
+
+/// Both plates and the rim from inside, and a hoop at each end.
+fn drum(radius: f32, width: f32) -> Vec<(Piece, Paint, Mesh)> {
+    let half = width / 2.0;
+    let pane = |pattern, mesh| (Piece::Turning, Paint::Pane(pattern), mesh);
+    let hoop = |mesh| (Piece::Turning, Paint::Frame(Pattern::Hoop), mesh);
+    vec![
+        pane(Pattern::Plate, disc(radius, -half, 1.0)),
+        pane(Pattern::Plate, disc(radius, half, -1.0)),
+        pane(Pattern::Rim, rim(radius, half)),
+        hoop(ring(radius, -half)),
+        hoop(ring(radius, half)),
+    ]
+}
+
+/// The six sides from inside, with a grid, and the edges.
+fn box_panes(min: Vec3, max: Vec3) -> Vec<(Piece, Paint, Mesh)> {
+    let cell = round_up(f64::from((max - min).max_element()) / 20.0) as f32;
+    let mut pieces = Vec::new();
+    for axis in 0..3 {
+        for (side, inward) in [(min, 1.0), (max, -1.0)] {
+            let mut normal = Vec3::ZERO;
+            normal[axis] = inward;
+            let (u, v) = normal.any_orthonormal_pair();
+            let (size, centre) = (max - min, (min + max) / 2.0);
+            let middle = centre + normal * (side - centre).dot(normal);
+            let (half_u, half_v) = (0.5 * size.dot(u.abs()), 0.5 * size.dot(v.abs()));
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let mut builder = Builder::default();
+            for (a, b) in corners {
+                let (a, b): (f32, f32) = (a * half_u, b * half_v);
+                builder.vertex(middle + a * u + b * v, normal, [a / cell, b / cell]);
+            }
+            builder.indices.extend([0, 1, 2, 2, 3, 0]);
+            pieces.push((Piece::Fixed, Paint::Pane(Pattern::Grid), builder.mesh()));
+        }
+    }
+    pieces.push((Piece::Fixed, Paint::Frame(Pattern::Plain), edges(min, max)));
+    pieces
+}
+
+/// A fading floor for each plane.
+fn planes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
+    let (min, max) = surroundings(world).unwrap_or((DVec3::ZERO, DVec3::ONE));
+    let near = (min + max) / 2.0;
+    let cell = round_up((max - min).max_element() / 16.0) as f32;
+    (0..world.container.walls.len())
+        .map(|wall| {
+            let mut builder = Builder::default();
+            for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                let (x, y) = (x * FLOOR_CELLS, y * FLOOR_CELLS);
+                builder.vertex(Vec3::new(x * cell, y * cell, 0.0), Vec3::Z, [x, y]);
+            }
+            builder.indices.extend([0, 1, 2, 2, 3, 0]);
+            (Piece::Plane { wall, near }, Paint::Floor, builder.mesh())
+        })
+        .collect()
+}
+
+/// A disc at `z` whose normal along z is `facing`.
+fn disc(radius: f32, z: f32, facing: f32) -> Mesh {
+    let mut builder = Builder::default();
+    let normal = Vec3::Z * facing;
+    builder.vertex(Vec3::Z * z, normal, [0.0, 0.0]);
+    for i in 0..=SEGMENTS {
+        let (sin, cos) = (TAU * i as f32 / SEGMENTS as f32).sin_cos();
+        builder.vertex(Vec3::new(radius * cos, radius * sin, z), normal, [cos, sin]);
+    }
+    for i in 1..=SEGMENTS {
+        let outer = if facing > 0.0 { [i, i + 1] } else { [i + 1, i] };
+        builder.indices.extend([0, outer[0], outer[1]]);
+    }
+    builder.mesh()
+}
+
+/// The inside of a cylinder from −`half` to `half`.
+fn rim(radius: f32, half: f32) -> Mesh {
+    band(|sin, cos, end| {
+        let z = if end == 0 { -half } else { half };
+        (
+            Vec3::new(radius * cos, radius * sin, z),
+            -Vec3::new(cos, sin, 0.0),
+        )
+    })
+}
+
+/// A flat hoop round a circle at `z`.
+fn ring(radius: f32, z: f32) -> Mesh {
+    band(|sin, cos, end| {
+        let radius = radius * (1.0 + HOOP_BREADTH * end as f32);
+        (
+            Vec3::new(radius * cos, radius * sin, z),
+            Vec3::Z * z.signum(),
+        )
+    })
+}
+
+/// A closed band; `vertex` gives place and normal of each of its two ends at an azimuth.
+fn band(vertex: impl Fn(f32, f32, u32) -> (Vec3, Vec3)) -> Mesh {
+    let mut builder = Builder::default();
+    for i in 0..=SEGMENTS {
+        let turn = i as f32 / SEGMENTS as f32;
+        let (sin, cos) = (TAU * turn).sin_cos();
+        for end in 0..2 {
+            let (place, normal) = vertex(sin, cos, end);
+            builder.vertex(place, normal, [turn, end as f32]);
+        }
+    }
+    for i in 0..SEGMENTS {
+        let first = 2 * i;
+        builder
+            .indices
+            .extend([first, first + 1, first + 2, first + 2, first + 1, first + 3]);
+    }
+    builder.mesh()
+}
+
+/// The twelve edges of a box as lines.
+fn edges(min: Vec3, max: Vec3) -> Mesh {
+    let corners = corners(min, max);
+    let mut builder = Builder::default();
+    for corner in corners {
+        builder.vertex(corner, Vec3::Y, [0.0, 0.0]);
+    }
+    for a in 0..8_u32 {
+        let higher = (0..3).map(|axis| a | 1 << axis).filter(|b| *b != a);
+        builder.indices.extend(higher.flat_map(|b| [a, b]));
+    }
+    builder.mesh_of(PrimitiveTopology::LineList)
+}
+
+/// Collects a mesh.
+#[derive(Default)]
+struct Builder {
+    places: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<[f32; 2]>,
+    indices: Vec<u32>,
+}
+
+impl Builder {
+    fn vertex(&mut self, place: Vec3, normal: Vec3, uv: [f32; 2]) {
+        self.places.push(place);
+        self.normals.push(normal);
+        self.uvs.push(uv);
+    }
+
+    fn mesh(self) -> Mesh {
+        self.mesh_of(PrimitiveTopology::TriangleList)
+    }
+
+    fn mesh_of(self, topology: PrimitiveTopology) -> Mesh {
+        Mesh::new(topology, RenderAssetUsages::RENDER_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.places)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
+            .with_inserted_indices(Indices::U32(self.indices))
+    }
+}

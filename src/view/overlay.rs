@@ -1,0 +1,299 @@
+//! What is written into the picture: scale bar, simulated time, speed relative to real time, and what the colours mean.
+//!
+//! In: the free part of the window, camera, settings and what is shown. Out: egui shapes. Nothing here reacts to the
+//! pointer but [`viewport_ui`], which hands it to the camera.
+
+use super::camera::apply_response;
+use super::colour::{Scheme, species_colour};
+use super::{ColourMap, Legend, OrbitCamera, ViewSettings};
+use crate::world::World;
+use bevy_egui::egui::{
+    Align2, Color32, CornerRadius, FontId, Id, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke,
+    StrokeKind, Ui, pos2, vec2,
+};
+
+/// Distance of everything from the edge of the picture, in points.
+const INSET: f32 = 18.0;
+/// Length that the scale bar does not exceed, in points.
+const LONGEST_BAR: f32 = 180.0;
+
+/// What the overlay says beside what the settings know.
+#[derive(Clone, Copy, Debug)]
+pub struct Caption<'a> {
+    /// The world shown.
+    pub world: Option<&'a World>,
+    /// Simulated seconds per second on the wall, while running.
+    pub real_time_factor: Option<f64>,
+}
+
+/// The free part of the window: call it after all panels with what they left. The pointer moves the camera there, the
+/// picture is fitted into it, and the overlay is drawn.
+pub fn viewport_ui(
+    ui: &mut Ui,
+    caption: Caption,
+    settings: &mut ViewSettings,
+    camera: &mut OrbitCamera,
+) {
+    let rect = ui.available_rect_before_wrap();
+    settings.free_rect = Some(rect);
+    settings.pixels_per_point = ui.ctx().pixels_per_point();
+    let response = ui.interact(rect, Id::new("picture"), Sense::click_and_drag());
+    apply_response(&response, camera);
+    if settings.show_overlay {
+        overlay(&ui.painter_at(rect), rect, caption, settings, camera);
+    }
+}
+
+/// Draws the overlay into `rect`.
+pub fn overlay(
+    painter: &Painter,
+    rect: Rect,
+    caption: Caption,
+    settings: &ViewSettings,
+    camera: &OrbitCamera,
+) {
+    let scheme = Scheme::of(settings.background);
+    let ink = Ink {
+        painter,
+        text: rgb(scheme.text),
+        faint: rgb(scheme.faint_text),
+    };
+    let inner = rect.shrink(INSET);
+    if let Some(world) = caption.world {
+        clock(
+            &ink,
+            inner.left_top(),
+            world.time(),
+            caption.real_time_factor,
+        );
+        if settings.legend.is_none() && world.species.len() > 1 {
+            species(&ink, inner.right_bottom(), world);
+        }
+    }
+    scale_bar(&ink, inner.left_bottom(), camera.metres_per_point());
+    if let Some(legend) = &settings.legend {
+        colour_bar(&ink, inner.right_bottom(), legend, settings.colour_map);
+    }
+}
+
+struct Ink<'a> {
+    painter: &'a Painter,
+    text: Color32,
+    faint: Color32,
+}
+
+impl Ink<'_> {
+    fn write(&self, at: Pos2, anchor: Align2, text: impl ToString, size: f32, colour: Color32) {
+        self.painter
+            .text(at, anchor, text, FontId::proportional(size), colour);
+    }
+}
+
+fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
+    ink.write(at, Align2::LEFT_TOP, format!("{time:.2} s"), 24.0, ink.text);
+    if let Some(factor) = real_time_factor {
+        let text = format!("{factor:.2} × real time");
+        ink.write(
+            at + vec2(1.0, 30.0),
+            Align2::LEFT_TOP,
+            text,
+            13.0,
+            ink.faint,
+        );
+    }
+}
+
+fn scale_bar(ink: &Ink, at: Pos2, metres_per_point: f32) {
+    let bar = ScaleBar::new(f64::from(metres_per_point), f64::from(LONGEST_BAR));
+    let stroke = Stroke::new(2.0, ink.text);
+    let (left, right) = (at, at + vec2(bar.points as f32, 0.0));
+    ink.painter.line_segment([left, right], stroke);
+    for end in [left, right] {
+        ink.painter
+            .line_segment([end - vec2(0.0, 7.0), end], stroke);
+    }
+    let middle = left + vec2(bar.points as f32 / 2.0, -5.0);
+    ink.write(middle, Align2::CENTER_BOTTOM, bar.label(), 13.0, ink.text);
+}
+
+fn colour_bar(ink: &Ink, corner: Pos2, legend: &Legend, map: ColourMap) {
+    let size = vec2(14.0, 150.0);
+    let scale = Prefixed::new(legend.max.abs().max(legend.min.abs()), legend.unit);
+    let bar = Rect::from_min_size(corner - size - vec2(44.0, 0.0), size);
+    ink.painter.add(Shape::mesh(gradient(bar, map)));
+    ink.painter.rect_stroke(
+        bar,
+        CornerRadius::ZERO,
+        Stroke::new(1.0, ink.faint),
+        StrokeKind::Outside,
+    );
+    for i in 0..=4 {
+        let share = f64::from(i) / 4.0;
+        let value = (legend.min + share * (legend.max - legend.min)) * scale.factor;
+        let at = pos2(bar.right() + 4.0, bar.bottom() - share as f32 * size.y);
+        let stroke = Stroke::new(1.0, ink.faint);
+        ink.painter.line_segment([at - vec2(4.0, 0.0), at], stroke);
+        let text = short_number(value);
+        ink.write(
+            at + vec2(3.0, 0.0),
+            Align2::LEFT_CENTER,
+            text,
+            12.0,
+            ink.text,
+        );
+    }
+    let title = if scale.unit.is_empty() {
+        legend.title.to_owned()
+    } else {
+        format!("{} [{}]", legend.title, scale.unit)
+    };
+    let at = pos2(corner.x, bar.top() - 14.0);
+    ink.write(at, Align2::RIGHT_BOTTOM, title, 13.0, ink.text);
+}
+
+fn species(ink: &Ink, corner: Pos2, world: &World) {
+    for (i, species) in world.species.iter().rev().enumerate() {
+        let at = corner - vec2(8.0, 8.0 + 20.0 * i as f32);
+        let index = world.species.len() - 1 - i;
+        ink.painter
+            .circle_filled(at, 6.0, rgb(species_colour(index)));
+        let text_at = at - vec2(13.0, 0.0);
+        ink.write(text_at, Align2::RIGHT_CENTER, &species.name, 13.0, ink.text);
+    }
+}
+
+/// A vertical strip of the colour map, its low end below.
+fn gradient(rect: Rect, map: ColourMap) -> Mesh {
+    const STEPS: u32 = 48;
+    let mut mesh = Mesh::default();
+    for i in 0..=STEPS {
+        let share = i as f32 / STEPS as f32;
+        let colour = rgb(map.colour(f64::from(share)));
+        let y = rect.bottom() - share * rect.height();
+        mesh.colored_vertex(pos2(rect.left(), y), colour);
+        mesh.colored_vertex(pos2(rect.right(), y), colour);
+    }
+    for i in 0..STEPS {
+        mesh.add_triangle(2 * i, 2 * i + 1, 2 * i + 2);
+        mesh.add_triangle(2 * i + 1, 2 * i + 3, 2 * i + 2);
+    }
+    mesh
+}
+
+fn rgb([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+/// A bar of a round length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleBar {
+    /// The length it stands for [m].
+    pub metres: f64,
+    /// How long it is drawn, in points.
+    pub points: f64,
+}
+
+impl ScaleBar {
+    /// The longest bar of 1, 2 or 5 times a power of ten metres that is at most `longest` points.
+    pub fn new(metres_per_point: f64, longest: f64) -> Self {
+        let room = metres_per_point * longest;
+        let decade = 10_f64.powf(room.log10().floor());
+        let digit = [5.0, 2.0].into_iter().find(|digit| digit * decade <= room);
+        let metres = digit.unwrap_or(1.0) * decade;
+        Self {
+            metres,
+            points: metres / metres_per_point,
+        }
+    }
+
+    /// Its length with a unit: `20 mm`.
+    pub fn label(&self) -> String {
+        let (factor, unit) = match self.metres {
+            // The limits stand between round lengths, so that rounding decides nothing.
+            m if m < 0.9e-3 => (1e6, "µm"),
+            m if m < 0.09 => (1e3, "mm"),
+            m if m < 0.9 => (1e2, "cm"),
+            m if m < 900.0 => (1.0, "m"),
+            _ => (1e-3, "km"),
+        };
+        format!("{} {unit}", short_number(self.metres * factor))
+    }
+}
+
+/// A unit whose numbers are of handy size.
+struct Prefixed {
+    factor: f64,
+    unit: String,
+}
+
+impl Prefixed {
+    /// For numbers up to `largest`: metres per second become mm/s or µm/s where that reads better.
+    fn new(largest: f64, unit: &str) -> Self {
+        let (factor, prefix) = match largest {
+            x if !unit.starts_with('m') || x > 0.15 => (1.0, ""),
+            x if x > 0.15e-3 => (1e3, "m"),
+            _ => (1e6, "µ"),
+        };
+        Self {
+            factor,
+            unit: format!("{prefix}{unit}"),
+        }
+    }
+}
+
+/// At most three digits, no trailing zeros.
+fn short_number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let decimals = (2 - x.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scale_bar_is_round_and_as_long_as_it_says() {
+        for (metres_per_point, label) in [
+            (2.0e-4, "20 mm"),
+            (1.0e-3, "10 cm"),
+            (2.8e-5, "5 mm"),
+            (1.2e-6, "200 µm"),
+            (0.1, "10 m"),
+        ] {
+            let bar = ScaleBar::new(metres_per_point, 180.0);
+            assert_eq!(bar.label(), label);
+            assert!(bar.points <= 180.0 && bar.points > 180.0 / 2.6, "{bar:?}");
+            // A billionth: rounding.
+            assert!((bar.points * metres_per_point / bar.metres - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, text) in [
+            (0.0, "0"),
+            (12.5, "12.5"),
+            (0.025, "0.025"),
+            (1500.0, "1500"),
+            (2.0, "2"),
+        ] {
+            assert_eq!(short_number(x), text);
+        }
+    }
+
+    #[test]
+    fn legend_units_take_a_prefix_where_it_reads_better() {
+        assert_eq!(Prefixed::new(0.05, "m/s").unit, "mm/s");
+        assert_eq!(Prefixed::new(0.5, "m/s").unit, "m/s");
+        assert_eq!(Prefixed::new(0.05, "rad/s").unit, "rad/s");
+        assert_eq!(Prefixed::new(8.0, "").unit, "");
+    }
+}

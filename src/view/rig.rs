@@ -1,0 +1,142 @@
+//! Bevy's camera entity, which follows [`OrbitCamera`] and fills the free part of the window.
+
+use super::colour::Scheme;
+use super::{OrbitCamera, ProjectionKind, Shown, ViewSettings, container};
+use bevy::camera::{ClearColorConfig, ScalingMode, Viewport};
+use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::light::cluster::ClusterConfig;
+use bevy::math::UVec2;
+use bevy::prelude::*;
+use bevy_egui::egui;
+
+/// Marks the camera that shows the world.
+#[derive(Component)]
+pub struct WorldCamera;
+
+pub(super) fn spawn(mut commands: Commands, settings: Res<ViewSettings>) {
+    commands.spawn((
+        WorldCamera,
+        Camera3d::default(),
+        Camera::default(),
+        Tonemapping::None,
+        DebandDither::Disabled,
+        ClusterConfig::Single,
+        if settings.smooth_edges {
+            Msaa::Sample4
+        } else {
+            Msaa::Off
+        },
+    ));
+}
+
+/// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away.
+pub(super) fn steer(
+    mut settings: ResMut<ViewSettings>,
+    mut camera: ResMut<OrbitCamera>,
+    shown: Res<Shown>,
+    mut fitted: Local<Option<OrbitCamera>>,
+    mut outline: Local<Vec<Vec3>>,
+) {
+    if let Some(request) = settings.bypass_change_detection().camera_request.take() {
+        camera.follow(request);
+    }
+    if camera.projection != settings.projection {
+        camera.projection = settings.projection;
+    }
+    if !camera.fits {
+        *fitted = None;
+        return;
+    }
+    if shown.is_changed()
+        && let Some(world) = shown.world()
+    {
+        let now = container::outline(world);
+        let settles = matches!(world.container.shape, crate::world::Shape::Planes);
+        // An unbounded scene is fitted once, not after every moving grain.
+        if outline.is_empty() || !settles {
+            *outline = now;
+            *fitted = fitted.take().filter(|_| settles);
+        }
+    }
+    if fitted.as_ref() != Some(&*camera) && !outline.is_empty() {
+        camera.fit(&outline);
+        *fitted = Some(camera.clone());
+    }
+}
+
+/// Moves Bevy's camera to where [`OrbitCamera`] is.
+pub(super) fn follow(
+    settings: Res<ViewSettings>,
+    mut orbit: ResMut<OrbitCamera>,
+    mut camera: Single<(&mut Camera, &mut Transform, &mut Projection), With<WorldCamera>>,
+) {
+    let (camera, transform, projection) = &mut *camera;
+    camera.clear_color = ClearColorConfig::Custom(Scheme::of(settings.background).background);
+    if let Some(target) = camera.physical_target_size() {
+        let viewport = viewport(settings.free_rect, settings.pixels_per_point, target);
+        let shape = viewport.as_ref().map_or(target, |v| v.physical_size);
+        if settings.free_rect.is_none() {
+            orbit.viewport = shape.as_vec2();
+        }
+        camera.viewport = viewport;
+    }
+    **transform = Transform::from_translation(orbit.eye()).with_rotation(orbit.rotation());
+    **projection = match orbit.projection {
+        ProjectionKind::Perspective => Projection::Perspective(PerspectiveProjection {
+            fov: orbit.field_of_view(),
+            near: 0.02 * orbit.distance(),
+            far: 100.0 * orbit.distance(),
+            ..default()
+        }),
+        ProjectionKind::Orthographic => Projection::Orthographic(OrthographicProjection {
+            near: 0.0,
+            far: 2.0 * orbit.distance(),
+            scaling_mode: ScalingMode::FixedVertical {
+                viewport_height: orbit.height,
+            },
+            ..OrthographicProjection::default_3d()
+        }),
+    };
+}
+
+/// The pixels of the free rectangle, kept inside a target of `size` pixels; `None` for all of it.
+fn viewport(free: Option<egui::Rect>, pixels_per_point: f32, size: UVec2) -> Option<Viewport> {
+    let free = free?;
+    let limit = size.as_vec2();
+    let corner = |at: egui::Pos2| {
+        (Vec2::new(at.x, at.y) * pixels_per_point)
+            .round()
+            .clamp(Vec2::ZERO, limit)
+    };
+    let (min, max) = (corner(free.min), corner(free.max));
+    let room = (max - min).as_uvec2();
+    (room.min_element() > 0).then(|| Viewport {
+        physical_position: min.as_uvec2(),
+        physical_size: room,
+        ..default()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn picture_fills_the_free_rectangle_in_pixels() {
+        let free = egui::Rect::from_min_max(egui::pos2(300.0, 30.0), egui::pos2(1000.0, 700.0));
+        let viewport = viewport(Some(free), 1.5, UVec2::new(1920, 1080)).unwrap();
+        assert_eq!(viewport.physical_position, UVec2::new(450, 45));
+        // The lower edge, at 1050, lies inside; the right one, at 1500, too.
+        assert_eq!(viewport.physical_size, UVec2::new(1050, 1005));
+    }
+
+    #[test]
+    fn picture_never_leaves_the_window() {
+        let free = egui::Rect::from_min_max(egui::pos2(300.0, 30.0), egui::pos2(5000.0, 700.0));
+        let viewport = viewport(Some(free), 1.0, UVec2::new(800, 600)).unwrap();
+        let end = viewport.physical_position + viewport.physical_size;
+        assert!(end.cmple(UVec2::new(800, 600)).all());
+        let none = egui::Rect::from_min_max(egui::pos2(900.0, 0.0), egui::pos2(950.0, 100.0));
+        assert!(super::viewport(Some(none), 1.0, UVec2::new(800, 600)).is_none());
+    }
+}

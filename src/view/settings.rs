@@ -1,0 +1,275 @@
+//! What a person chose to see, and what the view tells the panels back.
+//!
+//! In: choices made in panels. Out: plain data that the view reads every frame. Nothing here draws.
+
+use bevy::prelude::Resource;
+use bevy_egui::egui;
+
+/// Everything about the picture that a person can choose, and the two things that the panels need to know of it.
+#[derive(Resource, Clone, Debug, PartialEq)]
+pub struct ViewSettings {
+    /// Which property of a grain gives its colour.
+    pub colour_by: ColourBy,
+    /// How a number becomes a colour; species have their own palette.
+    pub colour_map: ColourMap,
+    /// The numbers at the two ends of the colour map.
+    pub range: ColourRange,
+    /// Half of space that is cut away.
+    pub cut: Option<Cut>,
+    /// Whether the container is drawn.
+    pub show_container: bool,
+    /// How strongly the container's glass-like surfaces are drawn, 0 … 1.
+    pub container_opacity: f32,
+    /// Whether the scale bar, the clock and the legend are drawn into the picture.
+    pub show_overlay: bool,
+    /// How depth is shown.
+    pub projection: ProjectionKind,
+    /// The background.
+    pub background: Background,
+    /// What the camera is asked to do next; the view takes it.
+    pub camera_request: Option<CameraRequest>,
+    /// In: the part of the window that the panels leave free, in egui points. `None`: the whole window.
+    pub free_rect: Option<egui::Rect>,
+    /// In: physical pixels per egui point.
+    pub pixels_per_point: f32,
+    /// Whether edges are smoothed by several samples a pixel; read when the picture is set up.
+    pub smooth_edges: bool,
+    /// Out: what the colours mean now. `None` while grains are coloured by species.
+    pub legend: Option<Legend>,
+}
+
+impl Default for ViewSettings {
+    fn default() -> Self {
+        Self {
+            colour_by: ColourBy::Species,
+            colour_map: ColourMap::Viridis,
+            range: ColourRange::Automatic,
+            cut: None,
+            show_container: true,
+            container_opacity: 0.5,
+            show_overlay: true,
+            projection: ProjectionKind::Perspective,
+            background: Background::Dark,
+            camera_request: None,
+            free_rect: None,
+            pixels_per_point: 1.0,
+            smooth_edges: true,
+            legend: None,
+        }
+    }
+}
+
+/// Which property of a grain gives its colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ColourBy {
+    /// What kind it is.
+    #[default]
+    Species,
+    /// Speed of its centre in the laboratory frame [m/s].
+    Speed,
+    /// Magnitude of its angular velocity [rad/s].
+    Spin,
+    /// Number of touching partners, walls too.
+    Coordination,
+}
+
+impl ColourBy {
+    /// All of them, in the order of a menu.
+    pub const ALL: [Self; 4] = [Self::Species, Self::Speed, Self::Spin, Self::Coordination];
+
+    /// What people call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Species => "Species",
+            Self::Speed => "Speed",
+            Self::Spin => "Spin",
+            Self::Coordination => "Coordination number",
+        }
+    }
+
+    /// SI unit of the number behind the colour; empty for a count and for species.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Species | Self::Coordination => "",
+            Self::Speed => "m/s",
+            Self::Spin => "rad/s",
+        }
+    }
+}
+
+/// A perceptually even colour map that people with any kind of colour vision can read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ColourMap {
+    /// Dark violet, green, yellow.
+    #[default]
+    Viridis,
+    /// Dark blue, grey, yellow.
+    Cividis,
+    /// Black, purple, cream.
+    Magma,
+    /// Blue, magenta, yellow.
+    Plasma,
+}
+
+impl ColourMap {
+    /// All of them, in the order of a menu.
+    pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::Magma, Self::Plasma];
+
+    /// Its usual name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Viridis => "Viridis",
+            Self::Cividis => "Cividis",
+            Self::Magma => "Magma",
+            Self::Plasma => "Plasma",
+        }
+    }
+
+    /// The sRGB colour at `t`, clamped to 0 … 1.
+    pub fn colour(self, t: f64) -> [u8; 3] {
+        let gradient = match self {
+            Self::Viridis => colorous::VIRIDIS,
+            Self::Cividis => colorous::CIVIDIS,
+            Self::Magma => colorous::MAGMA,
+            Self::Plasma => colorous::PLASMA,
+        };
+        let colour = gradient.eval_continuous(t.clamp(0.0, 1.0));
+        [colour.r, colour.g, colour.b]
+    }
+}
+
+/// The numbers at the two ends of the colour map, in the SI unit of what is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ColourRange {
+    /// From zero to a round number that most grains stay below.
+    #[default]
+    Automatic,
+    /// From the first to the second.
+    Fixed(f64, f64),
+}
+
+/// A direction along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+impl Axis {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// `x`, `y` or `z`.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+
+    /// Unit vector along the axis.
+    pub fn unit(self) -> bevy::math::DVec3 {
+        match self {
+            Self::X => bevy::math::DVec3::X,
+            Self::Y => bevy::math::DVec3::Y,
+            Self::Z => bevy::math::DVec3::Z,
+        }
+    }
+}
+
+/// Everything beyond `position` along `axis` is cut away; grains in the plane show their section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// Normal of the plane, pointing to the side that is cut away.
+    pub axis: Axis,
+    /// Where along the axis [m].
+    pub position: f64,
+}
+
+/// How depth is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ProjectionKind {
+    /// Near things are larger.
+    #[default]
+    Perspective,
+    /// Equal lengths look equal: for measuring.
+    Orthographic,
+}
+
+/// The background of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Background {
+    /// Dark slate, for screens.
+    #[default]
+    Dark,
+    /// Nearly white, for projectors and print.
+    Light,
+}
+
+/// Something asked of the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CameraRequest {
+    /// The view that a scene opens with.
+    Home,
+    /// Keep the direction, move so that everything fits.
+    Fit,
+    /// Look from this side, and move so that everything fits.
+    From(Side),
+}
+
+/// The six sides that one can look from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// From +x.
+    Right,
+    /// From −x.
+    Left,
+    /// From +y.
+    Above,
+    /// From −y.
+    Below,
+    /// From +z.
+    Front,
+    /// From −z.
+    Back,
+}
+
+impl Side {
+    /// All of them, in the order of a menu.
+    pub const ALL: [Self; 6] = [
+        Self::Front,
+        Self::Back,
+        Self::Left,
+        Self::Right,
+        Self::Above,
+        Self::Below,
+    ];
+
+    /// What people call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Right => "Right (+x)",
+            Self::Left => "Left (−x)",
+            Self::Above => "Above (+y)",
+            Self::Below => "Below (−y)",
+            Self::Front => "Front (+z)",
+            Self::Back => "Back (−z)",
+        }
+    }
+}
+
+/// What the colours mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Legend {
+    /// What is shown.
+    pub title: &'static str,
+    /// The number at the map's low end, in the SI unit.
+    pub min: f64,
+    /// The number at the map's high end, in the SI unit.
+    pub max: f64,
+    /// The SI unit; empty for a count.
+    pub unit: &'static str,
+}

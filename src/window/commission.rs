@@ -1,0 +1,123 @@
+//! A picture taken by the program itself: the run goes to a moment and holds, the picture is taken, the program ends.
+//!
+//! In: a [`PictureJob`] and the simulation. Out: the file and an [`Outcome`].
+
+use super::PictureJob;
+use super::picture::{Canvas, WARM_UP, save, screenshot};
+use crate::simulation::{Simulation, Status};
+use bevy::prelude::*;
+use bevy::render::view::screenshot::ScreenshotCaptured;
+use std::num::NonZero;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What became of the picture, for whom started the app.
+#[derive(Clone, Default)]
+pub(super) struct Outcome(Arc<Mutex<Option<String>>>);
+
+impl Outcome {
+    /// Why there is no picture, if there should be one and is none.
+    pub(super) fn result(&self) -> Result<(), String> {
+        let failure = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        failure.map_or(Ok(()), Err)
+    }
+
+    fn fail(&self, reason: String) -> AppExit {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
+        AppExit::Error(NonZero::<u8>::MIN)
+    }
+}
+
+/// A picture that was asked for.
+#[derive(Resource)]
+pub(super) struct Commission {
+    picture: PictureJob,
+    outcome: Outcome,
+    stage: Stage,
+}
+
+impl Commission {
+    /// The picture `picture`; what becomes of it is told to `outcome`.
+    pub(super) fn new(picture: PictureJob, outcome: Outcome) -> Self {
+        Self {
+            picture,
+            outcome,
+            stage: Stage::Preparing,
+        }
+    }
+}
+
+/// How far the picture has come.
+#[derive(Clone, Copy)]
+enum Stage {
+    /// The run has not begun.
+    Preparing,
+    /// The run goes on until this step.
+    Running(u64),
+    /// It is there; so many frames are still drawn, so that all is in place.
+    Drawing(u32),
+    /// The picture is being taken.
+    Taking,
+}
+
+/// Brings the picture one frame further.
+pub(super) fn carry_out(
+    mut commission: ResMut<Commission>,
+    mut simulation: ResMut<Simulation>,
+    canvas: Option<Res<Canvas>>,
+    mut cameras: Query<&mut Camera>,
+    mut exit: MessageWriter<AppExit>,
+    mut commands: Commands,
+) {
+    match simulation.status() {
+        Status::Failed(reason) => {
+            exit.write(commission.outcome.fail(reason.clone()));
+        }
+        Status::Faulted(fault) => {
+            exit.write(commission.outcome.fail(fault.to_string()));
+        }
+        _ => {}
+    }
+    commission.stage = match commission.stage {
+        Stage::Preparing => {
+            let step = (simulation.world()).map(|world| world.clock.step_at(commission.picture.at));
+            simulation.hold_at(step.or(Some(0)));
+            step.map_or(Stage::Preparing, Stage::Running)
+        }
+        Stage::Running(step) => {
+            let reached = (simulation.world()).is_some_and(|world| world.clock.step >= step);
+            if reached {
+                Stage::Drawing(WARM_UP)
+            } else {
+                Stage::Running(step)
+            }
+        }
+        Stage::Drawing(0) => {
+            take(&commission, canvas.as_deref(), &mut commands);
+            Stage::Taking
+        }
+        Stage::Drawing(frames) => Stage::Drawing(frames - 1),
+        Stage::Taking => Stage::Taking,
+    };
+    // Nobody watches without a display: until the moment comes the cores belong to the solver.
+    let rests =
+        canvas.is_some() && matches!(commission.stage, Stage::Preparing | Stage::Running(_));
+    for mut camera in &mut cameras {
+        camera.is_active = !rests;
+    }
+}
+
+/// Takes the picture, writes it and ends the app.
+fn take(commission: &Commission, canvas: Option<&Canvas>, commands: &mut Commands) {
+    let path = commission.picture.path.clone();
+    let outcome = commission.outcome.clone();
+    commands.spawn(screenshot(canvas)).observe(
+        move |captured: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
+            exit.write(match save(&captured.image, &path) {
+                Ok(()) => AppExit::Success,
+                Err(error) => {
+                    outcome.fail(format!("{} cannot be written: {error}", path.display()))
+                }
+            });
+        },
+    );
+}

@@ -1,0 +1,557 @@
+//! Panels by their accessible labels, without Bevy's app and without a GPU: what a click or a typed value asks for.
+
+use bevy_egui::egui::accesskit::Role;
+use bevy_egui::egui::{self, Key, Modifiers, Shape};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::{Harness, Node};
+use grainfall::measure::Avalanche;
+use grainfall::scene::Scene;
+use grainfall::simulation::{
+    BedStore, Command, DisplayUnit, DriverKind, Options, Parameter, ParameterInfo, Simulation,
+    Status,
+};
+use grainfall::solver::{Fault, FaultKind};
+use grainfall::ui::{Curves, Desk, Plots, Request, parameter_ui, scene_error_ui, status_ui, theme};
+use grainfall::view::{CameraRequest, ColourBy, ColourRange, Side, ViewSettings};
+use std::time::Duration;
+
+/// A simulation of three grains, which needs no settling, at time zero.
+fn three_grains() -> Simulation {
+    let text = r#"(
+        title: "Three grains",
+        materials: {
+            "glass": (youngs_modulus: 63e6, poisson_ratio: 0.21, density: 2500, restitution: 0.95, friction: 0.40, rolling_friction: 0.01),
+            "drum": (youngs_modulus: 12e6, poisson_ratio: 0.35),
+        },
+        pairs: [(between: ("glass", "drum"), restitution: 0.72, friction: 0.30, rolling_friction: 0.01)],
+        container: Drum(radius_mm: 30, width_mm: 18, speed_rpm: 2, material: "drum"),
+        grains: List([
+            (position: (0, -0.02, 0), radius_mm: 3, material: "glass"),
+            (position: (0.008, -0.02, 0), radius_mm: 3, material: "glass"),
+            (position: (-0.008, -0.02, 0), radius_mm: 3, material: "glass"),
+        ]),
+    )"#;
+    let scene = Scene::parse("three grains", text).expect("the scene is valid");
+    let options = Options {
+        driver: DriverKind::Inline,
+        threads: 1,
+        autoplay: false,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    Simulation::open(scene, options)
+}
+
+/// The same, prepared.
+fn prepared() -> Simulation {
+    let mut simulation = three_grains();
+    for _ in 0..1000 {
+        simulation.tick(Duration::from_millis(16));
+        if !matches!(simulation.status(), Status::Preparing { .. }) {
+            return simulation;
+        }
+    }
+    panic!("still {:?}", simulation.status());
+}
+
+/// A window with all panels, without a picture.
+struct Window {
+    desk: Desk,
+    simulation: Simulation,
+    view: ViewSettings,
+    asked: Vec<Request>,
+}
+
+impl Window {
+    fn of(simulation: Simulation) -> Harness<'static, Self> {
+        let window = Self {
+            desk: Desk::default(),
+            simulation,
+            view: ViewSettings::default(),
+            asked: Vec::new(),
+        };
+        let mut installed = false;
+        let mut harness = Harness::builder()
+            .with_size([1600.0, 1400.0])
+            .build_ui_state(
+                move |ui, window: &mut Window| {
+                    if !std::mem::replace(&mut installed, true) {
+                        theme::install(ui.ctx());
+                    }
+                    let simulation = Some(&window.simulation);
+                    window
+                        .desk
+                        .ui(ui, simulation, &mut window.view, &mut window.asked);
+                },
+                window,
+            );
+        harness.run_steps(4);
+        harness
+    }
+}
+
+fn commands(asked: &[Request]) -> Vec<Command> {
+    let command = |request: &Request| match request {
+        Request::Command(command) => Some(command.clone()),
+        _ => None,
+    };
+    asked.iter().filter_map(command).collect()
+}
+
+fn friction() -> Parameter {
+    Parameter::Friction("glass".into(), "glass".into())
+}
+
+fn set(parameter: Parameter, value: f64) -> Command {
+    Command::Set { parameter, value }
+}
+
+/// Types `text` into a field of a number: a click begins the edit, Return ends it.
+fn type_number<S>(harness: &mut Harness<'_, S>, label: &str, text: &str) {
+    harness
+        .get_by_role_and_label(Role::SpinButton, label)
+        .click();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.event(egui::Event::Text(text.to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+}
+
+#[test]
+fn play_asks_to_play_and_pause_to_pause() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Play").click();
+    harness.run_steps(2);
+    assert_eq!(commands(&harness.state().asked), [Command::Play]);
+
+    let window = harness.state_mut();
+    window.simulation.send(Command::Play);
+    window.simulation.tick(Duration::from_millis(16));
+    window.asked.clear();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Play").is_none());
+    harness.get_by_label("Pause").click();
+    harness.run_steps(2);
+    assert_eq!(commands(&harness.state().asked), [Command::Pause]);
+}
+
+#[test]
+fn step_and_reset_are_one_command_each() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Single step").click();
+    harness.run_steps(2);
+    harness.get_by_label("Reset").click();
+    harness.run_steps(2);
+    assert_eq!(
+        commands(&harness.state().asked),
+        [Command::Step(1), Command::Reset]
+    );
+}
+
+#[test]
+fn speed_is_chosen_from_a_list_that_ends_with_as_fast_as_possible() {
+    let mut harness = Window::of(prepared());
+    for (name, speed) in [("0.5×", 0.5), ("max", f64::INFINITY)] {
+        harness
+            .get_by_role_and_label(Role::ComboBox, "Speed")
+            .click();
+        harness.run_steps(3);
+        harness.get_by_label(name).click();
+        harness.run_steps(3);
+        let asked = commands(&harness.state().asked);
+        assert_eq!(asked.last(), Some(&Command::Speed(speed)), "{name}");
+    }
+}
+
+#[test]
+fn a_typed_friction_is_set_once() {
+    let mut harness = Window::of(prepared());
+    type_number(&mut harness, "friction glass – glass", "0.25");
+    assert_eq!(commands(&harness.state().asked), [set(friction(), 0.25)]);
+}
+
+#[test]
+fn a_drum_speed_typed_in_rpm_is_set_in_radians_per_second() {
+    let mut harness = Window::of(prepared());
+    type_number(&mut harness, "drum speed", "3");
+    let asked = commands(&harness.state().asked);
+    let [
+        Command::Set {
+            parameter: Parameter::DrumSpeed,
+            value,
+        },
+    ] = asked[..]
+    else {
+        panic!("{asked:?}");
+    };
+    // 3 rpm = π/10 rad/s; the two conversions round once each.
+    assert!(
+        (value - std::f64::consts::PI / 10.0).abs() < 1e-15,
+        "{value}"
+    );
+}
+
+#[test]
+fn a_value_out_of_range_is_brought_into_it() {
+    let mut harness = Window::of(prepared());
+    type_number(&mut harness, "friction glass – glass", "7");
+    assert_eq!(commands(&harness.state().asked), [set(friction(), 1.0)]);
+}
+
+#[test]
+fn dragging_a_slider_sets_at_most_one_value_a_frame_and_none_while_it_rests() {
+    let mut harness = Window::of(prepared());
+    let slider = harness
+        .get_by_role_and_label(Role::Slider, "friction glass – glass")
+        .rect();
+    let at = |share: f32| egui::pos2(egui::lerp(slider.x_range(), share), slider.center().y);
+    harness.drag_at(at(0.4));
+    harness.run_steps(2);
+    let mut values = Vec::new();
+    for share in [0.5, 0.6, 0.7] {
+        harness.state_mut().asked.clear();
+        harness.hover_at(at(share));
+        harness.step();
+        let asked = commands(&harness.state().asked);
+        assert_eq!(asked.len(), 1, "one command for one move: {asked:?}");
+        let Command::Set { parameter, value } = asked[0].clone() else {
+            panic!("{asked:?}");
+        };
+        assert_eq!(parameter, friction());
+        harness.state_mut().simulation.send(asked[0].clone());
+        harness.state_mut().asked.clear();
+        harness.run_steps(3);
+        assert!(
+            harness.state().asked.is_empty(),
+            "a resting pointer changes nothing"
+        );
+        values.push(value);
+    }
+    assert!(values.is_sorted() && values[0] < values[2], "{values:?}");
+}
+
+#[test]
+fn one_parameter_goes_back_to_the_scenes_value_by_its_own_button() {
+    let mut simulation = prepared();
+    simulation.send(set(friction(), 0.8));
+    simulation.send(set(Parameter::DrumSpeed, 1.0));
+    let mut harness = Window::of(simulation);
+    harness.get_by_label("Reset friction glass – glass").click();
+    harness.run_steps(2);
+    assert_eq!(commands(&harness.state().asked), [set(friction(), 0.4)]);
+}
+
+#[test]
+fn reset_all_sets_what_was_changed_and_nothing_else() {
+    let mut simulation = prepared();
+    let speed = simulation.value(&Parameter::DrumSpeed);
+    simulation.send(set(friction(), 0.8));
+    simulation.send(set(Parameter::DrumSpeed, 1.0));
+    let mut harness = Window::of(simulation);
+    harness.get_by_label("Reset all").click();
+    harness.run_steps(2);
+    let mut asked = commands(&harness.state().asked);
+    asked.sort_by_key(|command| format!("{command:?}"));
+    assert_eq!(
+        asked,
+        [set(Parameter::DrumSpeed, speed), set(friction(), 0.4)]
+    );
+}
+
+#[test]
+fn a_parameter_is_shown_in_the_unit_people_think_in() {
+    let info = ParameterInfo {
+        parameter: Parameter::Share("red".into()),
+        label: "share red".into(),
+        symbol: "P",
+        unit: "1",
+        range: 0.0..=1.0,
+        default: 0.3,
+        description: "Share of the grains by number.",
+        display: DisplayUnit {
+            name: "%",
+            factor: 100.0,
+        },
+    };
+    let mut harness = Harness::new_ui_state(
+        move |ui, asked: &mut Vec<Command>| asked.extend(parameter_ui(ui, &info, 0.3)),
+        Vec::new(),
+    );
+    harness.run();
+    let shown = harness
+        .get_by_role_and_label(Role::SpinButton, "share red")
+        .value();
+    assert_eq!(shown.as_deref(), Some("30.0 %"));
+    type_number(&mut harness, "share red", "50");
+    assert_eq!(
+        harness.state().first(),
+        Some(&set(Parameter::Share("red".into()), 0.5))
+    );
+}
+
+#[test]
+fn keys_ask_for_what_the_sheet_of_shortcuts_says() {
+    let mut harness = Window::of(prepared());
+    let cases = [
+        (Key::Space, Request::Command(Command::Play)),
+        (Key::Period, Request::Command(Command::Step(1))),
+        (Key::ArrowRight, Request::Command(Command::Step(1))),
+        (Key::R, Request::Command(Command::Reset)),
+        (Key::F, Request::Camera(CameraRequest::Fit)),
+        (Key::Num5, Request::Camera(CameraRequest::From(Side::Above))),
+    ];
+    for (key, request) in cases {
+        harness.state_mut().asked.clear();
+        harness.key_press(key);
+        harness.run_steps(2);
+        assert_eq!(harness.state().asked, [request], "{key:?}");
+    }
+    harness.state_mut().asked.clear();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::ChooseScene]);
+}
+
+#[test]
+fn keys_written_into_a_field_are_no_shortcuts() {
+    let mut harness = Window::of(prepared());
+    harness
+        .get_by_role_and_label(Role::SpinButton, "friction glass – glass")
+        .click();
+    harness.run_steps(2);
+    for key in [Key::Space, Key::R, Key::Num1, Key::Period] {
+        harness.key_press(key);
+        harness.run_steps(2);
+    }
+    assert_eq!(harness.state().asked, []);
+}
+
+#[test]
+fn while_the_bed_is_prepared_there_is_progress_and_nothing_to_play() {
+    let mut harness = Window::of(three_grains());
+    harness.get_by_label("Preparing the bed");
+    for label in ["Play", "Single step", "Reset"] {
+        harness.get_by_label(label).click();
+        harness.run_steps(2);
+    }
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, []);
+
+    let status = Status::Preparing {
+        stage: "settling".into(),
+        progress: 0.43,
+    };
+    let harness = Harness::new_ui(move |ui| status_ui(ui, &status, 1e-5, &mut Vec::new()));
+    let bar = harness.get_by_role_and_label(Role::ProgressIndicator, "Preparing the bed");
+    assert_eq!(numeric_value(&bar), Some(f64::from(0.43_f32)));
+}
+
+fn numeric_value(node: &Node<'_>) -> Option<f64> {
+    use egui_kittest::kittest::NodeT;
+    node.accesskit_node().numeric_value()
+}
+
+#[test]
+fn a_fault_says_what_happened_and_what_to_do() {
+    let status = Status::Faulted(Fault {
+        grain: 17,
+        time: 1.25,
+        good_time: 1.24,
+        kind: FaultKind::NotFinite("velocity"),
+    });
+    let mut harness = Harness::new_ui_state(
+        move |ui, asked: &mut Vec<Request>| status_ui(ui, &status, 2e-5, asked),
+        Vec::new(),
+    );
+    harness.get_by_label_contains("grain 17 at t = 1.250000 s");
+    harness.get_by_label_contains("time_step");
+    harness.get_by_label("Back to time zero").click();
+    harness.run();
+    assert_eq!(*harness.state(), [Request::Command(Command::Reset)]);
+}
+
+#[test]
+fn a_scene_that_cannot_be_opened_is_explained_until_it_is_closed() {
+    let reason = Scene::parse("bad.ron", "(title: 3)")
+        .expect_err("a title is a text")
+        .to_string();
+    let shown = reason.clone();
+    let mut harness = Harness::new_ui_state(
+        move |ui, open: &mut bool| {
+            if *open {
+                *open = scene_error_ui(ui.ctx(), &shown);
+            }
+        },
+        true,
+    );
+    harness.run_steps(3);
+    harness.get_by_label(&reason);
+    assert!(*harness.state(), "it stays until it is closed");
+    harness.get_by_label("Close").click();
+    harness.run_steps(3);
+    assert!(!*harness.state());
+}
+
+#[test]
+fn a_scene_error_leaves_the_present_scene_as_it_is() {
+    let mut harness = Window::of(prepared());
+    harness
+        .state_mut()
+        .desk
+        .show_scene_error("bad.ron, line 3: no".into());
+    harness.run_steps(3);
+    harness.get_by_label("bad.ron, line 3: no");
+    assert_eq!(*harness.state().simulation.status(), Status::Paused);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("bad.ron, line 3: no").is_none());
+}
+
+#[test]
+fn a_path_can_be_typed_where_the_system_has_no_dialog() {
+    let mut harness = Window::of(prepared());
+    let purpose = grainfall::ui::Purpose::Scene;
+    harness
+        .state_mut()
+        .desk
+        .path_dialog
+        .type_path(purpose, "There is no dialog here.");
+    harness.run_steps(3);
+    harness.get_by_label("There is no dialog here.");
+    harness.event(egui::Event::Text("scenes/mine.ron".into()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(
+        harness.state().asked,
+        [Request::Open("scenes/mine.ron".into())]
+    );
+    assert!(harness.query_by_label("There is no dialog here.").is_none());
+}
+
+#[test]
+fn the_file_menu_opens_built_in_scenes() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("File").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("Built-in scenes").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("dry-r2").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::Open("dry-r2".into())]);
+}
+
+#[test]
+fn view_settings_change_what_they_name() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_role_and_label(Role::Button, "View").click();
+    harness.run_steps(10);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Colour by")
+        .click();
+    harness.run_steps(3);
+    harness.get_by_label("Speed").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().view.colour_by, ColourBy::Speed);
+    harness.get_by_label("Fixed").click();
+    harness.run_steps(3);
+    assert!(matches!(harness.state().view.range, ColourRange::Fixed(..)));
+    harness.get_by_label("Cut across").click();
+    harness.run_steps(3);
+    assert!(harness.state().view.cut.is_some());
+    harness.get_by_label("Cut position");
+}
+
+/// Ten thousand samples of a sawtooth, with its avalanches.
+struct Sawtooth {
+    time: Vec<f64>,
+    angle: Vec<f64>,
+    temperature: Vec<f64>,
+    avalanches: Vec<Avalanche>,
+}
+
+impl Sawtooth {
+    fn new() -> Self {
+        let time: Vec<f64> = (0..10_000).map(|i| f64::from(i) * 0.02).collect();
+        let angle = time.iter().map(|t| 0.4 + 0.05 * (t % 1.0)).collect();
+        let temperature = time
+            .iter()
+            .map(|t| if t % 1.0 < 0.1 { 1e-5 } else { 1e-10 })
+            .collect();
+        let avalanche = |i: u32| Avalanche {
+            start: f64::from(i),
+            end: f64::from(i) + 0.1,
+            theta_m: 0.45,
+            theta_r: 0.40,
+        };
+        Self {
+            time,
+            angle,
+            temperature,
+            avalanches: (0..200).map(avalanche).collect(),
+        }
+    }
+
+    fn curves(&self) -> Curves<'_> {
+        Curves {
+            time: &self.time,
+            angle: &self.angle,
+            temperature: &self.temperature,
+            avalanches: &self.avalanches,
+            changes: &[3.0, 3.01, 190.0],
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
+    let width = 400.0;
+    let data = Sawtooth::new();
+    let mut plots = Plots::default();
+    let mut harness = Harness::builder()
+        .with_size([width, 500.0])
+        .build_ui(move |ui| plots.curves_ui(ui, &data.curves()));
+    harness.run_steps(2);
+    harness.get_by_label("All").click();
+    harness.run_steps(3);
+    let longest = longest_line(&harness.output().shapes);
+    assert!(longest > 200, "the curve is drawn: {longest} points");
+    assert!(
+        longest < 2 * width as usize + 10,
+        "{longest} points for {width} pixels"
+    );
+}
+
+#[test]
+fn plots_without_samples_draw_nothing_and_do_not_fail() {
+    let mut plots = Plots::default();
+    let empty = Curves {
+        time: &[],
+        angle: &[],
+        temperature: &[],
+        avalanches: &[],
+        changes: &[],
+    };
+    let mut harness = Harness::new_ui(move |ui| plots.curves_ui(ui, &empty));
+    harness.run_steps(3);
+    harness.get_by_label("Surface angle θ [°]");
+}
+
+/// Points of the longest line among `shapes`.
+fn longest_line(shapes: &[egui::epaint::ClippedShape]) -> usize {
+    fn points(shape: &Shape) -> usize {
+        match shape {
+            Shape::Path(path) => path.points.len(),
+            Shape::Vec(shapes) => shapes.iter().map(points).max().unwrap_or(0),
+            _ => 0,
+        }
+    }
+    shapes
+        .iter()
+        .map(|clipped| points(&clipped.shape))
+        .max()
+        .unwrap_or(0)
+}
