@@ -28,6 +28,7 @@ struct Arguments {
     /// Folder for the files of a run without a window [default: out/<scene>]
     #[arg(long, value_name = "DIR", requires = "no_render")]
     out: Option<PathBuf>,
+    #[cfg(feature = "desktop")]
     #[command(flatten)]
     picture: PictureArguments,
     #[command(subcommand)]
@@ -35,13 +36,19 @@ struct Arguments {
 }
 
 /// A picture that the program takes by itself.
+#[cfg(feature = "desktop")]
 #[derive(Args)]
 struct PictureArguments {
     /// Take a picture of the window and end
     #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
     screenshot: Option<PathBuf>,
     /// Simulated time at which the picture is taken, in seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, requires = "screenshot")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.0,
+        requires = "screenshot"
+    )]
     at: f64,
     /// Take the picture without a display
     #[arg(long, requires = "screenshot")]
@@ -52,6 +59,7 @@ struct PictureArguments {
 }
 
 /// `1280x720`.
+#[cfg(feature = "desktop")]
 fn size(text: &str) -> Result<(u32, u32), String> {
     let side = |text: &str| text.parse().ok().filter(|side| (64..=8192).contains(side));
     text.split_once('x')
@@ -121,8 +129,15 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     let name = what.scene.clone().unwrap_or_else(first_scene);
     let (scene, script) = changed_scene(&name, &what)?;
     if !arguments.no_render {
-        let options = window_options(&what, script);
-        return open_window(name, scene, options, arguments.picture);
+        #[cfg(feature = "desktop")]
+        return Ok(open_window(
+            name,
+            scene,
+            window_options(&what, script),
+            arguments.picture,
+        ));
+        #[cfg(not(feature = "desktop"))]
+        return Err(HeadlessError::Input(NO_WINDOW.into()));
     }
     let name = short_name(&name);
     let job = Job {
@@ -206,6 +221,7 @@ fn short_name(name: &str) -> String {
     )
 }
 
+#[cfg(feature = "desktop")]
 fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
     let options = Options::window();
     Options {
@@ -215,13 +231,9 @@ fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
     }
 }
 
+/// Opens the laboratory; what went wrong is said here. Returns the exit code.
 #[cfg(feature = "desktop")]
-fn open_window(
-    name: String,
-    scene: Scene,
-    options: Options,
-    picture: PictureArguments,
-) -> Result<u8, HeadlessError> {
+fn open_window(name: String, scene: Scene, options: Options, picture: PictureArguments) -> u8 {
     use grainfall::window::{Job, PictureJob, run};
     let picture = picture.screenshot.map(|path| PictureJob {
         path,
@@ -229,27 +241,24 @@ fn open_window(
         size: picture.size.into(),
         offscreen: picture.offscreen,
     });
-    run(Job {
+    let job = Job {
         name,
         scene,
         options,
         picture,
-    })
-    .map_err(|error| HeadlessError::Input(error.to_string()))?;
-    Ok(0)
+    };
+    run(job).map_or_else(
+        |error| {
+            print_chain(&error);
+            error.exit_code()
+        },
+        |()| 0,
+    )
 }
 
 #[cfg(not(feature = "desktop"))]
-fn open_window(
-    _name: String,
-    _scene: Scene,
-    _options: Options,
-    _picture: PictureArguments,
-) -> Result<u8, HeadlessError> {
-    Err(HeadlessError::Input(
-        "this grainfall was built without a window: add --no-render, or build it with the feature `desktop`".into(),
-    ))
-}
+const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
+                         `desktop`";
 
 /// Becomes true when somebody asks the program to end; a second time ends it at once.
 fn interruption() -> Result<Arc<AtomicBool>, HeadlessError> {

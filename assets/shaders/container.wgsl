@@ -13,7 +13,6 @@ struct Look {
     pattern: u32,
     // Distance at which a grid has faded away, in cells; zero for never.
     fade: f32,
-    // Radius of a drum in cells of its pattern.
     unused: vec2<f32>,
 }
 
@@ -97,7 +96,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
     }
     let to_eye = normalize(view.world_position - in.world_position.xyz);
     let normal = normalize(in.world_normal) * select(-1.0, 1.0, front);
-    let pane = vec4<f32>(look.surface.rgb * matt_light(normal) + 0.05 * gloss(normal, to_eye, 12.0), look.surface.a);
+    let pane = vec4<f32>(look.surface.rgb * matt_light(normal) + 0.05 * gloss(normal, to_eye), look.surface.a);
     var colour = mix(pane, vec4<f32>(look.line.rgb, max(look.line.a, pane.a)), drawn.x);
     colour = mix(colour, vec4<f32>(look.mark.rgb, max(look.mark.a, pane.a)), drawn.y);
     return vec4<f32>(colour.rgb, colour.a * veil);

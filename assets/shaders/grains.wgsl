@@ -36,9 +36,13 @@ struct Covered {
     @location(0) world: vec3<f32>,
     // The outline is the unit circle.
     @location(1) across: vec2<f32>,
-    @location(2) @interpolate(flat) grain: u32,
     // A pixel in radii of the outline.
-    @location(3) @interpolate(flat) pixel: f32,
+    @location(2) @interpolate(flat) pixel: f32,
+    // The grain, handed over because software drivers are slow to look it up for each pixel.
+    @location(3) @interpolate(flat) sphere: vec4<f32>,
+    @location(4) @interpolate(flat) colour: vec4<f32>,
+    @location(5) @interpolate(flat) hidden_a: vec4<f32>,
+    @location(6) @interpolate(flat) hidden_b: vec4<f32>,
 }
 
 struct Painted {
@@ -68,7 +72,10 @@ fn vertex(corner: Corner) -> Covered {
     let index = u32(corner.place.z + 0.5);
     let grain = grains[index];
     var covered: Covered;
-    covered.grain = index;
+    covered.sphere = vec4<f32>(grain.centre, grain.radius);
+    covered.colour = vec4<f32>(grain.colour, grain.hidden_mean);
+    covered.hidden_a = vec4<f32>(grain.hidden_gradient, grain.hidden_xx);
+    covered.hidden_b = vec4<f32>(grain.hidden_yy, grain.hidden_xy, grain.hidden_yz, grain.hidden_zx);
 
     let offset = grain.centre - view.world_position;
     var forward = -normalize(view.world_from_view[2].xyz);
@@ -96,9 +103,18 @@ fn vertex(corner: Corner) -> Covered {
     return covered;
 }
 
+fn handed_over(covered: Covered) -> Grain {
+    return Grain(
+        covered.sphere.xyz, covered.sphere.w,
+        covered.colour.xyz, covered.colour.w,
+        covered.hidden_a.xyz, covered.hidden_a.w,
+        covered.hidden_b.x, covered.hidden_b.y, covered.hidden_b.z, covered.hidden_b.w,
+    );
+}
+
 @fragment
 fn fragment(covered: Covered) -> Painted {
-    let grain = grains[covered.grain];
+    let grain = handed_over(covered);
     let from_middle = length(covered.across);
     let coverage = clamp(0.5 + (1.0 - from_middle) / covered.pixel, 0.0, 1.0);
 #ifdef MULTISAMPLED
@@ -149,7 +165,7 @@ fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let facing = max(dot(normal, to_eye), 0.0);
     let turned = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
     let sky = mix(0.16, 1.0, open_sky(grain, normal));
-    let shine = 0.18 * sky * gloss(normal, to_eye, 28.0);
+    let shine = 0.18 * sky * gloss(normal, to_eye);
     return grain.colour * matt_light(normal) * turned * sky + vec3<f32>(shine);
 }
 

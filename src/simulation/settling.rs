@@ -4,7 +4,8 @@
 //! on others under the scene's own gravity, contacts with their histories included. The walls stand still meanwhile.
 //!
 //! The grains fall freely, then lose a share of their velocity between slices of steps until they creep, then relax with
-//! nothing but the contact laws, so that the end is a true equilibrium. All stages are counted in steps: the same scene
+//! nothing but the contact laws, so that the end is a true equilibrium; where they do not come to rest so (a grain may
+//! swing between two others with hardly a loss), they are calmed again. All stages are counted in steps: the same scene
 //! gives the same bits.
 
 use crate::measure::elastic_energy;
@@ -16,13 +17,13 @@ use glam::DVec3;
 /// Share of its velocity that a grain keeps from one slice of the calming stage to the next.
 const KEPT: f64 = 0.9;
 /// Kinetic energy over `Σ m g r` at which calming ends.
-const CREEPING: f64 = 1e-6;
+const CREEPING: f64 = 1e-8;
 /// Kinetic energy over `Σ m g r` of a bed at rest; rms speeds are then near 1e-5 m/s for millimetres.
 const QUIET: f64 = 1e-9;
-/// Shortest relaxation, in units of `√(r/g)`: grains that balance where they cannot stay fall within it.
+/// A relaxation, in units of `√(r/g)`: grains that balance where they cannot stay fall within it.
 const RELAXATION: f64 = 10.0;
 /// Longest settling, in units of `√(r/g)`, after which a bed is taken as it is.
-const PATIENCE: f64 = 500.0;
+const PATIENCE: f64 = 150.0;
 /// Slices in `√(r/g)`.
 const SLICES: f64 = 8.0;
 
@@ -41,7 +42,7 @@ pub struct Settling {
     slice: u64,
     /// `Σ m g r` [J].
     energy_scale: f64,
-    /// Steps of the free fall, of the shortest relaxation, and of everything at most.
+    /// Steps of the free fall, of a relaxation, and of everything at most.
     fall: u64,
     relaxation: u64,
     patience: u64,
@@ -91,9 +92,9 @@ impl Settling {
             _ if step >= self.patience => Stage::AtRest,
             Stage::Falling if step >= self.fall => Stage::Calming,
             Stage::Calming if agitation < CREEPING => Stage::Relaxing { since: step },
-            Stage::Relaxing { since } if agitation < QUIET && step - since >= self.relaxation => {
-                Stage::AtRest
-            }
+            Stage::Relaxing { since } if step - since < self.relaxation => self.stage,
+            Stage::Relaxing { .. } if agitation < QUIET => Stage::AtRest,
+            Stage::Relaxing { .. } => Stage::Calming,
             unchanged => unchanged,
         };
         if self.stage == Stage::Calming {

@@ -5,7 +5,7 @@
 
 use super::contacts::{Action, Body};
 use super::lanes::{Lanes, Quad, Row, Work};
-use super::neighbours::Index;
+use super::neighbours::Parts;
 
 /// Sum over the actions on one grain.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,24 +32,23 @@ impl<Q: Quad> Total<Q> {
         }
     }
 
-    /// Adds a pair of which this grain is the first partner.
+    /// Adds a pair of which this grain is the first partner (`side` 0) or the second (1).
     #[inline(always)]
-    fn add_own(&mut self, processor: Q::Processor, action: &Action) {
-        let arm = Q::repeat(processor, action.force[3]);
-        self.force = self.force + Q::load(processor, &action.force);
-        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
-        self.rolling = self.rolling + Q::load(processor, &action.rolling);
-        self.exchanged = self.exchanged + Q::load(processor, &action.exchanged);
-    }
-
-    /// Adds a pair of which this grain is the second partner.
-    #[inline(always)]
-    fn add_other(&mut self, processor: Q::Processor, action: &Action) {
-        let arm = Q::repeat(processor, action.twist[3]);
-        let opposite = Q::load(processor, &[-1.0, -1.0, -1.0, 1.0]);
-        self.force = self.force - Q::load(processor, &action.force);
-        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
-        self.rolling = self.rolling + Q::load(processor, &action.rolling) * opposite;
+    fn add(&mut self, processor: Q::Processor, action: &Action, side: usize) {
+        // On the second side forces turn round, the count of partners does not; the energy is booked on the first.
+        const SIGNS: [Row; 2] = [[1.0; 4], [-1.0, -1.0, -1.0, 1.0]];
+        const BOOKED: [f64; 2] = [1.0, 0.0];
+        let sign = Q::load(processor, &SIGNS[side]);
+        let arm = if side == 0 {
+            action.force[3]
+        } else {
+            action.twist[3]
+        };
+        self.force = self.force + Q::load(processor, &action.force) * sign;
+        self.torque = self.torque + Q::load(processor, &action.twist) * Q::repeat(processor, arm);
+        self.rolling = self.rolling + Q::load(processor, &action.rolling) * sign;
+        self.exchanged = self.exchanged
+            + Q::load(processor, &action.exchanged) * Q::repeat(processor, BOOKED[side]);
     }
 
     #[inline(always)]
@@ -97,19 +96,13 @@ pub struct Motion {
     pub slack_squared: f64,
 }
 
-/// Where to find a grain's pairs.
+/// Where to find what the pairs of a grain do.
 #[derive(Clone, Copy)]
 pub struct Incidence<'a> {
-    /// Actions between grains and, by second grain, their indices.
-    pub grains: &'a [Action],
-    /// Begin of each grain's own pairs.
-    pub first: &'a [u32],
-    /// Indices of pairs by second grain.
-    pub as_second: &'a Index,
-    /// Actions of walls.
-    pub walls: &'a [Action],
-    /// Indices of wall pairs by grain.
-    pub at_walls: &'a Index,
+    /// What every pair does.
+    pub actions: &'a [Action],
+    /// Each grain's parts in them.
+    pub parts: &'a Parts,
 }
 
 /// What a range of grains asks for after a step.
@@ -126,14 +119,8 @@ impl Incidence<'_> {
     #[inline(always)]
     fn total<Q: Quad>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
         let mut total = Total::zero(processor);
-        for &pair in self.as_second.of(i) {
-            total.add_other(processor, &self.grains[pair as usize]);
-        }
-        for action in &self.grains[self.first[i] as usize..self.first[i + 1] as usize] {
-            total.add_own(processor, action);
-        }
-        for &pair in self.at_walls.of(i) {
-            total.add_own(processor, &self.walls[pair as usize]);
+        for part in self.parts.of(i) {
+            total.add(processor, &self.actions[part.action()], part.side());
         }
         total
     }

@@ -11,57 +11,82 @@ use super::contacts::{Action, Body, GROUP, Pair, WallBody};
 use super::row::{Row, length_squared, sub, vector};
 use crate::world::{Contact, Partner, Surface};
 
-/// Pairs with what they remember and what they do, in whole groups: the last ones may be ghosts.
+/// Pairs with what they remember, in whole groups: the last ones may be ghosts.
 #[derive(Default)]
 pub struct PairList {
     /// The pairs, sorted by their key.
     pub pairs: Vec<Pair>,
     /// Tangential spring of each [m].
     pub springs: Vec<Row>,
-    /// What each does to its partners.
-    pub actions: Vec<Action>,
 }
 
-/// Indices of pairs, grain by grain, ascending for each.
-#[derive(Default)]
-pub struct Index {
-    first: Vec<u32>,
-    pairs: Vec<u32>,
-}
+/// A grain's part in a pair.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Part(u32);
 
-impl Index {
-    /// The pairs of grain `i`.
+impl Part {
+    fn new(action: usize, second: bool) -> Self {
+        Self((action as u32) << 1 | u32::from(second))
+    }
+
+    /// Index of the pair's action: pairs of grains come first, then pairs with walls.
     #[inline(always)]
-    pub fn of(&self, i: usize) -> &[u32] {
-        &self.pairs[self.first[i] as usize..self.first[i + 1] as usize]
+    pub fn action(self) -> usize {
+        (self.0 >> 1) as usize
     }
 
-    /// Sorts `pairs` by the grain that `grain` names; grains from `count` on are ghosts.
-    fn fill(&mut self, pairs: &[Pair], count: usize, grain: impl Fn(&Pair) -> u32) {
-        count_by(&mut self.first, pairs, count, &grain);
-        let mut next = self.first.clone();
-        self.pairs.resize(self.first[count] as usize, 0);
-        for (index, pair) in pairs.iter().enumerate() {
-            let grain = grain(pair) as usize;
-            if grain < count {
-                self.pairs[next[grain] as usize] = index as u32;
-                next[grain] += 1;
-            }
-        }
+    /// 1 where the grain is the second partner, else 0.
+    #[inline(always)]
+    pub fn side(self) -> usize {
+        (self.0 & 1) as usize
     }
 }
 
-/// Fills `first` with where each grain's pairs begin when sorted by `grain`, and the end of the last.
-fn count_by(first: &mut Vec<u32>, pairs: &[Pair], count: usize, grain: &impl Fn(&Pair) -> u32) {
-    first.clear();
-    first.resize(count + 1, 0);
-    for pair in pairs {
-        if let Some(entry) = first.get_mut(grain(pair) as usize + 1) {
-            *entry += 1;
-        }
+/// The parts that each grain has in active pairs, in the order of the pairs.
+#[derive(Default)]
+pub struct Parts {
+    first: Vec<u32>,
+    parts: Vec<Part>,
+}
+
+impl Parts {
+    /// The parts of grain `i`.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> &[Part] {
+        &self.parts[self.first[i] as usize..self.first[i + 1] as usize]
     }
-    for i in 0..count {
-        first[i + 1] += first[i];
+
+    /// Sorts both sides of the pairs by grain; grains from `count` on are ghosts.
+    fn fill(&mut self, grains: &[Pair], walls: &[Pair], count: usize) {
+        let sides = || {
+            let of_grains = grains.iter().enumerate().flat_map(|(k, pair)| {
+                [
+                    (pair.grain, Part::new(k, false)),
+                    (pair.partner, Part::new(k, true)),
+                ]
+            });
+            let of_walls = walls
+                .iter()
+                .enumerate()
+                .map(|(k, pair)| (pair.grain, Part::new(grains.len() + k, false)));
+            of_grains
+                .chain(of_walls)
+                .filter(|(grain, _)| (*grain as usize) < count)
+        };
+        self.first.clear();
+        self.first.resize(count + 1, 0);
+        sides().for_each(|(grain, _)| self.first[grain as usize + 1] += 1);
+        for i in 0..count {
+            self.first[i + 1] += self.first[i];
+        }
+        let mut next = self.first.clone();
+        self.parts
+            .resize(self.first[count] as usize, Part::default());
+        for (grain, part) in sides() {
+            let place = &mut next[grain as usize];
+            self.parts[*place as usize] = part;
+            *place += 1;
+        }
     }
 }
 
@@ -72,12 +97,10 @@ pub struct Neighbours {
     pub grains: PairList,
     /// Active pairs of a grain and a wall, sorted by wall and grain; a group meets one wall.
     pub walls: PairList,
-    /// Where the pairs of grain `i` as first partner begin; one more entry at the end.
-    pub first: Vec<u32>,
-    /// Pairs of grains by their second grain.
-    pub as_second: Index,
-    /// Wall pairs by their grain.
-    pub at_walls: Index,
+    /// What each active pair does: first those of grains, then those with walls.
+    pub actions: Vec<Action>,
+    /// The grains' parts in the active pairs.
+    pub parts: Parts,
     near_grains: Vec<Pair>,
     near_walls: Vec<Pair>,
     near_reference: Vec<Row>,
@@ -134,6 +157,32 @@ impl Neighbours {
             && bodies.iter().zip(&self.near_reference).all(|(body, old)| {
                 length_squared(sub(body.position, *old)) < slack * slack && body.spin[3] == old[3]
             })
+    }
+
+    /// The pair of which grain `i` has this part as a contact, if it touches and the grain is its first partner.
+    pub fn contact(&self, part: Part) -> Option<Contact> {
+        let (index, action) = (part.action(), &self.actions[part.action()]);
+        let touches = action.rolling[3] > 0.0;
+        let (pair, partner, spring) = match index.checked_sub(self.grains.pairs.len()) {
+            None => {
+                let pair = self.grains.pairs[index];
+                (
+                    pair,
+                    Partner::Grain(pair.partner),
+                    self.grains.springs[index],
+                )
+            }
+            Some(k) => {
+                let pair = self.walls.pairs[k];
+                (pair, Partner::Wall(pair.partner), self.walls.springs[k])
+            }
+        };
+        (touches && part.side() == 0).then(|| Contact {
+            grain: pair.grain,
+            partner,
+            spring: vector(spring),
+            force: vector(action.force),
+        })
     }
 
     /// Forgets the near list, for bodies or walls that are not those it was built for.
@@ -199,16 +248,12 @@ impl Neighbours {
             );
         }
         self.walls.replace(pairs, wall_key);
-        count_by(
-            &mut self.first,
-            &self.grains.pairs,
-            count,
-            &|pair: &Pair| pair.grain,
+        self.actions.resize(
+            self.grains.pairs.len() + self.walls.pairs.len(),
+            Action::default(),
         );
-        self.as_second
-            .fill(&self.grains.pairs, count, |pair| pair.partner);
-        self.at_walls
-            .fill(&self.walls.pairs, count, |pair| pair.grain);
+        self.parts
+            .fill(&self.grains.pairs, &self.walls.pairs, count);
         self.reference.clear();
         self.reference
             .extend(bodies[..count].iter().map(|body| body.position));
@@ -284,22 +329,10 @@ impl Neighbours {
 }
 
 impl PairList {
-    /// The pair at `index` as a contact, if it touches.
-    pub fn contact(&self, index: usize, partner: fn(u32) -> Partner) -> Option<Contact> {
-        let (pair, action) = (self.pairs[index], self.actions[index]);
-        (action.rolling[3] > 0.0).then(|| Contact {
-            grain: pair.grain,
-            partner: partner(pair.partner),
-            spring: vector(self.springs[index]),
-            force: vector(action.force),
-        })
-    }
-
     /// Takes over `pairs`, sorted by `key`; those that were listed before keep their springs.
     fn replace(&mut self, pairs: Vec<Pair>, key: Key) {
         let mut springs = vec![[0.0; 4]; pairs.len()];
         carry_springs(&self.pairs, &self.springs, &pairs, &mut springs, key);
-        self.actions.resize(pairs.len(), Action::default());
         self.springs = springs;
         self.pairs = pairs;
     }

@@ -6,7 +6,7 @@ use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings,
 use super::integrate::{Finish, Incidence, Load, Motion, Outcome, Start, Total};
 use super::lanes::Processor;
 use super::law::{Law, PairConstants, Pairing};
-use super::neighbours::{Index, Neighbours, grain_key, wall_key};
+use super::neighbours::{Neighbours, Parts, grain_key, wall_key};
 use super::row::{Row, length_squared, row, vector};
 use super::team::{Shared, share};
 use super::{Fault, FaultKind};
@@ -211,22 +211,9 @@ impl State {
     }
 
     fn collect_contacts(&self, contacts: &mut Vec<Contact>) {
-        let Neighbours {
-            grains,
-            walls,
-            first,
-            at_walls,
-            ..
-        } = &self.neighbours;
         for i in 0..self.loads.len() {
-            let own = first[i] as usize..first[i + 1] as usize;
-            contacts.extend(own.filter_map(|k| grains.contact(k, Partner::Grain)));
-            contacts.extend(
-                at_walls
-                    .of(i)
-                    .iter()
-                    .filter_map(|&k| walls.contact(k as usize, Partner::Wall)),
-            );
+            let parts = self.neighbours.parts.of(i).iter();
+            contacts.extend(parts.filter_map(|part| self.neighbours.contact(*part)));
         }
     }
 
@@ -317,10 +304,9 @@ impl State {
         } = self;
         let Neighbours {
             grains,
-            walls: wall_list,
-            first,
-            as_second,
-            at_walls,
+            walls: at_walls,
+            actions,
+            parts,
             reference,
             ..
         } = neighbours;
@@ -328,14 +314,11 @@ impl State {
             bodies: Shared::new(bodies),
             loads: Shared::new(loads),
             grain_springs: Shared::new(&mut grains.springs),
-            grain_actions: Shared::new(&mut grains.actions),
-            wall_springs: Shared::new(&mut wall_list.springs),
-            wall_actions: Shared::new(&mut wall_list.actions),
+            wall_springs: Shared::new(&mut at_walls.springs),
+            actions: Shared::new(actions),
             grain_pairs: &grains.pairs,
-            first,
-            wall_pairs: &wall_list.pairs,
-            at_walls,
-            as_second,
+            wall_pairs: &at_walls.pairs,
+            parts,
             reference,
             constants: &kinds.constants,
             walls,
@@ -414,14 +397,11 @@ pub struct Phase<'a> {
     bodies: Shared<'a, Body>,
     loads: Shared<'a, Load>,
     grain_springs: Shared<'a, Row>,
-    grain_actions: Shared<'a, Action>,
     wall_springs: Shared<'a, Row>,
-    wall_actions: Shared<'a, Action>,
+    actions: Shared<'a, Action>,
     grain_pairs: &'a [Pair],
-    first: &'a [u32],
     wall_pairs: &'a [Pair],
-    at_walls: &'a Index,
-    as_second: &'a Index,
+    parts: &'a Parts,
     reference: &'a [Row],
     constants: &'a [PairConstants],
     walls: &'a [WallBody],
@@ -447,14 +427,16 @@ impl Phase<'_> {
     ) {
         let of_grains = share_of_groups(self.grain_pairs.len(), member, size);
         let of_walls = share_of_groups(self.wall_pairs.len(), member, size);
+        let offset = self.grain_pairs.len();
         // SAFETY: in this phase bodies are only read, springs and actions only written, each member its own share.
         let (bodies, grain_springs, grain_actions, wall_springs, wall_actions) = unsafe {
             (
                 self.bodies.all(),
                 self.grain_springs.range_mut(of_grains.clone()),
-                self.grain_actions.range_mut(of_grains.clone()),
+                self.actions.range_mut(of_grains.clone()),
                 self.wall_springs.range_mut(of_walls.clone()),
-                self.wall_actions.range_mut(of_walls.clone()),
+                self.actions
+                    .range_mut(of_walls.start + offset..of_walls.end + offset),
             )
         };
         processor.run(Forces {
@@ -491,20 +473,16 @@ impl Phase<'_> {
     ) -> Outcome {
         // SAFETY: in this phase actions are only read, bodies and loads only written, each member its own share.
         let own = share(self.reference.len(), member, size);
-        let (bodies, loads, grains, walls) = unsafe {
+        let (bodies, loads, actions) = unsafe {
             (
                 self.bodies.range_mut(own.clone()),
                 self.loads.range_mut(own.clone()),
-                self.grain_actions.all(),
-                self.wall_actions.all(),
+                self.actions.all(),
             )
         };
         let incidence = Incidence {
-            grains,
-            first: self.first,
-            as_second: self.as_second,
-            walls,
-            at_walls: self.at_walls,
+            actions,
+            parts: self.parts,
         };
         processor.run(Finish {
             motion: &self.motion,

@@ -3,10 +3,10 @@
 use super::{Desk, OpenWith, Purpose, Request, Requests};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::view::ViewSettings;
+use crate::view::{ViewSettings, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Fulfils every request in the order in which it was made.
 pub fn fulfil_requests(
@@ -65,33 +65,11 @@ fn open(
 fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, ResMut<Desk>) {
     move |captured, mut desk| {
         let shown = path.display();
-        match write_picture(&captured.image, &path) {
+        match save_png(&captured.image, &path) {
             Ok(()) => desk.notify(format!("Saved {shown}")),
             Err(reason) => desk.notify(format!(
                 "The picture cannot be written to {shown}: {reason}"
             )),
         }
     }
-}
-
-/// Writes `image` as PNG, whole or not at all.
-fn write_picture(image: &Image, path: &Path) -> Result<(), String> {
-    let picture = image
-        .clone()
-        .try_into_dynamic()
-        .map_err(|error| error.to_string())?;
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let file = tempfile::Builder::new()
-        .suffix(".png")
-        .tempfile_in(folder)
-        .map_err(|error| error.to_string())?;
-    picture
-        .to_rgb8()
-        .save(file.path())
-        .map_err(|error| error.to_string())?;
-    file.persist(path).map_err(|error| error.to_string())?;
-    Ok(())
 }

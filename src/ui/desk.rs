@@ -21,6 +21,9 @@ use std::time::{Duration, Instant};
 
 /// How long a notice stays.
 const NOTICE_TIME: Duration = Duration::from_secs(6);
+/// A window narrower than this shows no controls, one narrower than the other no plots: the picture comes first.
+const ROOM_FOR_CONTROLS: f32 = 700.0;
+const ROOM_FOR_MEASURES: f32 = 1000.0;
 /// Recent scenes kept.
 const RECENT_SCENES: usize = 8;
 
@@ -179,18 +182,22 @@ impl Desk {
     ) {
         let width = root.available_width();
         let size = |share: f32, least: f32, most: f32| (share * width).clamp(least, most);
-        egui::Panel::left("controls")
-            .default_size(size(0.235, 290.0, 380.0))
-            .size_range(240.0..=520.0)
-            .show_collapsible(root, &mut self.shown.left, |ui| {
-                sections_ui(ui, &mut self.left, simulation, view, out);
-            });
-        egui::Panel::right("measures")
-            .default_size(size(0.285, 350.0, 560.0))
-            .size_range(280.0..=900.0)
-            .show_collapsible(root, &mut self.shown.right, |ui| {
-                sections_ui(ui, &mut self.right, simulation, view, out);
-            });
+        if width >= ROOM_FOR_CONTROLS {
+            egui::Panel::left("controls")
+                .default_size(size(0.235, 290.0, 380.0))
+                .size_range(240.0..=520.0)
+                .show_collapsible(root, &mut self.shown.left, |ui| {
+                    sections_ui(ui, &mut self.left, simulation, view, out);
+                });
+        }
+        if width >= ROOM_FOR_MEASURES {
+            egui::Panel::right("measures")
+                .default_size(size(0.285, 350.0, 560.0))
+                .size_range(280.0..=900.0)
+                .show_collapsible(root, &mut self.shown.right, |ui| {
+                    sections_ui(ui, &mut self.right, simulation, view, out);
+                });
+        }
     }
 
     fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {

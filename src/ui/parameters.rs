@@ -266,7 +266,7 @@ fn suffix(info: &ParameterInfo) -> String {
     }
 }
 
-/// Digits after the point that a value in a range of this `width` deserves: a thousandth of it.
+/// Digits after the point that a value in a range of this `width` deserves: a ten-thousandth of it.
 fn decimals(width: f64) -> usize {
-    (3.0 - width.log10().ceil()).clamp(0.0, 6.0) as usize
+    (4.0 - width.log10().ceil()).clamp(0.0, 6.0) as usize
 }

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// A dialog that ends sooner than this without a file was never seen by a person.
-const SHORTEST_CHOICE: Duration = Duration::from_millis(400);
+const SHORTEST_CHOICE: Duration = Duration::from_millis(800);
 
 /// What a path is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,8 +32,13 @@ pub struct PathDialog {
 /// A system dialog that has not answered yet.
 struct Asked {
     purpose: Purpose,
-    since: Instant,
-    answer: Task<Option<FileHandle>>,
+    answer: Task<Answered>,
+}
+
+/// What a system dialog was left with, and how long it stood.
+struct Answered {
+    file: Option<FileHandle>,
+    after: Duration,
 }
 
 /// The field to type a path into.
@@ -81,23 +86,8 @@ impl PathDialog {
         if self.asked.take().is_some() {
             self.type_path(purpose, "The system's file dialog has not answered.");
         } else if self.typed.is_none() {
-            let dialog = AsyncFileDialog::new().set_title(purpose.title());
-            let answer = match purpose {
-                Purpose::Scene => {
-                    IoTaskPool::get().spawn(dialog.add_filter("Scenes", &["ron"]).pick_file())
-                }
-                Purpose::Picture => IoTaskPool::get().spawn(
-                    dialog
-                        .add_filter("Pictures", &["png"])
-                        .set_file_name("grainfall.png")
-                        .save_file(),
-                ),
-            };
-            self.asked = Some(Asked {
-                purpose,
-                since: Instant::now(),
-                answer,
-            });
+            let answer = IoTaskPool::get().spawn(ask_system(purpose));
+            self.asked = Some(Asked { purpose, answer });
         }
     }
 
@@ -138,16 +128,32 @@ impl PathDialog {
         let Some(answer) = check_ready(&mut asked.answer) else {
             return;
         };
-        let (purpose, unseen) = (asked.purpose, asked.since.elapsed() < SHORTEST_CHOICE);
+        let purpose = asked.purpose;
         self.asked = None;
-        match answer {
+        match answer.file {
             Some(file) => out.push(purpose.request(file.path().to_owned())),
-            None if unseen => self.type_path(
+            None if answer.after < SHORTEST_CHOICE => self.type_path(
                 purpose,
                 "The system offers no file dialog here (it needs a D-Bus session and xdg-desktop-portal).",
             ),
             None => {}
         }
+    }
+}
+
+async fn ask_system(purpose: Purpose) -> Answered {
+    let since = Instant::now();
+    let dialog = AsyncFileDialog::new().set_title(purpose.title());
+    let file = match purpose {
+        Purpose::Scene => dialog.add_filter("Scenes", &["ron"]).pick_file().await,
+        Purpose::Picture => {
+            let dialog = dialog.add_filter("Pictures", &["png"]);
+            dialog.set_file_name("grainfall.png").save_file().await
+        }
+    };
+    Answered {
+        file,
+        after: since.elapsed(),
     }
 }
 

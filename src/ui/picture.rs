@@ -22,7 +22,7 @@ pub struct Picture;
 
 impl Panel for Picture {
     fn title(&self) -> &'static str {
-        "View"
+        "Picture"
     }
 
     fn ui(

@@ -20,8 +20,13 @@ use std::ops::RangeInclusive;
 const RECENT: f64 = 20.0;
 /// Shortest window that one can zoom to [s].
 const SHORTEST: f64 = 0.2;
-/// Avalanches in view beyond this number get no label.
-const LABELLED_AVALANCHES: usize = 14;
+/// Columns of pixels between two labels of avalanches at least.
+const BETWEEN_LABELS: f64 = 46.0;
+/// How far above its avalanche's start a label stands, as a share of the plot's height.
+const LABEL_LIFT: f64 = 0.035;
+/// Room below and above a curve, as shares of its height; labels stand above.
+const BELOW: f64 = 0.08;
+const ABOVE: f64 = 0.2;
 /// Smallest height of the θ plot [°], so that noise at rest does not fill it.
 const SMALLEST_ANGLE_SPAN: f64 = 2.0;
 /// Smallest height of the Tg plot with a logarithmic axis, in powers of ten.
@@ -85,6 +90,8 @@ struct Marks<'a> {
     palette: Palette,
     avalanches: &'a [Avalanche],
     changes: Vec<f64>,
+    /// Time between two labels at least [s].
+    between_labels: f64,
 }
 
 impl Default for Plots {
@@ -270,8 +277,8 @@ fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
         return 0.0..=smallest.max(1.0);
     }
     let span = (high - low).max(smallest).max(f64::MIN_POSITIVE);
-    let (middle, half) = (0.5 * (low + high), 0.58 * span);
-    middle - half..=middle + half
+    let middle = 0.5 * (low + high);
+    middle - (0.5 + BELOW) * span..=middle + (0.5 + ABOVE) * span
 }
 
 fn curve_ui<'a>(
@@ -414,10 +421,11 @@ impl<'a> Marks<'a> {
             palette,
             avalanches: &curves.avalanches[first.min(end)..end],
             changes,
+            between_labels: BETWEEN_LABELS * apart,
         }
     }
 
-    fn angle_ui<'p>(&self, plot: &mut PlotUi<'p>) {
+    fn angle_ui(&self, plot: &mut PlotUi) {
         self.changes_ui(plot);
         let points = |ends: fn(&Avalanche) -> [f64; 2]| -> Vec<[f64; 2]> {
             self.avalanches.iter().map(ends).collect()
@@ -436,20 +444,23 @@ impl<'a> Marks<'a> {
                 .radius(4.5)
                 .color(self.palette.minimum),
         );
-        if self.avalanches.len() <= LABELLED_AVALANCHES {
-            for avalanche in self.avalanches {
-                plot.text(self.drop_label(avalanche));
+        let lift = LABEL_LIFT * plot.plot_bounds().height();
+        let mut free_from = f64::NEG_INFINITY;
+        for avalanche in self.avalanches {
+            if avalanche.start >= free_from {
+                plot.text(self.drop_label(avalanche, lift));
+                free_from = avalanche.start + self.between_labels;
             }
         }
     }
 
-    fn drop_label(&self, avalanche: &Avalanche) -> Text {
-        let at = PlotPoint::new(avalanche.start, avalanche.theta_m * DEGREES);
-        let drop = RichText::new(format!("{:.1}° ", avalanche.drop() * DEGREES)).small();
-        Text::new("Δθ", at, drop.color(self.palette.maximum)).anchor(Align2::RIGHT_CENTER)
+    fn drop_label(&self, avalanche: &Avalanche, lift: f64) -> Text {
+        let at = PlotPoint::new(avalanche.start, avalanche.theta_m * DEGREES + lift);
+        let drop = RichText::new(format!("{:.1}°", avalanche.drop() * DEGREES)).small();
+        Text::new("Δθ", at, drop.color(self.palette.maximum)).anchor(Align2::CENTER_BOTTOM)
     }
 
-    fn temperature_ui<'p>(&self, plot: &mut PlotUi<'p>, decades: bool) {
+    fn temperature_ui(&self, plot: &mut PlotUi, decades: bool) {
         self.changes_ui(plot);
         plot.hline(
             HLine::new("flowing above", on_axis(NON_RIGID_TEMPERATURE, decades))
@@ -458,7 +469,7 @@ impl<'a> Marks<'a> {
         );
     }
 
-    fn changes_ui<'p>(&self, plot: &mut PlotUi<'p>) {
+    fn changes_ui(&self, plot: &mut PlotUi) {
         for time in &self.changes {
             plot.vline(
                 VLine::new("parameter changed", *time)

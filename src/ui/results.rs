@@ -53,9 +53,8 @@ pub struct Results {
 }
 
 /// What a summary was made of.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 struct Key {
-    title: String,
     samples: usize,
     from: f64,
 }
@@ -79,14 +78,14 @@ impl Panel for Results {
         };
         latest_ui(ui, &sample);
         ui.add_space(6.0);
-        self.averages_ui(ui, &simulation.scene().title, series);
+        self.averages_ui(ui, series);
         ui.add_space(6.0);
         energy_ui(ui, &sample);
     }
 }
 
 impl Results {
-    fn averages_ui(&mut self, ui: &mut egui::Ui, title: &str, series: &Series) {
+    fn averages_ui(&mut self, ui: &mut egui::Ui, series: &Series) {
         ui.horizontal(|ui| {
             let label = ui.label(RichText::new("Averages from").strong());
             let field = egui::DragValue::new(&mut self.from)
@@ -98,7 +97,7 @@ impl Results {
                 "Only samples from this time on count. The paper leaves out the first 20 s.",
             );
         });
-        let summary = self.summary(title, series);
+        let summary = self.summary(series);
         table_ui(
             ui,
             AVERAGES.iter().map(|&(key, name)| {
@@ -117,9 +116,8 @@ impl Results {
     }
 
     /// Averages over `series`, remade when enough has been added.
-    fn summary(&mut self, title: &str, series: &Series) -> &Summary {
+    fn summary(&mut self, series: &Series) -> &Summary {
         let key = Key {
-            title: title.into(),
             samples: series.len() / SAMPLES_BETWEEN_SUMMARIES,
             from: self.from,
         };

@@ -8,7 +8,7 @@ use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
 /// Draws `sheet`; false once it is closed.
 pub fn sheet_ui(ctx: &egui::Context, sheet: Sheet) -> bool {
     match sheet {
-        Sheet::Shortcuts => modal_ui(ctx, "Shortcuts", 380.0, shortcuts_ui),
+        Sheet::Shortcuts => modal_ui(ctx, "Shortcuts", 500.0, shortcuts_ui),
         Sheet::About => modal_ui(ctx, "Grainfall", 460.0, about_ui),
     }
 }

@@ -122,11 +122,12 @@ pub const MOUSE: [(&str, &str); 4] = [
 impl Shortcut {
     /// Its keys in words: `. or →`.
     pub fn keys(&self, ctx: &egui::Context) -> String {
-        let names: Vec<String> = self
-            .keys
-            .iter()
-            .map(|key| ctx.format_shortcut(key))
-            .collect();
+        let name = |key: &KeyboardShortcut| match key.logical_key {
+            Key::Period => ".".to_owned(),
+            Key::ArrowRight => "→".to_owned(),
+            _ => ctx.format_shortcut(key),
+        };
+        let names: Vec<String> = self.keys.iter().map(name).collect();
         names.join(" or ")
     }
 
@@ -153,9 +154,10 @@ impl Shortcut {
     }
 }
 
-/// What the keys pressed now ask for; nothing while the keyboard writes into a field.
+/// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet lies over the window.
 pub fn pressed(ctx: &egui::Context, status: Option<&Status>) -> Vec<Request> {
-    if ctx.egui_wants_keyboard_input() {
+    let covered = ctx.memory(|memory| memory.top_modal_layer().is_some());
+    if covered || ctx.egui_wants_keyboard_input() {
         return Vec::new();
     }
     let pressed = SHORTCUTS.iter().filter(|shortcut| shortcut.is_pressed(ctx));

@@ -1,4 +1,4 @@
-//! Names with the paper's symbols, whose indices stand low: μ_R.
+//! Names with the paper's symbols, whose indices stand low: `μ_R`.
 
 use bevy_egui::egui::text::{LayoutJob, TextFormat};
 use bevy_egui::egui::{Align, Color32, FontId, TextStyle, Ui};

@@ -67,17 +67,25 @@ impl Scheme {
     }
 }
 
-/// What the colours of `world` mean; `None` for species.
-pub fn legend(world: &World, colour_by: ColourBy, range: ColourRange) -> Option<Legend> {
+/// What the colours of `world` mean; `None` for species. An automatic range stays as it was in `before` while it suits, so
+/// that colours do not jump from frame to frame.
+pub fn legend(
+    world: &World,
+    colour_by: ColourBy,
+    range: ColourRange,
+    before: Option<&Legend>,
+) -> Option<Legend> {
     if colour_by == ColourBy::Species {
         return None;
     }
+    let title = colour_by.label();
+    let before = before.filter(|before| before.title == title && before.min == 0.0);
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
-        ColourRange::Automatic => (0.0, automatic_maximum(world, colour_by)),
+        ColourRange::Automatic => (0.0, automatic_maximum(world, colour_by, before)),
     };
     Some(Legend {
-        title: colour_by.label(),
+        title,
         min,
         max,
         unit: colour_by.unit(),
@@ -125,8 +133,8 @@ fn value(world: &World, colour_by: ColourBy, i: usize) -> f64 {
     }
 }
 
-/// A round number that all but a fiftieth of the grains stay below; for counts an even number, at least 8.
-fn automatic_maximum(world: &World, colour_by: ColourBy) -> f64 {
+/// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
+fn automatic_maximum(world: &World, colour_by: ColourBy, before: Option<&Legend>) -> f64 {
     let mut values: Vec<f64> = (0..world.grains.len())
         .map(|i| value(world, colour_by, i))
         .filter(|value| value.is_finite())
@@ -136,24 +144,35 @@ fn automatic_maximum(world: &World, colour_by: ColourBy) -> f64 {
     }
     let rank = (values.len() - 1) * 49 / 50;
     let (_, most, _) = values.select_nth_unstable_by(rank, f64::total_cmp);
+    if let Some(before) = before
+        && (0.45 * before.max..=before.max).contains(most)
+    {
+        return before.max;
+    }
     if colour_by == ColourBy::Coordination {
-        (*most / 2.0).ceil().max(4.0) * 2.0
+        (*most / 4.0).ceil().max(2.0) * 4.0
     } else {
-        round_up(*most)
+        // Quarters of these are round too.
+        round_up_to(*most, &[1.0, 2.0, 4.0, 8.0])
     }
 }
 
 /// The next of … 1, 2, 5, 10, 20, 50 … at or above `x`; 1 for zero.
 pub fn round_up(x: f64) -> f64 {
+    round_up_to(x, &[1.0, 2.0, 5.0])
+}
+
+/// The next number at or above `x` that is one of `digits` times a power of ten; 1 for zero.
+fn round_up_to(x: f64, digits: &[f64]) -> f64 {
     if x <= 0.0 || !x.is_finite() {
         return 1.0;
     }
     let decade = 10_f64.powf(x.log10().floor());
     // A billionth above a round number is that number: rounding of the logarithm.
-    let digit = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|digit| digit * decade >= x * (1.0 - 1e-9));
-    digit.unwrap_or(10.0) * decade
+    let digit = digits
+        .iter()
+        .find(|digit| *digit * decade >= x * (1.0 - 1e-9));
+    digit.unwrap_or(&10.0) * decade
 }
 
 /// sRGB to linear light.
@@ -200,5 +219,40 @@ mod tests {
                 assert!(lightness(t + 0.05) > lightness(t), "{map:?} at {t}");
             }
         }
+    }
+
+    #[test]
+    fn automatic_range_is_round_and_keeps_still_while_it_suits() {
+        let mut world = crate::view::tests::grains_in_a_row(100);
+        let mut shown = None;
+        // The largest speed of all but two grains, and the range that is shown then.
+        for (speed, max) in [
+            (0.3, 0.4),
+            (0.39, 0.4),
+            (0.2, 0.4),
+            (0.17, 0.2),
+            (0.21, 0.4),
+            (5.0, 8.0),
+        ] {
+            for velocity in &mut world.grains.velocity {
+                velocity.x = speed;
+            }
+            world.grains.velocity[0].x = 100.0;
+            shown = legend(
+                &world,
+                ColourBy::Speed,
+                ColourRange::Automatic,
+                shown.as_ref(),
+            );
+            assert_eq!(
+                shown.as_ref().map(|legend| legend.max),
+                Some(max),
+                "{speed}"
+            );
+        }
+        let fixed = ColourRange::Fixed(0.1, 0.7);
+        let shown = legend(&world, ColourBy::Speed, fixed, shown.as_ref()).unwrap();
+        assert_eq!((shown.min, shown.max), (0.1, 0.7));
+        assert_eq!(legend(&world, ColourBy::Species, fixed, None), None);
     }
 }

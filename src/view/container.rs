@@ -316,7 +316,7 @@ fn look(paint: Paint, settings: &ViewSettings) -> Look {
     Look {
         surface,
         line: with_alpha(scheme.line, if frame { 0.8 } else { 0.8 * opacity }),
-        mark: with_alpha(scheme.mark, if frame { 1.0 } else { 0.9 * opacity.sqrt() }),
+        mark: with_alpha(scheme.mark, if frame { 1.0 } else { opacity.powf(0.3) }),
         pattern: pattern as u32,
         fade,
         unused: Vec2::ZERO,

@@ -163,10 +163,12 @@ fn colour_and_place(
     }
     *last = Some(colouring);
     let (mut drawn, mut mesh, material) = drawn.into_inner();
-    let grains = shown.world().map_or_else(Vec::new, |world| {
-        settings.legend = colour::legend(world, settings.colour_by, settings.range);
-        drawn_grains(world, &settings)
+    let world = shown.world();
+    settings.legend = world.and_then(|world| {
+        let before = settings.legend.as_ref();
+        colour::legend(world, settings.colour_by, settings.range, before)
     });
+    let grains = world.map_or_else(Vec::new, |world| drawn_grains(world, &settings));
     // A buffer cannot be empty: where there is no grain, one of no size is drawn.
     let grains = if grains.is_empty() {
         vec![DrawnGrain::zeroed()]

@@ -18,6 +18,7 @@
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `rig` | Bevy's camera entity that follows it |
 //! | `overlay` | scale bar, clock, legend in the picture |
+//! | `png` | pictures as files |
 
 mod camera;
 mod colour;
@@ -25,12 +26,14 @@ mod container;
 mod grains;
 mod occlusion;
 mod overlay;
+mod png;
 mod rig;
 mod settings;
 
 pub use camera::{OrbitCamera, apply_response};
 pub use colour::species_colour;
 pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
+pub use png::save_png;
 pub use rig::WorldCamera;
 pub use settings::{
     Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, ProjectionKind,
@@ -115,5 +118,22 @@ fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<Shown>) {
     };
     if !same {
         shown.show(newest.cloned());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::Scene;
+    use crate::world::{World, build};
+
+    /// A world of `count` equal grains, far apart.
+    pub(super) fn grains_in_a_row(count: usize) -> World {
+        let mut world = build(&Scene::open("bouncing-grain").unwrap(), 1e-5);
+        let (species, position) = (world.grains.species[0], world.grains.position[0]);
+        for i in world.grains.len()..count {
+            let x = position + 1e-2 * i as f64;
+            world.grains.push_sphere(x, 1e-3, 2500.0, species);
+        }
+        world
     }
 }

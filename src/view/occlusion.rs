@@ -147,7 +147,7 @@ mod tests {
             let mu = -1.0 + (i as f32 + 0.5) * 2.0 / steps as f32;
             let legendre = [1.0, mu, 1.5 * mu * mu - 0.5];
             for (l, sum) in projected.iter_mut().enumerate() {
-                let weight = (2.0 * l as f32 + 1.0) / 2.0 * 2.0 / steps as f32;
+                let weight = (2.0 * l as f32 + 1.0) / steps as f32;
                 *sum += weight * legendre[l] * touching(mu);
             }
         }

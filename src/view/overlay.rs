@@ -7,6 +7,7 @@ use super::camera::apply_response;
 use super::colour::{Scheme, species_colour};
 use super::{ColourMap, Legend, OrbitCamera, ViewSettings};
 use crate::world::World;
+use bevy::color::{Color, ColorToPacked};
 use bevy_egui::egui::{
     Align2, Color32, CornerRadius, FontId, Id, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke,
     StrokeKind, Ui, pos2, vec2,
@@ -57,6 +58,7 @@ pub fn overlay(
         painter,
         text: rgb(scheme.text),
         faint: rgb(scheme.faint_text),
+        veil: rgb(srgb(scheme.background)).gamma_multiply(0.75),
     };
     let inner = rect.shrink(INSET);
     if let Some(world) = caption.world {
@@ -80,6 +82,7 @@ struct Ink<'a> {
     painter: &'a Painter,
     text: Color32,
     faint: Color32,
+    veil: Color32,
 }
 
 impl Ink<'_> {
@@ -120,6 +123,9 @@ fn colour_bar(ink: &Ink, corner: Pos2, legend: &Legend, map: ColourMap) {
     let size = vec2(14.0, 150.0);
     let scale = Prefixed::new(legend.max.abs().max(legend.min.abs()), legend.unit);
     let bar = Rect::from_min_size(corner - size - vec2(44.0, 0.0), size);
+    let ground = Rect::from_min_max(bar.min - vec2(50.0, 36.0), corner).expand(8.0);
+    ink.painter
+        .rect_filled(ground, CornerRadius::same(6), ink.veil);
     ink.painter.add(Shape::mesh(gradient(bar, map)));
     ink.painter.rect_stroke(
         bar,
@@ -178,6 +184,11 @@ fn gradient(rect: Rect, map: ColourMap) -> Mesh {
         mesh.add_triangle(2 * i + 1, 2 * i + 3, 2 * i + 2);
     }
     mesh
+}
+
+fn srgb(colour: Color) -> [u8; 3] {
+    let [r, g, b, _] = colour.to_srgba().to_u8_array();
+    [r, g, b]
 }
 
 fn rgb([r, g, b]: [u8; 3]) -> Color32 {

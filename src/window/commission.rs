@@ -2,9 +2,10 @@
 //!
 //! In: a [`PictureJob`] and the simulation. Out: the file and an [`Outcome`].
 
-use super::PictureJob;
-use super::picture::{Canvas, WARM_UP, save, screenshot};
+use super::picture::{Canvas, WARM_UP, screenshot};
+use super::{PictureJob, WindowError};
 use crate::simulation::{Simulation, Status};
+use crate::view::save_png;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
 use std::num::NonZero;
@@ -12,17 +13,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// What became of the picture, for whom started the app.
 #[derive(Clone, Default)]
-pub(super) struct Outcome(Arc<Mutex<Option<String>>>);
+pub(super) struct Outcome(Arc<Mutex<Option<WindowError>>>);
 
 impl Outcome {
     /// Why there is no picture, if there should be one and is none.
-    pub(super) fn result(&self) -> Result<(), String> {
+    pub(super) fn result(&self) -> Result<(), WindowError> {
         let failure = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         failure.map_or(Ok(()), Err)
     }
 
-    fn fail(&self, reason: String) -> AppExit {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
+    fn fail(&self, error: WindowError) -> AppExit {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
         AppExit::Error(NonZero::<u8>::MIN)
     }
 }
@@ -70,10 +71,18 @@ pub(super) fn carry_out(
 ) {
     match simulation.status() {
         Status::Failed(reason) => {
-            exit.write(commission.outcome.fail(reason.clone()));
+            exit.write(
+                commission
+                    .outcome
+                    .fail(WindowError::Picture(reason.clone())),
+            );
         }
         Status::Faulted(fault) => {
-            exit.write(commission.outcome.fail(fault.to_string()));
+            exit.write(
+                commission
+                    .outcome
+                    .fail(WindowError::Fault(fault.to_string())),
+            );
         }
         _ => {}
     }
@@ -112,11 +121,12 @@ fn take(commission: &Commission, canvas: Option<&Canvas>, commands: &mut Command
     let outcome = commission.outcome.clone();
     commands.spawn(screenshot(canvas)).observe(
         move |captured: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
-            exit.write(match save(&captured.image, &path) {
+            exit.write(match save_png(&captured.image, &path) {
                 Ok(()) => AppExit::Success,
-                Err(error) => {
-                    outcome.fail(format!("{} cannot be written: {error}", path.display()))
-                }
+                Err(error) => outcome.fail(WindowError::Picture(format!(
+                    "{} cannot be written: {error}",
+                    path.display()
+                ))),
             });
         },
     );

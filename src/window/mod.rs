@@ -28,6 +28,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::PathBuf;
 use std::time::Duration;
 
+/// Least time between two updates without a display, so that the solver has the cores.
+const FRAME: Duration = Duration::from_millis(16);
+
 /// What to open and how.
 #[derive(Clone, Debug)]
 pub struct Job {
@@ -63,9 +66,22 @@ pub enum WindowError {
     /// The picture could not be taken.
     #[error("no picture was taken: {0}")]
     Picture(String),
+    /// The run met a physical fault before the moment of the picture.
+    #[error("no picture was taken: {0}")]
+    Fault(String),
     /// The app ended with an error that it has already told.
     #[error("the window ended with an error")]
     Ended,
+}
+
+impl WindowError {
+    /// What the process ends with: 3 for a physical fault, 1 for the rest.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Fault(_) => 3,
+            Self::Missing(_) | Self::Picture(_) | Self::Ended => 1,
+        }
+    }
 }
 
 /// Opens the laboratory and returns when it is closed.
@@ -83,10 +99,9 @@ pub fn run(job: Job) -> Result<(), WindowError> {
     }
     let software = adapters.iter().all(|adapter| adapter.software);
     let outcome = Outcome::default();
-    let mut app = quietly(|| build(job, software, outcome.clone()))
-        .map_err(|panic| Missing::Libraries(panic))?;
+    let mut app = quietly(|| build(job, software, outcome.clone())).map_err(Missing::Libraries)?;
     let exit = app.run();
-    outcome.result().map_err(WindowError::Picture)?;
+    outcome.result()?;
     exit.is_success().then_some(()).ok_or(WindowError::Ended)
 }
 
@@ -98,7 +113,7 @@ fn build(job: Job, software: bool, outcome: Outcome) -> App {
         Some(picture) if picture.offscreen => app.add_plugins((
             offscreen_plugins().set(log()),
             CanvasPlugin(picture.size),
-            ScheduleRunnerPlugin::run_loop(Duration::ZERO),
+            ScheduleRunnerPlugin::run_loop(FRAME),
         )),
         picture => app.add_plugins(window_plugins(title, picture.as_ref())),
     };
@@ -156,7 +171,8 @@ fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGro
 fn log() -> LogPlugin {
     LogPlugin {
         level: Level::WARN,
-        filter: "wgpu=error,naga=error,bevy_render::renderer=error,winit=error".to_owned(),
+        filter: "wgpu=error,naga=error,bevy_render::renderer=error,winit=error,bevy_egui=error"
+            .to_owned(),
         ..default()
     }
 }

@@ -1,13 +1,11 @@
-//! Pictures into memory and files, with a window or without one.
+//! Pictures with a window or without one.
 //!
-//! In: an app whose cameras draw. Out: an image of given size that they draw into ([`CanvasPlugin`]), and PNG files,
-//! written whole or not at all. When a picture is taken is not decided here.
+//! In: an app whose cameras draw. Out: an image of given size that they draw into ([`CanvasPlugin`]), and the request for
+//! a picture of it or of the window. When a picture is taken is not decided here.
 
-use crate::files::write_whole;
 use bevy::app::{PluginGroupBuilder, PluginsState};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::RenderTarget;
-use bevy::image::ImageFormat;
 use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
@@ -16,8 +14,6 @@ use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::view::screenshot::Screenshot;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
-use std::io::{self, Cursor};
-use std::path::Path;
 
 /// Frames to draw before a picture is whole: pipelines, textures and panels' sizes need a few.
 pub const WARM_UP: u32 = 6;
@@ -79,21 +75,4 @@ pub fn screenshot(canvas: Option<&Canvas>) -> Screenshot {
     canvas.map_or_else(Screenshot::primary_window, |canvas| {
         Screenshot::image(canvas.0.clone())
     })
-}
-
-/// Writes `image` as a PNG file, whole or not at all; missing folders are made.
-///
-/// # Errors
-/// Where it cannot be encoded or written.
-pub fn save(image: &Image, path: &Path) -> io::Result<()> {
-    let pixels = image
-        .clone()
-        .try_into_dynamic()
-        .map_err(io::Error::other)?
-        .to_rgb8();
-    let png = ImageFormat::Png.as_image_crate_format();
-    let png = png.ok_or_else(|| io::Error::other("this build knows no PNG"))?;
-    let mut bytes = Cursor::new(Vec::new());
-    pixels.write_to(&mut bytes, png).map_err(io::Error::other)?;
-    write_whole(path, |file| file.write_all(bytes.get_ref()))
 }

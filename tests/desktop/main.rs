@@ -2,3 +2,4 @@
 
 mod panels;
 mod view;
+mod window;

@@ -283,7 +283,7 @@ fn a_parameter_is_shown_in_the_unit_people_think_in() {
     let shown = harness
         .get_by_role_and_label(Role::SpinButton, "share red")
         .value();
-    assert_eq!(shown.as_deref(), Some("30.0 %"));
+    assert_eq!(shown.as_deref(), Some("30.00 %"));
     type_number(&mut harness, "share red", "50");
     assert_eq!(
         harness.state().first(),
@@ -405,6 +405,13 @@ fn a_scene_error_leaves_the_present_scene_as_it_is() {
     harness.run_steps(3);
     harness.get_by_label("bad.ron, line 3: no");
     assert_eq!(*harness.state().simulation.status(), Status::Paused);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    assert_eq!(
+        harness.state().asked,
+        [],
+        "keys wait until the message is closed"
+    );
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("bad.ron, line 3: no").is_none());
@@ -447,13 +454,15 @@ fn the_file_menu_opens_built_in_scenes() {
 #[test]
 fn view_settings_change_what_they_name() {
     let mut harness = Window::of(prepared());
-    harness.get_by_role_and_label(Role::Button, "View").click();
+    harness
+        .get_by_role_and_label(Role::Button, "Picture")
+        .click();
     harness.run_steps(10);
     harness
         .get_by_role_and_label(Role::ComboBox, "Colour by")
         .click();
     harness.run_steps(3);
-    harness.get_by_label("Speed").click();
+    harness.get_by_role_and_label(Role::Button, "Speed").click();
     harness.run_steps(3);
     assert_eq!(harness.state().view.colour_by, ColourBy::Speed);
     harness.get_by_label("Fixed").click();

@@ -9,14 +9,16 @@ use bevy::render::view::screenshot::ScreenshotCaptured;
 use glam::DVec3;
 use grainfall::scene::ContactLaw;
 use grainfall::view::{
-    Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, Shown, Side,
-    ViewPlugin, ViewSettings, species_colour,
+    Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, Shown,
+    Side, ViewPlugin, ViewSettings, save_png, species_colour,
 };
 use grainfall::window::environment::adapters;
-use grainfall::window::picture::{Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, save, screenshot};
+use grainfall::window::picture::{
+    Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
+};
 use grainfall::world::{
-    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties, Shape,
-    Species, SpeciesId, Surface, Wall, World,
+    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
+    Shape, Species, SpeciesId, Surface, Wall, World,
 };
 use std::io::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -27,7 +29,7 @@ const SIZE: UVec2 = UVec2::new(640, 360);
 static STUDIO: Mutex<()> = Mutex::new(());
 
 /// Leave to draw, or a word that the test `name` did not run.
-fn studio(name: &str) -> Option<MutexGuard<'static, ()>> {
+pub fn studio(name: &str) -> Option<MutexGuard<'static, ()>> {
     let guard = STUDIO.lock().unwrap_or_else(PoisonError::into_inner);
     if !adapters().is_empty() {
         return Some(guard);
@@ -58,7 +60,10 @@ impl Photograph {
     fn contrast(&self, place: Vec2) -> u8 {
         let background = self.at(Vec2::new(2.0, 2.0));
         let seen = self.at(place);
-        (0..3).map(|i| seen[i].abs_diff(background[i])).max().unwrap()
+        (0..3)
+            .map(|i| seen[i].abs_diff(background[i]))
+            .max()
+            .unwrap()
     }
 
     /// Whether a grain covers the pixel.
@@ -98,11 +103,11 @@ fn photograph(
     let taken: Arc<Mutex<Option<Image>>> = Arc::default();
     let slot = taken.clone();
     let canvas = app.world().resource::<Canvas>().clone();
-    app.world_mut()
-        .spawn(screenshot(Some(&canvas)))
-        .observe(move |captured: On<ScreenshotCaptured>| {
+    app.world_mut().spawn(screenshot(Some(&canvas))).observe(
+        move |captured: On<ScreenshotCaptured>| {
             *slot.lock().unwrap() = Some(captured.image.clone());
-        });
+        },
+    );
     let image = (0..100)
         .find_map(|_| {
             app.update();
@@ -110,7 +115,7 @@ fn photograph(
         })
         .expect("a picture within a hundred frames");
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
-    save(&image, &folder.join(format!("{name}.png"))).unwrap();
+    save_png(&image, &folder.join(format!("{name}.png"))).unwrap();
     Photograph {
         pixels: image.data.unwrap(),
         camera: app.world().resource::<OrbitCamera>().clone(),
@@ -246,12 +251,17 @@ fn colours_are_those_of_the_map() {
         let place = photograph.camera.project(position.as_vec3()).unwrap().0;
         let seen = photograph.at(place).map(f32::from);
         let nearest = (0..=20).min_by_key(|t| {
-            let colour = ColourMap::Viridis.colour(f64::from(*t) / 20.0).map(f32::from);
+            let colour = ColourMap::Viridis
+                .colour(f64::from(*t) / 20.0)
+                .map(f32::from);
             (1e6 * (1.0 - cosine(seen, colour))) as i64
         });
         // Light changes the lightness and adds some gloss, so the hue is compared: within a tenth of the map.
         let t = f64::from(nearest.unwrap()) / 20.0;
-        assert!((t - speed).abs() <= 0.1, "{speed} m/s looks like {t}: {seen:?}");
+        assert!(
+            (t - speed).abs() <= 0.1,
+            "{speed} m/s looks like {t}: {seen:?}"
+        );
     }
 }
 
@@ -323,12 +333,9 @@ fn nearer_grains_hide_farther_ones_where_they_intersect() {
             place.reverse();
         }
         for (z, species) in place {
-            world.grains.push_sphere(
-                DVec3::new(0.0, 0.0, z),
-                5e-3,
-                2500.0,
-                SpeciesId(species),
-            );
+            world
+                .grains
+                .push_sphere(DVec3::new(0.0, 0.0, z), 5e-3, 2500.0, SpeciesId(species));
         }
         for (side, front) in [(Side::Front, 0), (Side::Back, 1)] {
             let photograph = photograph("depth", world.clone(), |settings, camera| {
@@ -395,4 +402,28 @@ fn drum_fills_the_picture_and_one_sees_in() {
     assert!(heights > 0.75 * SIZE.y as f32, "{heights}");
     let place = photograph.camera.project(grain.as_vec3()).unwrap().0;
     assert!(photograph.covered(place));
+}
+
+#[test]
+fn mark_turns_with_the_drum() {
+    let Some(_studio) = studio("mark_turns_with_the_drum") else {
+        return;
+    };
+    for angle in [0.4_f32, 2.0] {
+        let mut world = drum_of_grains();
+        world.grains = Grains::default();
+        world.container.angle = f64::from(angle);
+        let photograph = photograph("mark", world, |_, camera| camera.look_from(Side::Front));
+        // Across the bold spoke on the back plate, halfway out: red exceeds blue only at the mark.
+        let warmth = |azimuth: f32| {
+            let (sin, cos) = azimuth.sin_cos();
+            let x = Vec3::new(0.03 * cos, 0.03 * sin, -0.011);
+            let [red, _, blue] = photograph.at(photograph.camera.project(x).unwrap().0);
+            i16::from(red) - i16::from(blue)
+        };
+        assert!(warmth(angle) > 20, "{}", warmth(angle));
+        for away in [0.3, 1.0, 3.0] {
+            assert!(warmth(angle + away) < 0, "{away}");
+        }
+    }
 }

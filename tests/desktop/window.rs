@@ -1,0 +1,65 @@
+//! Claims about the program as a whole: it draws itself without a display, and says why where it cannot.
+
+use crate::view::studio;
+use bevy::math::UVec2;
+use grainfall::scene::Scene;
+use grainfall::simulation::Options;
+use grainfall::window::{Job, PictureJob, WindowError, run};
+use std::path::Path;
+
+/// A grain before a floor, listed one by one, so that nothing must settle.
+fn job(path: &Path) -> Job {
+    Job {
+        name: "bouncing-grain".to_owned(),
+        scene: Scene::open("bouncing-grain").unwrap(),
+        options: Options::window(),
+        picture: Some(PictureJob {
+            path: path.to_owned(),
+            at: 0.05,
+            size: UVec2::new(960, 540),
+            offscreen: true,
+        }),
+    }
+}
+
+#[test]
+fn laboratory_draws_itself_without_a_display() {
+    let Some(_studio) = studio("laboratory_draws_itself_without_a_display") else {
+        return;
+    };
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("laboratory.png");
+    run(job(&path)).unwrap();
+    let picture = image::open(&path).unwrap().to_rgb8();
+    assert_eq!(picture.dimensions(), (960, 540));
+    // The grain is amber; nothing else in the window has so much more red than blue over so many pixels.
+    let amber = picture
+        .pixels()
+        .filter(|p| p[0] > 120 && p[0].saturating_sub(p[2]) > 80)
+        .count();
+    assert!(amber > 300, "{amber} pixels of the grain");
+    // Panels stand left and right: their text is bright.
+    for columns in [0..220, 740..960] {
+        let bright = picture
+            .enumerate_pixels()
+            .filter(|(x, _, p)| columns.contains(x) && p[1] > 180)
+            .count();
+        assert!(
+            bright > 300,
+            "{bright} bright pixels in columns {columns:?}"
+        );
+    }
+}
+
+#[test]
+fn picture_that_cannot_be_written_is_told() {
+    let Some(_studio) = studio("picture_that_cannot_be_written_is_told") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let error = run(job(&file.join("picture.png"))).unwrap_err();
+    assert!(matches!(error, WindowError::Picture(_)), "{error}");
+    assert!(error.to_string().contains("picture.png"), "{error}");
+    assert_eq!(error.exit_code(), 1);
+}
