@@ -188,11 +188,14 @@ fn changed_friction_acts_at_once_and_alike_for_old_and_new_solvers() {
 #[test]
 fn run_has_the_bits_it_always_had() {
     // A golden hash: the same on every machine, as the step knows nothing but + − × ÷ √. A commit that changes it says why.
+    let found = [DRUM, BELT].map(|text| hash(text, Solver::new(1), &[1000]).to_string());
     assert_eq!(
-        hash(DRUM, Solver::new(1), &[1000]).to_string(),
-        "1451153dce9defbe3e8221c34a2bbccf"
+        found,
+        [
+            "d48238a627bfa0db520450af497219c7",
+            "642223f6c53d9ccccfbe8e8d54eca47d"
+        ]
     );
-    assert_eq!(hash(BELT, Solver::new(1), &[6000]).to_string(), "unknown");
 }
 
 #[test]
