@@ -92,7 +92,7 @@ struct GrainAndWall<'a, N> {
     wall: &'a WallBody,
     normal: [N; 3],
     gap: N,
-    foot: [N; 3],
+    contact: [N; 3],
 }
 
 #[inline(always)]
@@ -173,6 +173,7 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
     #[inline(always)]
     fn new(processor: N::Processor, grain: [&'a Body; 4], wall: &'a WallBody) -> Self {
         let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
+        let [_, _, _, radius] = N::gather(processor, rows(grain, |body| &body.spin));
         let position = [x, y, z];
         let (gap, normal) = match wall.surface {
             Surface::Plane { point, normal } => {
@@ -201,7 +202,11 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
             wall,
             normal,
             gap,
-            foot: plus(position, times(normal, gap)),
+            // Where the force acts, half the overlap behind the surface: else a grain at rest on a turning wall would slip.
+            contact: plus(
+                position,
+                times(normal, N::splat(processor, 0.5) * (radius + gap)),
+            ),
         }
     }
 }
@@ -219,7 +224,7 @@ impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
         let motion = &self.wall.motion;
         plus(
             splat_vector(processor, motion.velocity),
-            cross(splat_vector(processor, motion.spin), self.foot),
+            cross(splat_vector(processor, motion.spin), self.contact),
         )
     }
 

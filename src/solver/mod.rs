@@ -79,6 +79,8 @@ impl Solver {
         self.state.load(world);
         self.profile.stages[Stage::Exchange as usize] += begin.elapsed();
         let taken = match world.law {
+            // Later positions are finite as long as speeds are.
+            _ if !world.grains.position.iter().all(|x| x.is_finite()) => Err(0),
             ContactLaw::HertzMindlin => self.march(HertzMindlin, world, steps),
             ContactLaw::Hooke { .. } => self.march(Hooke, world, steps),
         };

@@ -4,3 +4,4 @@ mod headless;
 mod measure;
 mod run;
 mod scene;
+mod solver;

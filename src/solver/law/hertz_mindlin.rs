@@ -4,7 +4,7 @@
 //! `β = ln e / √(ln² e + π²)`. Each is a constant of the pair times `s` or `√s`. The attraction that the dashpot makes at
 //! the end of a contact is kept: only then does the restitution come out as e.
 
-use super::{Coefficients, Law, Pairing};
+use super::{Coefficients, Law, Pairing, natural_log};
 use crate::solver::lanes::{Lanes, Row};
 use crate::world::Materials;
 use std::f64::consts::PI;
@@ -43,7 +43,7 @@ impl HertzMindlin {
 
 /// `β = ln e / √(ln² e + π²)`, negative.
 fn damping_exponent(restitution: f64) -> f64 {
-    let log = restitution.ln();
+    let log = natural_log(restitution);
     log / (log * log + PI * PI).sqrt()
 }
 

@@ -4,7 +4,7 @@
 //! `m_e = m_1 m_2/(m_1 + m_2)`; the paper's printed `0.5 (1/m_1 + 1/m_2)` is not a mass. A net attraction is cut to
 //! zero, the Coulomb bound uses the elastic part `K_n δ`, and there is no tangential dashpot, as in the paper's program.
 
-use super::{Coefficients, Law, Pairing};
+use super::{Coefficients, Law, Pairing, natural_log};
 use crate::solver::lanes::{Lanes, Row};
 use std::f64::consts::PI;
 
@@ -20,7 +20,7 @@ impl Hooke {
         tangential_stiffness: f64,
         restitution: f64,
     ) -> Row {
-        let log_squared = restitution.ln().powi(2);
+        let log_squared = natural_log(restitution).powi(2);
         let mass = pairing.effective_mass;
         let rate = 2.0 * (log_squared * (normal_stiffness / mass) / (PI * PI + log_squared)).sqrt();
         [normal_stiffness, mass * rate, tangential_stiffness, 0.0]

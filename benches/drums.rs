@@ -1,0 +1,105 @@
+//! Whole steps of the three dry drums of Kasper et al. 2021, per grain and step, on one thread and two; where the time of
+//! a step goes; the neighbour search alone; one contact law alone.
+//!
+//! `cargo bench --no-default-features --bench drums`, see `benches/README.md`. Beds are settled once and kept with the
+//! user's own.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use grainfall::scene::Scene;
+use grainfall::simulation::{BedStore, Preparation, Prepared};
+use grainfall::solver::{Solver, Stage, advise};
+use grainfall::world::{World, build};
+use std::hint::black_box;
+use std::sync::Arc;
+
+const DRUMS: [&str; 3] = ["dry-r3", "dry-r2", "dry-r1.25"];
+
+/// The settled bed of a scene, its drum already turning for a moment.
+fn settled(name: &str) -> World {
+    let scene = Scene::open(name).expect("a built-in scene");
+    let step = advise(&scene).time_step;
+    let mut preparation = Preparation::new(Arc::new(scene), step, 2, BedStore::user());
+    loop {
+        match preparation.advance().expect("a bed that settles") {
+            Prepared::Ready(run) => {
+                let mut world = run.world().clone();
+                Solver::new(2)
+                    .advance(&mut world, 2000)
+                    .expect("a stable step");
+                return world;
+            }
+            Prepared::NotYet => {}
+        }
+    }
+}
+
+/// Whole steps, in calls of 100; throughput is in grains times steps.
+fn steps(criterion: &mut Criterion) {
+    const STEPS: u64 = 100;
+    let mut group = criterion.benchmark_group("step");
+    for name in DRUMS {
+        let bed = settled(name);
+        group.throughput(Throughput::Elements(STEPS * bed.grains.len() as u64));
+        for threads in [1, 2] {
+            let mut solver = Solver::new(threads);
+            let mut world = bed.clone();
+            group.bench_function(BenchmarkId::new(name, format!("{threads} threads")), |b| {
+                b.iter(|| solver.advance(&mut world, STEPS).expect("a stable step"));
+            });
+            let profile = solver.take_profile();
+            let share = |stage| profile.time(stage).as_secs_f64() / profile.total.as_secs_f64();
+            println!(
+                "{name}, {threads} threads: {:.1} ns per grain and step; {}",
+                1e9 * profile.per_grain_step(),
+                Stage::ALL
+                    .map(|stage| format!("{} {:.0} %", stage.name(), 100.0 * share(stage)))
+                    .join(", ")
+            );
+        }
+    }
+    group.finish();
+}
+
+/// The plain twin: what the lanes gain.
+fn scalar_steps(criterion: &mut Criterion) {
+    let bed = settled("dry-r2");
+    let mut group = criterion.benchmark_group("scalar step");
+    group.throughput(Throughput::Elements(100 * bed.grains.len() as u64));
+    let mut solver = Solver::scalar(1);
+    let mut world = bed;
+    group.bench_function("dry-r2", |b| {
+        b.iter(|| solver.advance(&mut world, 100).expect("a stable step"));
+    });
+    group.finish();
+}
+
+/// A solver that knows nothing takes one step: cell grid and lists, copying in and out, and that step.
+fn neighbour_search(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("lists from nothing and one step");
+    for name in DRUMS {
+        let bed = settled(name);
+        group.throughput(Throughput::Elements(bed.grains.len() as u64));
+        group.bench_function(name, |b| {
+            b.iter_batched(
+                || (Solver::new(1), bed.clone()),
+                |(mut solver, mut world)| {
+                    solver.advance(&mut world, 1).expect("a stable step");
+                    (solver, world)
+                },
+                criterion::BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+/// Placing the grains of the finest drum.
+fn placing(criterion: &mut Criterion) {
+    let scene = Scene::open("dry-r1.25").expect("a built-in scene");
+    criterion.bench_function("build dry-r1.25", |b| {
+        b.iter(|| build(black_box(&scene), 1e-5));
+    });
+}
+
+criterion_group!(benches, steps, scalar_steps, neighbour_search, placing);
+criterion_main!(benches);

@@ -1,0 +1,67 @@
+//! Bytes per grain of a world and its solver, counted by the allocator. A binary of its own: nothing else allocates in it.
+
+use grainfall::scene::Scene;
+use grainfall::solver::{Solver, advise};
+use grainfall::world::build;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Bytes that are allocated now.
+static IN_USE: AtomicUsize = AtomicUsize::new(0);
+/// The most since it was last set.
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+/// The system's allocator, counting.
+struct Counting;
+
+#[expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let now = IN_USE.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
+        PEAK.fetch_max(now, Ordering::Relaxed);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        IN_USE.fetch_sub(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn paper_drum_takes_less_than_two_kilobytes_a_grain_and_no_more_with_time() {
+    let scene = Scene::open("dry-r1.25").unwrap();
+    let dt = advise(&scene).time_step;
+    let before = IN_USE.load(Ordering::Relaxed);
+    let mut world = build(&scene, dt);
+    let mut solver = Solver::new(2);
+    let count = world.grains.len();
+    assert_eq!(count, 6494);
+    let per_grain = |bytes: usize| (bytes - before) as f64 / count as f64;
+    // The bed falls together: contacts appear until it lies.
+    let mut slices = |number: u32| {
+        PEAK.store(0, Ordering::Relaxed);
+        for _ in 0..number {
+            solver.advance(&mut world, 500).unwrap();
+        }
+        let peak = per_grain(PEAK.load(Ordering::Relaxed));
+        println!(
+            "{} contacts: peak {peak:.0} B, in use {:.0} B per grain",
+            world.contacts.len(),
+            per_grain(IN_USE.load(Ordering::Relaxed))
+        );
+        peak
+    };
+    slices(12);
+    let early = slices(4);
+    let late = slices(8);
+    assert!(late < 2048.0, "{late} bytes per grain");
+    // Vectors may grow once more by doubling their capacity as the bed moves, but not step after step.
+    assert!(late < 1.1 * early, "{early} bytes per grain, later {late}");
+}
