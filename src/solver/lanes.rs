@@ -246,10 +246,6 @@ mod avx {
         unsafe_code,
         reason = "the pair loop is three times faster in lanes than one number at a time"
     )]
-    #![expect(
-        clippy::inline_always,
-        reason = "an intrinsic that is not inlined costs a call"
-    )]
 
     use super::{Lanes, Quad, Row, Work};
     use std::arch::x86_64::{
