@@ -39,9 +39,10 @@ pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, HeadlessError>
             .from_str(&text)
             .map_err(|error| refuse(error.to_string()));
     }
-    let parsed = match text.trim_start().starts_with('[') {
-        true => serde_json::from_str(&text),
-        false => serde_json::from_str::<Recorded>(&text).map(|file| file.commands),
+    let parsed = if text.trim_start().starts_with('[') {
+        serde_json::from_str(&text)
+    } else {
+        serde_json::from_str::<Recorded>(&text).map(|file| file.commands)
     };
     parsed.map_err(|error| refuse(error.to_string()))
 }

@@ -1,6 +1,6 @@
 //! The grains as VTK files: one `.vtp` per output time and a `.pvd` that lists them.
 //!
-//! ParaView opens `grains.pvd` as a series in time; *Glyph* with spheres scaled by `radius` (scale factor 2), or *Point
+//! `ParaView` opens `grains.pvd` as a series in time; *Glyph* with spheres scaled by `radius` (scale factor 2), or *Point
 //! Gaussian* with `radius` as its scale array, shows the grains at their size. Values are in SI units, in 64 bits.
 
 use super::folder::OutputFolder;

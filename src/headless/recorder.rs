@@ -90,10 +90,10 @@ impl<'a> Recorder<'a> {
         simulation: &Simulation,
         ending: &Ending,
     ) -> Result<Summary, HeadlessError> {
-        if let Some(world) = simulation.world() {
-            if self.times.last() != Some(&world.time()) {
-                self.write_grains(world)?;
-            }
+        if let Some(world) = simulation.world()
+            && self.times.last() != Some(&world.time())
+        {
+            self.write_grains(world)?;
         }
         self.write_lists(simulation)?;
         let end = simulation.world().map_or(0.0, |world| world.time());

@@ -44,7 +44,7 @@ pub enum Parameter {
     Friction(String, String),
     /// Restitution e between two materials.
     Restitution(String, String),
-    /// Rolling friction μ_R between two materials.
+    /// Rolling friction `μ_R` between two materials.
     RollingFriction(String, String),
     /// Angular speed of the drum [rad/s].
     DrumSpeed,

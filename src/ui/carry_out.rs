@@ -2,7 +2,7 @@
 
 use super::{Desk, OpenWith, Purpose, Request, Requests};
 use crate::scene::Scene;
-use crate::simulation::Simulation;
+use crate::simulation::{Options, Simulation};
 use crate::view::{ViewSettings, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
@@ -52,7 +52,12 @@ fn open(
 ) {
     match Scene::open(name) {
         Ok(scene) => {
-            commands.insert_resource(Simulation::open(scene, options.0.clone()));
+            // A script belongs to the scene it was given with.
+            let options = Options {
+                script: Vec::new(),
+                ..options.0.clone()
+            };
+            commands.insert_resource(Simulation::open(scene, options));
             desk.scene_opened(name);
             view.cut = None;
             view.camera_request = Some(crate::view::CameraRequest::Home);

@@ -33,7 +33,7 @@ pub struct PairProperties {
     pub restitution: f64,
     /// Coefficient of sliding friction μ.
     pub friction: f64,
-    /// Coefficient of rolling friction μ_R.
+    /// Coefficient of rolling friction `μ_R`.
     pub rolling_friction: f64,
 }
 

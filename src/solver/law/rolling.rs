@@ -3,7 +3,7 @@
 //! `q = −μ_R k_n δ r* ω/|ω|` with ω the spin relative to the partner, a turning wall too. The torque never exceeds what
 //! stops that spin within one step: ω is the spin the grain would have after the step without rolling friction, and a
 //! torque `|ω|/C` just stops it, with `C` the compliance: time step times contact count over inertia, summed over both
-//! sides. So a grain on a slope below tan⁻¹ μ_R
+//! sides. So a grain on a slope below tan⁻¹ `μ_R`
 //! stands still instead of trembling.
 
 use crate::solver::lanes::Lanes;
