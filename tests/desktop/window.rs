@@ -16,7 +16,7 @@ fn job(path: &Path) -> Job {
         picture: Some(PictureJob {
             path: path.to_owned(),
             at: 0.05,
-            size: UVec2::new(960, 540),
+            size: UVec2::new(1280, 720),
             offscreen: true,
         }),
     }
@@ -30,7 +30,7 @@ fn laboratory_draws_itself_without_a_display() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("laboratory.png");
     run(job(&path)).unwrap();
     let picture = image::open(&path).unwrap().to_rgb8();
-    assert_eq!(picture.dimensions(), (960, 540));
+    assert_eq!(picture.dimensions(), (1280, 720));
     // The grain is amber; nothing else in the window has so much more red than blue over so many pixels.
     let amber = picture
         .pixels()
@@ -38,7 +38,7 @@ fn laboratory_draws_itself_without_a_display() {
         .count();
     assert!(amber > 300, "{amber} pixels of the grain");
     // Panels stand left and right: their text is bright.
-    for columns in [0..220, 740..960] {
+    for columns in [0..280, 960..1280] {
         let bright = picture
             .enumerate_pixels()
             .filter(|(x, _, p)| columns.contains(x) && p[1] > 180)
