@@ -33,6 +33,8 @@ pub struct OrbitCamera {
     pub viewport: Vec2,
     /// Whether the picture keeps fitting the scene: until a person pans or zooms.
     pub fits: bool,
+    /// How often a view was asked for.
+    requests: u32,
 }
 
 impl Default for OrbitCamera {
@@ -45,6 +47,7 @@ impl Default for OrbitCamera {
             projection: ProjectionKind::Perspective,
             viewport: Vec2::new(1280.0, 720.0),
             fits: true,
+            requests: 0,
         }
     }
 }
@@ -96,6 +99,12 @@ impl OrbitCamera {
             CameraRequest::From(side) => self.look_from(side),
         }
         self.fits = true;
+        self.requests = self.requests.wrapping_add(1);
+    }
+
+    /// How often [`OrbitCamera::follow`] was called: after each call the scene is measured anew.
+    pub(super) fn requests(&self) -> u32 {
+        self.requests
     }
 
     /// Moves so that all `points` [m] are just seen, in the middle, in a picture of the present shape.

@@ -2,6 +2,7 @@
 
 use super::colour::Scheme;
 use super::{OrbitCamera, ProjectionKind, Shown, ViewSettings, container};
+use crate::world::Shape;
 use bevy::camera::{ClearColorConfig, ScalingMode, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::light::cluster::ClusterConfig;
@@ -29,13 +30,24 @@ pub(super) fn spawn(mut commands: Commands, settings: Res<ViewSettings>) {
     ));
 }
 
-/// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away.
+/// What the picture was last fitted to.
+#[derive(Default)]
+pub(super) struct Framed {
+    /// The scene, as far as its framing goes, and how often a person had asked then.
+    of: Option<(Shape, usize, usize, u32)>,
+    /// The points that must be seen.
+    outline: Vec<Vec3>,
+    /// The camera after fitting.
+    camera: Option<OrbitCamera>,
+}
+
+/// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away. An unbounded scene is
+/// measured once, not after every moving grain.
 pub(super) fn steer(
     mut settings: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
     shown: Res<Shown>,
-    mut fitted: Local<Option<OrbitCamera>>,
-    mut outline: Local<Vec<Vec3>>,
+    mut framed: Local<Framed>,
 ) {
     if let Some(request) = settings.bypass_change_detection().camera_request.take() {
         camera.follow(request);
@@ -43,24 +55,20 @@ pub(super) fn steer(
     if camera.projection != settings.projection {
         camera.projection = settings.projection;
     }
-    if !camera.fits {
-        *fitted = None;
-        return;
-    }
-    if shown.is_changed()
-        && let Some(world) = shown.world()
-    {
-        let now = container::outline(world);
-        let settles = matches!(world.container.shape, crate::world::Shape::Planes);
-        // An unbounded scene is fitted once, not after every moving grain.
-        if outline.is_empty() || !settles {
-            *outline = now;
-            *fitted = fitted.take().filter(|_| settles);
+    if let Some(world) = shown.world() {
+        let (shape, walls) = (world.container.shape, world.container.walls.len());
+        let of = Some((shape, walls, world.grains.len(), camera.requests()));
+        if framed.of != of {
+            *framed = Framed {
+                of,
+                outline: container::outline(world),
+                camera: None,
+            };
         }
     }
-    if fitted.as_ref() != Some(&*camera) && !outline.is_empty() {
-        camera.fit(&outline);
-        *fitted = Some(camera.clone());
+    if camera.fits && framed.camera.as_ref() != Some(&*camera) && !framed.outline.is_empty() {
+        camera.fit(&framed.outline);
+        framed.camera = Some(camera.clone());
     }
 }
 
