@@ -7,7 +7,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use grainfall::scene::Scene;
 use grainfall::simulation::{BedStore, Preparation, Prepared};
-use grainfall::solver::{Solver, Stage, advise};
+use grainfall::solver::{Processor, Solver, Stage, advise};
 use grainfall::world::{World, build};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -60,16 +60,18 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The plain twin: what the lanes gain.
-fn scalar_steps(criterion: &mut Criterion) {
+/// Every width of lanes that the processor has: what they gain over the plain twin.
+fn steps_in_lanes(criterion: &mut Criterion) {
     let bed = settled("dry-r2");
-    let mut group = criterion.benchmark_group("scalar step");
+    let mut group = criterion.benchmark_group("step in lanes");
     group.throughput(Throughput::Elements(100 * bed.grains.len() as u64));
-    let mut solver = Solver::scalar(1);
-    let mut world = bed;
-    group.bench_function("dry-r2", |b| {
-        b.iter(|| solver.advance(&mut world, 100).expect("a stable step"));
-    });
+    for processor in Processor::all() {
+        let mut solver = Solver::on(processor, 1);
+        let mut world = bed.clone();
+        group.bench_function(format!("dry-r2, {processor}"), |b| {
+            b.iter(|| solver.advance(&mut world, 100).expect("a stable step"));
+        });
+    }
     group.finish();
 }
 
@@ -101,5 +103,5 @@ fn placing(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, steps, scalar_steps, neighbour_search, placing);
+criterion_group!(benches, steps, steps_in_lanes, neighbour_search, placing);
 criterion_main!(benches);

@@ -25,7 +25,8 @@ pub struct EnergyLedger {
     pub command_work: f64,
     /// Lost in dashpots since the start [J].
     pub dashpot_loss: f64,
-    /// Lost in sliding since the start [J].
+    /// Lost by tangential springs since the start [J]: in sliding and, with Hertz–Mindlin contacts, as their stiffness
+    /// follows the overlap, which no force does work against.
     pub sliding_loss: f64,
     /// Lost in rolling since the start [J].
     pub rolling_loss: f64,

@@ -13,7 +13,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds are then stale.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 const MAGIC: &[u8; 12] = b"grainfallbed";
 /// Bytes before the contents: magic, format, key, checksum.
 const HEADER: usize = MAGIC.len() + 4 + 2 * blake3::OUT_LEN;
@@ -52,6 +52,7 @@ struct BedContact {
     grain: u32,
     partner: Partner,
     spring: Vec3,
+    stiffness: f32,
     force: Vec3,
 }
 
@@ -229,6 +230,7 @@ impl BedContact {
             grain: contact.grain,
             partner: contact.partner,
             spring: contact.spring.as_vec3(),
+            stiffness: contact.stiffness as f32,
             force: contact.force.as_vec3(),
         }
     }
@@ -238,6 +240,7 @@ impl BedContact {
             grain: self.grain,
             partner: self.partner,
             spring: self.spring.as_dvec3(),
+            stiffness: self.stiffness.into(),
             force: self.force.as_dvec3(),
         }
     }
@@ -251,6 +254,7 @@ impl BedContact {
         partner
             && (self.grain as usize) < grains
             && self.spring.is_finite()
+            && self.stiffness.is_finite()
             && self.force.is_finite()
     }
 }

@@ -159,6 +159,7 @@ pub fn start(mut world: World, motions: &[Motion]) -> World {
     for contact in &mut world.contacts {
         round(&mut contact.spring);
         round(&mut contact.force);
+        contact.stiffness = f64::from(contact.stiffness as f32);
     }
     let elastic = elastic_energy(&world);
     world.restart_clock(elastic);

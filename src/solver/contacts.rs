@@ -4,13 +4,13 @@
 //! pair, new springs. Pairs are computed in lanes and each writes rows of its own; nothing is summed here, so the order of
 //! work never shows.
 
-use super::lanes::{Lanes, Quad, Row, Work, cross, dot, minus, plus, times};
+use super::lanes::{Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, times};
 use super::law::{Coefficients, Law, PairConstants, rolling_gain};
 use crate::world::{Motion, Surface};
 use glam::DVec3;
 
 /// Listed pairs come in groups of this many, filled up with ghosts, whatever lanes the processor has.
-pub const GROUP: usize = 4;
+pub const GROUP: usize = WIDEST;
 
 /// What the pair loop reads of a grain: two cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +56,8 @@ pub struct Action {
     pub twist: Row,
     /// Torque of rolling friction on the grain [N m]; 1 while touching, else 0.
     pub rolling: Row,
-    /// Energy lost in dashpots, in sliding, in rolling and done by a wall during the step [J].
+    /// Energy lost in dashpots, by the tangential spring (in sliding and as its stiffness changes), in rolling and done by a
+    /// wall during the step [J].
     pub exchanged: Row,
 }
 
@@ -81,14 +82,14 @@ trait Partners<N: Lanes>: Copy {
 /// Pairs of grains.
 #[derive(Clone, Copy)]
 struct TwoGrains<'a> {
-    first: [&'a Body; 4],
-    second: [&'a Body; 4],
+    first: [&'a Body; WIDEST],
+    second: [&'a Body; WIDEST],
 }
 
 /// Grains at one wall.
 #[derive(Clone, Copy)]
 struct GrainAndWall<'a, N> {
-    grain: [&'a Body; 4],
+    grain: [&'a Body; WIDEST],
     wall: &'a WallBody,
     normal: [N; 3],
     gap: N,
@@ -96,29 +97,14 @@ struct GrainAndWall<'a, N> {
 }
 
 #[inline(always)]
-fn rows<'a>(bodies: [&'a Body; 4], row: impl Fn(&'a Body) -> &'a Row) -> [&'a Row; 4] {
-    [
-        row(bodies[0]),
-        row(bodies[1]),
-        row(bodies[2]),
-        row(bodies[3]),
-    ]
+fn rows<'a>(bodies: [&'a Body; WIDEST], row: impl Fn(&'a Body) -> &'a Row) -> Rows<'a> {
+    bodies.map(row)
 }
 
-/// Four grains, of which the first [`Lanes::COUNT`] are named by `pairs`.
+/// What `of` makes of the numbers of the lanes; where there are fewer than [`WIDEST`], the last one fills up.
 #[inline(always)]
-fn bodies_of<'a, N: Lanes>(
-    bodies: &'a [Body],
-    pairs: &[Pair],
-    side: impl Fn(&Pair) -> u32,
-) -> [&'a Body; 4] {
-    let last = N::COUNT - 1;
-    [
-        &bodies[side(&pairs[0]) as usize],
-        &bodies[side(&pairs[1.min(last)]) as usize],
-        &bodies[side(&pairs[2.min(last)]) as usize],
-        &bodies[side(&pairs[3.min(last)]) as usize],
-    ]
+fn side_by_side<N: Lanes, T>(of: impl Fn(usize) -> T) -> [T; WIDEST] {
+    std::array::from_fn(|k| of(k.min(N::COUNT - 1)))
 }
 
 impl<N: Lanes> Partners<N> for TwoGrains<'_> {
@@ -171,7 +157,7 @@ impl<N: Lanes> Partners<N> for TwoGrains<'_> {
 
 impl<'a, N: Lanes> GrainAndWall<'a, N> {
     #[inline(always)]
-    fn new(processor: N::Processor, grain: [&'a Body; 4], wall: &'a WallBody) -> Self {
+    fn new(processor: N::Processor, grain: [&'a Body; WIDEST], wall: &'a WallBody) -> Self {
         let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
         let [_, _, _, radius] = N::gather(processor, rows(grain, |body| &body.spin));
         let position = [x, y, z];
@@ -276,19 +262,10 @@ fn own_constants<N: Lanes>(
     constants: &[PairConstants],
     pairs: &[Pair],
 ) -> Constants<N> {
-    let of = |k: usize| &constants[pairs[k.min(N::COUNT - 1)].kind as usize];
-    let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
+    let kinds = side_by_side::<N, _>(|k| &constants[pairs[k].kind as usize]);
     (
-        N::gather(
-            processor,
-            [
-                &a.coefficients,
-                &b.coefficients,
-                &c.coefficients,
-                &d.coefficients,
-            ],
-        ),
-        N::gather(processor, [&a.contact, &b.contact, &c.contact, &d.contact]),
+        N::gather(processor, kinds.map(|kind| &kind.coefficients)),
+        N::gather(processor, kinds.map(|kind| &kind.contact)),
     )
 }
 
@@ -341,15 +318,12 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         minus(velocity, times(normal, approach)),
         cross(rolling_sum, normal),
     );
-    let last = N::COUNT - 1;
-    let old = [
-        &springs[0],
-        &springs[1.min(last)],
-        &springs[2.min(last)],
-        &springs[3.min(last)],
-    ];
-    let [x, y, z, _] = N::gather(processor, old);
-    let stretched = plus([x, y, z], times(slip, dt));
+    let old = side_by_side::<N, _>(|k| &springs[k]);
+    let [x, y, z, old_stiffness] = N::gather(processor, old);
+    let old_spring = [x, y, z];
+    let slipped = times(slip, dt);
+    let stretched = plus(old_spring, slipped);
+    let old_work = old_stiffness * dot(old_spring, stretched);
     let stretched = minus(stretched, times(normal, dot(stretched, normal)));
     let stretch_squared = dot(stretched, stretched);
     let trial = tangential_stiffness * stretch_squared.sqrt();
@@ -358,7 +332,8 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
     let damping = N::choose(touching, N::choose(slides, zero, tangential_damping), zero);
     let spring = times(stretched, kept);
-    let new = N::rows([spring[0], spring[1], spring[2], zero]);
+    let stiffness = N::choose(touching, tangential_stiffness, zero);
+    let new = N::rows([spring[0], spring[1], spring[2], stiffness]);
     for (spring, new) in springs.iter_mut().zip(new) {
         *spring = new.row();
     }
@@ -366,7 +341,9 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let force = minus(tangential, times(normal, repulsion));
     let twist = cross(normal, tangential);
     let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
-    let in_sliding = tangential_stiffness * stretch_squared * kept * (one - kept);
+    // What the mean of the old and the new spring's pull does along the slip, less the change of what they store.
+    let new_work = stiffness * dot(spring, minus(slipped, spring));
+    let in_sliding = half * (old_work + new_work);
 
     // Rolling.
     let (rolling_spin, compliance) = partners.rolling(processor);
@@ -402,7 +379,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
 pub struct PairRows<'a> {
     /// The pairs.
     pub pairs: &'a [Pair],
-    /// Their tangential springs.
+    /// Their tangential springs [m], and the stiffness of each when it was last stretched [N/m].
     pub springs: &'a mut [Row],
     /// What they do.
     pub actions: &'a mut [Action],
@@ -451,8 +428,8 @@ fn between_grains<N: Lanes, L: Law>(
         .zip(rows.actions.chunks_exact_mut(N::COUNT));
     for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
         let partners = TwoGrains {
-            first: bodies_of::<N>(all.bodies, pairs, |pair| pair.grain),
-            second: bodies_of::<N>(all.bodies, pairs, |pair| pair.partner),
+            first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]),
+            second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner as usize]),
         };
         if uniform {
             interact(
@@ -477,7 +454,7 @@ fn at_walls<N: Lanes, L: Law>(
         .chunks_exact_mut(N::COUNT)
         .zip(rows.actions.chunks_exact_mut(N::COUNT));
     for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
-        let grain = bodies_of::<N>(all.bodies, pairs, |pair| pair.grain);
+        let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]);
         let partners =
             GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
         let own = own_constants::<N>(processor, all.constants, pairs);

@@ -1,13 +1,20 @@
 //! The solver's small vector vocabulary: numbers that stand side by side.
 //!
-//! [`Lanes`] is what the pair loop computes with: one number (the scalar twin, for any processor) or four (AVX). Every
-//! operation is an exact IEEE one, taken element by element and never fused, so that a result has the same bits in any
-//! width. [`Processor::detect`] chooses at run time.
+//! [`Lanes`] is what the pair loop computes with: one number (the scalar twin, for any processor), four (AVX2) or eight
+//! (AVX-512). Every operation is an exact IEEE one, taken element by element and never fused, so that a result has the
+//! same bits in any width. [`Processor::detect`] chooses at run time.
 
+use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Four numbers side by side in memory: usually a vector and a companion scalar.
 pub type Row = [f64; 4];
+
+/// The most numbers that stand side by side.
+pub const WIDEST: usize = 8;
+
+/// One row for each of the numbers side by side; the first [`Lanes::COUNT`] of them count.
+pub type Rows<'a> = [&'a Row; WIDEST];
 
 /// Numbers that are computed side by side.
 pub trait Lanes:
@@ -29,20 +36,16 @@ pub trait Lanes:
 
     /// `x` in every lane.
     fn splat(processor: Self::Processor, x: f64) -> Self;
-    /// Column by column, from the first [`Lanes::COUNT`] of the rows.
-    fn gather(processor: Self::Processor, rows: [&Row; 4]) -> [Self; 4];
+    /// Column by column.
+    fn gather(processor: Self::Processor, rows: Rows) -> [Self; 4];
     /// Column by column, from `a − b`.
-    fn gather_difference(processor: Self::Processor, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4];
+    fn gather_difference(processor: Self::Processor, a: Rows, b: Rows) -> [Self; 4];
     /// Column by column: the vectors of `a − b`, the companions of `a + b`.
-    fn gather_difference_and_sum(
-        processor: Self::Processor,
-        a: [&Row; 4],
-        b: [&Row; 4],
-    ) -> [Self; 4];
+    fn gather_difference_and_sum(processor: Self::Processor, a: Rows, b: Rows) -> [Self; 4];
     /// The four numbers of one row, each in every lane.
     fn spread(processor: Self::Processor, row: &Row) -> [Self; 4];
     /// Rows again; the first [`Lanes::COUNT`] of them count.
-    fn rows(columns: [Self; 4]) -> [Self::Quad; 4];
+    fn rows(columns: [Self; 4]) -> [Self::Quad; WIDEST];
     /// Square root.
     fn sqrt(self) -> Self;
     /// Where `self > other`.
@@ -149,12 +152,12 @@ impl Lanes for One {
     }
 
     #[inline(always)]
-    fn gather((): (), rows: [&Row; 4]) -> [Self; 4] {
+    fn gather((): (), rows: Rows) -> [Self; 4] {
         Self::spread((), rows[0])
     }
 
     #[inline(always)]
-    fn gather_difference((): (), a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+    fn gather_difference((): (), a: Rows, b: Rows) -> [Self; 4] {
         let (a, b) = (a[0], b[0]);
         [
             Self(a[0] - b[0]),
@@ -165,7 +168,7 @@ impl Lanes for One {
     }
 
     #[inline(always)]
-    fn gather_difference_and_sum((): (), a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
+    fn gather_difference_and_sum((): (), a: Rows, b: Rows) -> [Self; 4] {
         let (a, b) = (a[0], b[0]);
         [
             Self(a[0] - b[0]),
@@ -181,9 +184,9 @@ impl Lanes for One {
     }
 
     #[inline(always)]
-    fn rows(columns: [Self; 4]) -> [Elementwise; 4] {
+    fn rows(columns: [Self; 4]) -> [Elementwise; WIDEST] {
         let [a, b, c, d] = columns;
-        [Elementwise([a.0, b.0, c.0, d.0]); 4]
+        [Elementwise([a.0, b.0, c.0, d.0]); WIDEST]
     }
 
     #[inline(always)]
@@ -239,7 +242,7 @@ impl Quad for Elementwise {
     }
 }
 
-/// Four lanes of AVX.
+/// Four lanes of AVX2 and eight of AVX-512.
 #[cfg(target_arch = "x86_64")]
 mod avx {
     #![expect(
@@ -247,20 +250,32 @@ mod avx {
         reason = "the pair loop is three times faster in lanes than one number at a time"
     )]
 
-    use super::{Lanes, Quad, Row, Work};
+    use super::{Lanes, Quad, Row, Rows, WIDEST, Work};
     use std::arch::x86_64::{
-        __m256d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd,
-        _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set_pd, _mm256_set1_pd,
-        _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
-        _mm256_xor_pd,
+        __m256d, __m512d, __mmask8, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd,
+        _mm256_div_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set_pd,
+        _mm256_set1_pd, _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd,
+        _mm256_unpacklo_pd, _mm256_xor_pd, _mm512_add_pd, _mm512_castpd256_pd512,
+        _mm512_castpd512_pd256, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_extractf64x4_pd,
+        _mm512_insertf64x4, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_sqrt_pd,
+        _mm512_sub_pd, _mm512_xor_pd,
     };
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
-    /// Proof that the processor has AVX2: only [`Avx::detect`] makes one. Every intrinsic below rests on it.
+    /// Proof that the processor has AVX2: only [`Avx2::detect`] makes one. Every intrinsic below rests on one of the two.
     #[derive(Clone, Copy, Debug)]
-    pub struct Avx(());
+    pub struct Avx2(());
 
-    impl Avx {
+    /// Proof that the processor has AVX-512 (F, DQ, VL) as well: only [`Avx512::detect`] makes one.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Avx512(());
+
+    /// Either proof: the processor has AVX2.
+    pub trait Proof: Copy {}
+    impl Proof for Avx2 {}
+    impl Proof for Avx512 {}
+
+    impl Avx2 {
         /// The proof, if there is one.
         pub fn detect() -> Option<Self> {
             std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
@@ -270,8 +285,30 @@ mod avx {
         #[inline(always)]
         pub fn run<W: Work>(self, work: W) -> W::Output {
             #[target_feature(enable = "avx2")]
-            fn entered<W: Work>(avx: Avx, work: W) -> W::Output {
-                work.run::<Four>(avx)
+            fn entered<W: Work>(proof: Avx2, work: W) -> W::Output {
+                work.run::<Four<Avx2>>(proof)
+            }
+            // SAFETY: `self` proves that the processor has what `entered` is compiled for.
+            unsafe { entered(self, work) }
+        }
+    }
+
+    impl Avx512 {
+        /// The proof, if there is one.
+        pub fn detect() -> Option<Self> {
+            let found = std::arch::is_x86_feature_detected!("avx2")
+                && std::arch::is_x86_feature_detected!("avx512f")
+                && std::arch::is_x86_feature_detected!("avx512dq")
+                && std::arch::is_x86_feature_detected!("avx512vl");
+            found.then_some(Self(()))
+        }
+
+        /// Does `work` in code compiled for AVX-512.
+        #[inline(always)]
+        pub fn run<W: Work>(self, work: W) -> W::Output {
+            #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+            fn entered<W: Work>(proof: Avx512, work: W) -> W::Output {
+                work.run::<Eight>(proof)
             }
             // SAFETY: `self` proves that the processor has what `entered` is compiled for.
             unsafe { entered(self, work) }
@@ -280,23 +317,41 @@ mod avx {
 
     /// Four numbers in a register, with the proof that there is one.
     #[derive(Clone, Copy, Debug)]
-    pub struct Four(Avx, __m256d);
+    pub struct Four<P>(P, __m256d);
+
+    /// Eight numbers in a register, with the proof that there is one.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Eight(Avx512, __m512d);
 
     macro_rules! vector {
-        ($($operator:ident $function:ident $instruction:ident),*) => {$(
-            impl $operator for Four {
+        ($($operator:ident $function:ident $four:ident $eight:ident),*) => {$(
+            impl<P: Proof> $operator for Four<P> {
                 type Output = Self;
                 #[inline(always)]
                 fn $function(self, other: Self) -> Self {
                     // SAFETY: AVX is there, as `self.0` proves.
-                    Self(self.0, unsafe { $instruction(self.1, other.1) })
+                    Self(self.0, unsafe { $four(self.1, other.1) })
+                }
+            }
+
+            impl $operator for Eight {
+                type Output = Self;
+                #[inline(always)]
+                fn $function(self, other: Self) -> Self {
+                    // SAFETY: AVX-512 is there, as `self.0` proves.
+                    Self(self.0, unsafe { $eight(self.1, other.1) })
                 }
             }
         )*};
     }
-    vector!(Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
+    vector!(
+        Add add _mm256_add_pd _mm512_add_pd,
+        Sub sub _mm256_sub_pd _mm512_sub_pd,
+        Mul mul _mm256_mul_pd _mm512_mul_pd,
+        Div div _mm256_div_pd _mm512_div_pd
+    );
 
-    impl Neg for Four {
+    impl<P: Proof> Neg for Four<P> {
         type Output = Self;
         #[inline(always)]
         fn neg(self) -> Self {
@@ -307,41 +362,96 @@ mod avx {
         }
     }
 
-    #[inline(always)]
-    fn register(_: Avx, row: &Row) -> __m256d {
-        // SAFETY: AVX is there, as the argument proves; a row is four numbers, of any alignment.
-        unsafe { _mm256_loadu_pd(row.as_ptr()) }
-    }
-
-    /// Turns four rows into four columns, or back.
-    #[inline(always)]
-    fn transpose(avx: Avx, rows: [__m256d; 4]) -> [Four; 4] {
-        let [a, b, c, d] = rows;
-        // SAFETY: AVX is there, as `avx` proves.
-        unsafe {
-            let (low_ab, high_ab) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
-            let (low_cd, high_cd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
-            [
-                Four(avx, _mm256_permute2f128_pd::<0x20>(low_ab, low_cd)),
-                Four(avx, _mm256_permute2f128_pd::<0x20>(high_ab, high_cd)),
-                Four(avx, _mm256_permute2f128_pd::<0x31>(low_ab, low_cd)),
-                Four(avx, _mm256_permute2f128_pd::<0x31>(high_ab, high_cd)),
-            ]
+    impl Neg for Eight {
+        type Output = Self;
+        #[inline(always)]
+        fn neg(self) -> Self {
+            // SAFETY: AVX-512 is there, as `self.0` proves.
+            Self(self.0, unsafe {
+                _mm512_xor_pd(self.1, _mm512_set1_pd(-0.0))
+            })
         }
     }
 
-    impl Quad for Four {
-        type Processor = Avx;
-
+    impl<P: Proof> Four<P> {
+        /// Turns four rows into four columns, or back.
         #[inline(always)]
-        fn load(avx: Avx, row: &Row) -> Self {
-            Self(avx, register(avx, row))
+        fn transpose(rows: [Self; 4]) -> [Self; 4] {
+            let proof = rows[0].0;
+            let [a, b, c, d] = [rows[0].1, rows[1].1, rows[2].1, rows[3].1];
+            // SAFETY: AVX is there, as `proof` is.
+            unsafe {
+                let (low_ab, high_ab) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+                let (low_cd, high_cd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+                [
+                    Self(proof, _mm256_permute2f128_pd::<0x20>(low_ab, low_cd)),
+                    Self(proof, _mm256_permute2f128_pd::<0x20>(high_ab, high_cd)),
+                    Self(proof, _mm256_permute2f128_pd::<0x31>(low_ab, low_cd)),
+                    Self(proof, _mm256_permute2f128_pd::<0x31>(high_ab, high_cd)),
+                ]
+            }
+        }
+
+        /// Columns of the four rows from the `k`-th on.
+        #[inline(always)]
+        fn gather_four(proof: P, rows: Rows, k: usize) -> [Self; 4] {
+            Self::transpose([
+                Self::load(proof, rows[k]),
+                Self::load(proof, rows[k + 1]),
+                Self::load(proof, rows[k + 2]),
+                Self::load(proof, rows[k + 3]),
+            ])
         }
 
         #[inline(always)]
-        fn repeat(avx: Avx, x: f64) -> Self {
-            // SAFETY: AVX is there, as `avx` proves.
-            Self(avx, unsafe { _mm256_set1_pd(x) })
+        fn gather_four_differences(proof: P, a: Rows, b: Rows, k: usize) -> [Self; 4] {
+            Self::transpose([
+                Self::difference(proof, a[k], b[k]),
+                Self::difference(proof, a[k + 1], b[k + 1]),
+                Self::difference(proof, a[k + 2], b[k + 2]),
+                Self::difference(proof, a[k + 3], b[k + 3]),
+            ])
+        }
+
+        #[inline(always)]
+        fn gather_four_differences_and_sums(proof: P, a: Rows, b: Rows, k: usize) -> [Self; 4] {
+            Self::transpose([
+                Self::difference_and_sum(proof, a[k], b[k]),
+                Self::difference_and_sum(proof, a[k + 1], b[k + 1]),
+                Self::difference_and_sum(proof, a[k + 2], b[k + 2]),
+                Self::difference_and_sum(proof, a[k + 3], b[k + 3]),
+            ])
+        }
+
+        #[inline(always)]
+        fn difference(proof: P, a: &Row, b: &Row) -> Self {
+            Self::load(proof, a) - Self::load(proof, b)
+        }
+
+        /// The vector of `a − b`, the companion of `a + b`.
+        #[inline(always)]
+        fn difference_and_sum(proof: P, a: &Row, b: &Row) -> Self {
+            // SAFETY: AVX is there, as `proof` is.
+            let flipped = unsafe {
+                _mm256_xor_pd(Self::load(proof, b).1, _mm256_set_pd(-0.0, 0.0, 0.0, 0.0))
+            };
+            Self::load(proof, a) - Self(proof, flipped)
+        }
+    }
+
+    impl<P: Proof> Quad for Four<P> {
+        type Processor = P;
+
+        #[inline(always)]
+        fn load(proof: P, row: &Row) -> Self {
+            // SAFETY: AVX is there, as `proof` is; a row is four numbers, of any alignment.
+            Self(proof, unsafe { _mm256_loadu_pd(row.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn repeat(proof: P, x: f64) -> Self {
+            // SAFETY: AVX is there, as `proof` is.
+            Self(proof, unsafe { _mm256_set1_pd(x) })
         }
 
         #[inline(always)]
@@ -353,72 +463,46 @@ mod avx {
         }
     }
 
-    impl Lanes for Four {
+    impl Lanes for Four<Avx2> {
         const COUNT: usize = 4;
-        type Processor = Avx;
+        type Processor = Avx2;
         type Mask = __m256d;
         type Quad = Self;
 
         #[inline(always)]
-        fn splat(avx: Avx, x: f64) -> Self {
-            Self::repeat(avx, x)
+        fn splat(proof: Avx2, x: f64) -> Self {
+            Self::repeat(proof, x)
         }
 
         #[inline(always)]
-        fn gather(avx: Avx, rows: [&Row; 4]) -> [Self; 4] {
-            let [a, b, c, d] = rows;
-            transpose(
-                avx,
-                [
-                    register(avx, a),
-                    register(avx, b),
-                    register(avx, c),
-                    register(avx, d),
-                ],
-            )
+        fn gather(proof: Avx2, rows: Rows) -> [Self; 4] {
+            Self::gather_four(proof, rows, 0)
         }
 
         #[inline(always)]
-        fn gather_difference(avx: Avx, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
-            let (a0, a1) = (Self::load(avx, a[0]), Self::load(avx, a[1]));
-            let (a2, a3) = (Self::load(avx, a[2]), Self::load(avx, a[3]));
-            let (b0, b1) = (Self::load(avx, b[0]), Self::load(avx, b[1]));
-            let (b2, b3) = (Self::load(avx, b[2]), Self::load(avx, b[3]));
-            transpose(avx, [(a0 - b0).1, (a1 - b1).1, (a2 - b2).1, (a3 - b3).1])
+        fn gather_difference(proof: Avx2, a: Rows, b: Rows) -> [Self; 4] {
+            Self::gather_four_differences(proof, a, b, 0)
         }
 
         #[inline(always)]
-        fn gather_difference_and_sum(avx: Avx, a: [&Row; 4], b: [&Row; 4]) -> [Self; 4] {
-            // SAFETY: AVX is there, as `avx` proves.
-            let flip = unsafe { _mm256_set_pd(-0.0, 0.0, 0.0, 0.0) };
-            let (a0, a1) = (Self::load(avx, a[0]), Self::load(avx, a[1]));
-            let (a2, a3) = (Self::load(avx, a[2]), Self::load(avx, a[3]));
-            // SAFETY: likewise.
-            let (b0, b1, b2, b3) = unsafe {
-                (
-                    Self(avx, _mm256_xor_pd(register(avx, b[0]), flip)),
-                    Self(avx, _mm256_xor_pd(register(avx, b[1]), flip)),
-                    Self(avx, _mm256_xor_pd(register(avx, b[2]), flip)),
-                    Self(avx, _mm256_xor_pd(register(avx, b[3]), flip)),
-                )
-            };
-            transpose(avx, [(a0 - b0).1, (a1 - b1).1, (a2 - b2).1, (a3 - b3).1])
+        fn gather_difference_and_sum(proof: Avx2, a: Rows, b: Rows) -> [Self; 4] {
+            Self::gather_four_differences_and_sums(proof, a, b, 0)
         }
 
         #[inline(always)]
-        fn spread(avx: Avx, row: &Row) -> [Self; 4] {
+        fn spread(proof: Avx2, row: &Row) -> [Self; 4] {
             [
-                Self::splat(avx, row[0]),
-                Self::splat(avx, row[1]),
-                Self::splat(avx, row[2]),
-                Self::splat(avx, row[3]),
+                Self::splat(proof, row[0]),
+                Self::splat(proof, row[1]),
+                Self::splat(proof, row[2]),
+                Self::splat(proof, row[3]),
             ]
         }
 
         #[inline(always)]
-        fn rows(columns: [Self; 4]) -> [Self; 4] {
-            let [a, b, c, d] = columns;
-            transpose(a.0, [a.1, b.1, c.1, d.1])
+        fn rows(columns: [Self; 4]) -> [Self; WIDEST] {
+            let [a, b, c, d] = Self::transpose(columns);
+            [a, b, c, d, a, b, c, d]
         }
 
         #[inline(always)]
@@ -439,6 +523,119 @@ mod avx {
             Self(a.0, unsafe { _mm256_blendv_pd(b.1, a.1, mask) })
         }
     }
+
+    /// Rows of the first and of the last four numbers.
+    type Half = Four<Avx512>;
+
+    impl Eight {
+        /// Columns of eight from columns of the first four and of the last four.
+        #[inline(always)]
+        fn join(first: [Half; 4], last: [Half; 4]) -> [Self; 4] {
+            [
+                Self::of_halves(first[0], last[0]),
+                Self::of_halves(first[1], last[1]),
+                Self::of_halves(first[2], last[2]),
+                Self::of_halves(first[3], last[3]),
+            ]
+        }
+
+        #[inline(always)]
+        fn of_halves(first: Half, last: Half) -> Self {
+            // SAFETY: AVX-512 is there, as `first.0` proves.
+            Self(first.0, unsafe {
+                _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(first.1), last.1)
+            })
+        }
+
+        #[inline(always)]
+        fn halves(self) -> [Half; 2] {
+            // SAFETY: AVX-512 is there, as `self.0` proves.
+            unsafe {
+                [
+                    Four(self.0, _mm512_castpd512_pd256(self.1)),
+                    Four(self.0, _mm512_extractf64x4_pd::<1>(self.1)),
+                ]
+            }
+        }
+    }
+
+    impl Lanes for Eight {
+        const COUNT: usize = 8;
+        type Processor = Avx512;
+        type Mask = __mmask8;
+        type Quad = Half;
+
+        #[inline(always)]
+        fn splat(proof: Avx512, x: f64) -> Self {
+            // SAFETY: AVX-512 is there, as `proof` is.
+            Self(proof, unsafe { _mm512_set1_pd(x) })
+        }
+
+        #[inline(always)]
+        fn gather(proof: Avx512, rows: Rows) -> [Self; 4] {
+            Self::join(
+                Half::gather_four(proof, rows, 0),
+                Half::gather_four(proof, rows, 4),
+            )
+        }
+
+        #[inline(always)]
+        fn gather_difference(proof: Avx512, a: Rows, b: Rows) -> [Self; 4] {
+            Self::join(
+                Half::gather_four_differences(proof, a, b, 0),
+                Half::gather_four_differences(proof, a, b, 4),
+            )
+        }
+
+        #[inline(always)]
+        fn gather_difference_and_sum(proof: Avx512, a: Rows, b: Rows) -> [Self; 4] {
+            Self::join(
+                Half::gather_four_differences_and_sums(proof, a, b, 0),
+                Half::gather_four_differences_and_sums(proof, a, b, 4),
+            )
+        }
+
+        #[inline(always)]
+        fn spread(proof: Avx512, row: &Row) -> [Self; 4] {
+            [
+                Self::splat(proof, row[0]),
+                Self::splat(proof, row[1]),
+                Self::splat(proof, row[2]),
+                Self::splat(proof, row[3]),
+            ]
+        }
+
+        #[inline(always)]
+        fn rows(columns: [Self; 4]) -> [Half; WIDEST] {
+            let [a, b, c, d] = [
+                columns[0].halves(),
+                columns[1].halves(),
+                columns[2].halves(),
+                columns[3].halves(),
+            ];
+            let [r0, r1, r2, r3] = Half::transpose([a[0], b[0], c[0], d[0]]);
+            let [r4, r5, r6, r7] = Half::transpose([a[1], b[1], c[1], d[1]]);
+            [r0, r1, r2, r3, r4, r5, r6, r7]
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            // SAFETY: AVX-512 is there, as `self.0` proves.
+            Self(self.0, unsafe { _mm512_sqrt_pd(self.1) })
+        }
+
+        #[inline(always)]
+        fn exceeds(self, other: Self) -> __mmask8 {
+            // SAFETY: AVX-512 is there, as `self.0` proves.
+            unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.1, other.1) }
+        }
+
+        #[inline(always)]
+        fn choose(mask: __mmask8, a: Self, b: Self) -> Self {
+            // SAFETY: AVX-512 is there, as `a.0` proves.
+            Self(a.0, unsafe { _mm512_mask_blend_pd(mask, b.1, a.1) })
+        }
+    }
 }
 
 /// Something to compute in lanes.
@@ -452,22 +649,33 @@ pub trait Work {
 
 /// What the processor at hand can do.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum Processor {
     /// One number at a time.
     Scalar,
     /// Four at a time.
     #[cfg(target_arch = "x86_64")]
-    Avx(avx::Avx),
+    Avx2(avx::Avx2),
+    /// Eight at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(avx::Avx512),
 }
 
 impl Processor {
     /// The widest that this processor has.
     pub fn detect() -> Self {
+        Self::all().pop().unwrap_or(Self::Scalar)
+    }
+
+    /// All that this processor can do, narrowest first.
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::Scalar];
         #[cfg(target_arch = "x86_64")]
-        if let Some(avx) = avx::Avx::detect() {
-            return Self::Avx(avx);
+        {
+            all.extend(avx::Avx2::detect().map(Self::Avx2));
+            all.extend(avx::Avx512::detect().map(Self::Avx512));
         }
-        Self::Scalar
+        all
     }
 
     /// Does `work` with these lanes.
@@ -475,7 +683,21 @@ impl Processor {
         match self {
             Self::Scalar => work.run::<One>(()),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx(avx) => avx.run(work),
+            Self::Avx2(proof) => proof.run(work),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(proof) => proof.run(work),
         }
+    }
+}
+
+impl fmt::Display for Processor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Scalar => "one at a time",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => "four at a time (AVX2)",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "eight at a time (AVX-512)",
+        })
     }
 }

@@ -23,12 +23,12 @@ mod team;
 mod time_step;
 
 pub use fault::{Fault, FaultKind};
+pub use lanes::Processor;
 pub use profile::{Profile, Stage};
 pub use time_step::{Limit, TimeStepAdvice, advise};
 
 use crate::scene::ContactLaw;
 use crate::world::World;
-use lanes::Processor;
 use law::{HertzMindlin, Hooke, Law};
 use state::State;
 use std::sync::Mutex;
@@ -58,10 +58,11 @@ impl Solver {
         }
     }
 
-    /// A solver that computes one number at a time: the plain twin of [`Solver::new`], with the same results to the bit.
-    pub fn scalar(threads: usize) -> Self {
+    /// A solver that uses only what `processor` says, with the same results to the bit; [`Processor::Scalar`] makes it the
+    /// plain twin of [`Solver::new`].
+    pub fn on(processor: Processor, threads: usize) -> Self {
         Self {
-            processor: Processor::Scalar,
+            processor,
             ..Self::new(threads)
         }
     }

@@ -181,6 +181,7 @@ impl Neighbours {
             grain: pair.grain,
             partner,
             spring: vector(spring),
+            stiffness: spring[3],
             force: vector(action.force),
         })
     }

@@ -172,7 +172,7 @@ impl State {
                 partner,
                 kind: 0,
             });
-            springs.push(row(contact.spring, 0.0));
+            springs.push(row(contact.spring, contact.stiffness));
         }
         self.neighbours
             .grains

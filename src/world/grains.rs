@@ -43,7 +43,7 @@ pub struct Grains {
     /// Touching partners, walls too, at the last evaluation.
     pub contact_count: Vec<u32>,
     /// Energy exchanged at the contacts of which the grain is the first partner, since the start [J]: lost in dashpots,
-    /// lost in sliding, lost in rolling, done by walls.
+    /// lost in sliding (with what tangential springs lose as their stiffness changes), lost in rolling, done by walls.
     pub exchanged: Vec<[f64; 4]>,
 }
 

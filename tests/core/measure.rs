@@ -106,6 +106,7 @@ fn touch(world: &mut World, grain: u32, partner: Partner, spring: DVec3) {
         grain,
         partner,
         spring,
+        stiffness: 0.0,
         force: DVec3::ZERO,
     });
 }

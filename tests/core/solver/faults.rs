@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::DVec3;
-use grainfall::solver::{Fault, FaultKind};
+use grainfall::solver::{Fault, FaultKind, Processor};
 
 const STEP: f64 = 1e-5;
 
@@ -35,7 +35,7 @@ fn fault_of(world: &World) -> Fault {
         fault
     };
     let first = fault(Solver::new(1));
-    for solver in [Solver::new(2), Solver::scalar(1)] {
+    for solver in [Solver::new(2), Solver::on(Processor::Scalar, 1)] {
         assert_eq!(fault(solver).to_string(), first.to_string());
     }
     println!("{first}");
