@@ -7,7 +7,6 @@ use grainfall::files::write_whole;
 use grainfall::headless::{self, HeadlessError, Job, read_commands};
 use grainfall::scene::{Scene, built_in};
 use grainfall::simulation::{BedStore, Command, Options, Parameter, ScriptedCommand, make_bed};
-use grainfall::solver::advise;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -276,7 +275,7 @@ fn interruption() -> Result<Arc<AtomicBool>, HeadlessError> {
 fn write_bed(name: &str, path: &Path) -> Result<u8, HeadlessError> {
     let scene = Scene::open(name)?;
     let threads = Options::headless().threads;
-    let bed = make_bed(&scene, advise(&scene).time_step, threads)
+    let bed = make_bed(&scene, threads)
         .map_err(|fault| HeadlessError::Input(format!("the bed cannot settle: {fault}")))?;
     write_whole(path, |file| file.write_all(&bed)).map_err(|source| HeadlessError::Write {
         path: path.to_owned(),

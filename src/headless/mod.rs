@@ -6,6 +6,7 @@
 
 mod commands_file;
 mod error;
+mod flow_file;
 mod folder;
 mod grains_file;
 mod progress;

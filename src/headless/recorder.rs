@@ -3,6 +3,7 @@
 //! In: a [`Simulation`] that holds at each output time. Out: the files of the folder, each whole; whatever happens after a
 //! file was written, it stays.
 
+use super::flow_file::{FLOW, write_flow};
 use super::folder::{OutputFolder, SUMMARY};
 use super::grains_file::{COLLECTION, write_collection, write_grains};
 use super::series_file::{SERIES, write_series};
@@ -97,7 +98,12 @@ impl<'a> Recorder<'a> {
         }
         self.write_lists(simulation)?;
         let end = simulation.world().map_or(0.0, |world| world.time());
-        let results = summarise(simulation.series(), LEFT_OUT * end, SMALLEST_DROP);
+        let from = LEFT_OUT * end;
+        let mut results = summarise(simulation.series(), from, SMALLEST_DROP);
+        if let Some(world) = simulation.world() {
+            results.add_case(world);
+        }
+        self.write_flow(simulation, from)?;
         self.write_summary(simulation, ending.name(), Some((ending, &results)))?;
         Ok(results)
     }
@@ -117,6 +123,14 @@ impl<'a> Recorder<'a> {
         self.folder.write(&name, |file| write_grains(world, file))?;
         self.times.push(world.time());
         Ok(())
+    }
+
+    fn write_flow(&self, simulation: &Simulation, from: f64) -> Result<(), HeadlessError> {
+        let profile = simulation.flow().since(from);
+        if profile.depth.is_empty() {
+            return Ok(());
+        }
+        self.folder.write(FLOW, |file| write_flow(&profile, file))
     }
 
     fn write_lists(&self, simulation: &Simulation) -> Result<(), HeadlessError> {

@@ -8,7 +8,7 @@ pub fn coordination_number(world: &World) -> f64 {
     let between_grains = world
         .contacts
         .iter()
-        .filter(|contact| matches!(contact.partner, Partner::Grain(_)))
+        .filter(|contact| contact.touching && matches!(contact.partner, Partner::Grain(_)))
         .count();
     2.0 * between_grains as f64 / world.grains.len() as f64
 }

@@ -8,7 +8,8 @@ use crate::solver::law::Pairing;
 use crate::world::{Contact, World};
 use serde::Serialize;
 
-/// All terms of `kinetic + elastic − initial = gravity + walls + commands − dashpots − sliding − rolling + residual`.
+/// All terms of `kinetic + elastic − initial = gravity + walls + commands − dashpots − sliding − rolling −
+/// viscous − capillary + residual`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EnergyLedger {
     /// Kinetic and elastic energy at the start [J].
@@ -30,12 +31,18 @@ pub struct EnergyLedger {
     pub sliding_loss: f64,
     /// Lost in rolling since the start [J].
     pub rolling_loss: f64,
+    /// Lost to the viscosity of the liquid since the start [J].
+    pub viscous_loss: f64,
+    /// Taken by capillary forces since the start [J]: what bridges that broke have cost, and what those that hold would give
+    /// back if their grains came together.
+    pub capillary_loss: f64,
 }
 
 impl EnergyLedger {
     /// The balance of `world` now.
     pub fn of(world: &World) -> Self {
-        let [dashpot_loss, sliding_loss, rolling_loss, wall_work] = exchanged(world);
+        let [dashpot_loss, sliding_loss, rolling_loss, wall_work] = sums(&world.grains.exchanged);
+        let [viscous_loss, capillary_loss] = sums(&world.grains.liquid_loss);
         let ledger = &world.ledger;
         Self {
             initial: ledger.initial_energy,
@@ -48,6 +55,8 @@ impl EnergyLedger {
             dashpot_loss,
             sliding_loss,
             rolling_loss,
+            viscous_loss,
+            capillary_loss,
         }
     }
 
@@ -55,7 +64,8 @@ impl EnergyLedger {
     pub fn residual(&self) -> f64 {
         let stored = self.kinetic + self.elastic - self.initial;
         let supplied = self.gravity_work + self.wall_work + self.command_work;
-        let lost = self.dashpot_loss + self.sliding_loss + self.rolling_loss;
+        let in_contacts = self.dashpot_loss + self.sliding_loss + self.rolling_loss;
+        let lost = in_contacts + self.viscous_loss + self.capillary_loss;
         stored - supplied + lost
     }
 
@@ -71,6 +81,8 @@ impl EnergyLedger {
             self.dashpot_loss,
             self.sliding_loss,
             self.rolling_loss,
+            self.viscous_loss,
+            self.capillary_loss,
         ]
         .into_iter()
         .map(f64::abs)
@@ -101,10 +113,10 @@ pub fn elastic_energy(world: &World) -> f64 {
         .sum()
 }
 
-/// Sums of the grains' columns of exchanged energy [J].
-fn exchanged(world: &World) -> [f64; 4] {
-    let mut sums = [0.0; 4];
-    for terms in &world.grains.exchanged {
+/// Sums over the grains of each of their energies [J].
+fn sums<const N: usize>(columns: &[[f64; N]]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for terms in columns {
         for (sum, term) in sums.iter_mut().zip(terms) {
             *sum += term;
         }

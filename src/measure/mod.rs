@@ -14,6 +14,8 @@
 //! | `contacts` | coordination number, largest overlap |
 //! | `energy` | elastic energy and the energy ledger |
 //! | `avalanches` | extrema of θ(t) |
+//! | `flow` | velocity in the cross-section, its profile over depth |
+//! | `liquid` | bridges, capillary and Galilei number, torque of a drum |
 //! | `summary` | averages over a window of a series |
 //!
 //! `neighbours` finds the pairs of grains that are near each other, for the measures that need them.
@@ -21,6 +23,8 @@
 mod avalanches;
 mod contacts;
 mod energy;
+mod flow;
+mod liquid;
 mod neighbours;
 mod packing;
 mod quantity;
@@ -32,10 +36,14 @@ mod temperature;
 pub use avalanches::{Avalanche, SMOOTHING_TIME, avalanches};
 pub use contacts::{coordination_number, largest_overlap};
 pub use energy::{EnergyLedger, elastic_energy};
+pub use flow::{FlowHistory, FlowProfile, kernel_reach, mean_velocity};
+pub use liquid::{bridges, capillary_number, drop_ratio_law, drum_torque, galilei_number};
 pub use packing::packing_fraction;
 pub use quantity::{Measure, QUANTITIES, Quantity};
 pub use series::{Sample, Series};
-pub use summary::{NON_RIGID_TEMPERATURE, SMALLEST_DROPS, Summary, SummaryEntry, summarise};
+pub use summary::{
+    NON_RIGID_TEMPERATURE, Regime, SMALLEST_DROPS, Summary, SummaryEntry, summarise,
+};
 pub use surface::{MIDDLE_SHARE, SurfaceLine, surface_line};
 pub use temperature::{Temperatures, granular_temperatures};
 
@@ -43,6 +51,11 @@ use crate::world::World;
 
 /// Every [`Measure`] of `world` as it is now.
 pub fn sample(world: &World) -> Sample {
+    sample_and_surface(world).0
+}
+
+/// Every [`Measure`] of `world` as it is now, and the surface line that they were taken with.
+pub fn sample_and_surface(world: &World) -> (Sample, Option<SurfaceLine>) {
     let mut values = [f64::NAN; Measure::COUNT];
     let mut set = |measure: Measure, value: f64| values[measure as usize] = value;
     let surface = surface_line(world, MIDDLE_SHARE);
@@ -51,7 +64,14 @@ pub fn sample(world: &World) -> Sample {
     if let Some(line) = &surface {
         set(Measure::SurfaceAngle, line.angle);
         set(Measure::PackingFraction, packing_fraction(world, line));
+        set(Measure::SurfaceRoughness, line.roughness);
+        set(Measure::SurfaceCurvature, line.curvature);
     }
+    set(Measure::Bridges, bridges(world) as f64);
+    set(Measure::Ruptures, world.ledger.ruptures as f64);
+    set(Measure::DrumTorque, drum_torque(world));
+    set(Measure::ViscousLoss, energy.viscous_loss);
+    set(Measure::CapillaryLoss, energy.capillary_loss);
     set(Measure::GranularTemperature, temperatures.laboratory);
     set(Measure::CorotatingTemperature, temperatures.corotating);
     set(Measure::CoordinationNumber, coordination_number(world));
@@ -65,11 +85,12 @@ pub fn sample(world: &World) -> Sample {
     set(Measure::RollingLoss, energy.rolling_loss);
     set(Measure::EnergyResidual, energy.residual());
     set(Measure::MeanSpeed, mean_speed(world));
-    Sample {
+    let sample = Sample {
         step: world.clock.step,
         time: world.time(),
         values,
-    }
+    };
+    (sample, surface)
 }
 
 /// Mean speed of the grains' centres [m/s]; NaN without grains.

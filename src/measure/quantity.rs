@@ -46,11 +46,25 @@ pub enum Measure {
     RollingLoss,
     /// Mean speed of the grains [m/s].
     MeanSpeed,
+    /// Mean distance of the surface from a straight line [m].
+    SurfaceRoughness,
+    /// Curvature of the surface, positive where it is convex [1/m].
+    SurfaceCurvature,
+    /// Number of liquid bridges.
+    Bridges,
+    /// Bridges that broke since the start.
+    Ruptures,
+    /// Torque that turns the drum against its grains [N m].
+    DrumTorque,
+    /// Energy lost to the viscosity of the liquid since the start [J].
+    ViscousLoss,
+    /// Energy taken by capillary forces since the start [J].
+    CapillaryLoss,
 }
 
 impl Measure {
     /// Number of measures in a sample.
-    pub const COUNT: usize = 15;
+    pub const COUNT: usize = 22;
 
     /// Every measure in the order of its column.
     pub const ALL: [Self; Self::COUNT] = [
@@ -69,6 +83,13 @@ impl Measure {
         Self::SlidingLoss,
         Self::RollingLoss,
         Self::MeanSpeed,
+        Self::SurfaceRoughness,
+        Self::SurfaceCurvature,
+        Self::Bridges,
+        Self::Ruptures,
+        Self::DrumTorque,
+        Self::ViscousLoss,
+        Self::CapillaryLoss,
     ];
 
     /// Name, symbol, unit and method.
@@ -171,5 +192,49 @@ pub const QUANTITIES: &[Quantity] = &[
         symbol: "⟨v⟩",
         unit: "m/s",
         description: "Mean speed of the grains' centres.",
+    },
+    Quantity {
+        name: "surface roughness",
+        symbol: "h",
+        unit: "m",
+        description: "Mean distance of the top grains' centres from the straight line through them (Eq. 24 of Kasper et \
+                      al. 2021).",
+    },
+    Quantity {
+        name: "surface curvature",
+        symbol: "κ",
+        unit: "1/m",
+        description: "Curvature of the parabola through the top grains' centres, positive where the surface is convex.",
+    },
+    Quantity {
+        name: "bridges",
+        symbol: "N_b",
+        unit: "1",
+        description: "Number of liquid bridges between grains.",
+    },
+    Quantity {
+        name: "ruptures",
+        symbol: "N_r",
+        unit: "1",
+        description: "Liquid bridges that broke since the start.",
+    },
+    Quantity {
+        name: "drum torque",
+        symbol: "M",
+        unit: "N m",
+        description: "Torque about its axis with which the drum turns against the grains' contact forces.",
+    },
+    Quantity {
+        name: "viscous loss",
+        symbol: "D_v",
+        unit: "J",
+        description: "Energy lost to the viscosity of the liquid since the start.",
+    },
+    Quantity {
+        name: "capillary loss",
+        symbol: "D_c",
+        unit: "J",
+        description: "Energy taken by capillary forces since the start: the cost of broken bridges, and what those that \
+                      hold would give back.",
     },
 ];

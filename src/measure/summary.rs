@@ -2,7 +2,10 @@
 //!
 //! In: a [`Series`] and the time from which it counts. Out: named values, each with its unit and how it was taken.
 
-use super::{Avalanche, Measure, SMOOTHING_TIME, Series, avalanches};
+use super::{
+    Avalanche, Measure, SMOOTHING_TIME, Series, avalanches, capillary_number, galilei_number,
+};
+use crate::world::World;
 use serde::Serialize;
 
 /// Granular temperature from which a bed counts as flowing [m²/s²] (Kasper et al. 2021).
@@ -61,6 +64,57 @@ impl Summary {
     }
 }
 
+impl Summary {
+    /// Adds what depends on the drum and its liquid alone, and the regime that the results show.
+    pub fn add_case(&mut self, world: &World) {
+        self.add(
+            "capillary number Ca",
+            "1",
+            capillary_number(world).unwrap_or(f64::NAN),
+            "η √(4 g r)/(γ cos α), Eq. 1 of Kasper et al. 2021",
+        );
+        self.add(
+            "Galilei number Ga",
+            "1",
+            galilei_number(world).unwrap_or(f64::NAN),
+            "ρ² g r³/η², Eq. 25",
+        );
+        let regime = self
+            .regime()
+            .map_or(f64::NAN, |regime| f64::from(regime as u8));
+        self.add(
+            "regime",
+            "1",
+            regime,
+            "0 avalanching: ta/ts below 0.9; 2 continuous: ta/ts at least 0.99 and drops below 2.5°; 1 between",
+        );
+    }
+
+    /// How the bed moves, by the shares and drops of the paper.
+    pub fn regime(&self) -> Option<Regime> {
+        let flowing = self.value("non-rigid share ta/ts")?;
+        let drop = self.value("drop Δθ").unwrap_or(0.0);
+        Some(if flowing < 0.9 {
+            Regime::Avalanching
+        } else if flowing >= 0.99 && drop < 2.5 * DEGREE {
+            Regime::Continuous
+        } else {
+            Regime::Transitional
+        })
+    }
+}
+
+/// How a bed moves in a drum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Regime {
+    /// It rests between avalanches.
+    Avalanching,
+    /// It hardly rests.
+    Transitional,
+    /// It flows all the time, without large drops.
+    Continuous,
+}
+
 /// Results of the part of `series` from `from_time` [s] on, with avalanches of at least `smallest_drop` [rad].
 pub fn summarise(series: &Series, from_time: f64, smallest_drop: f64) -> Summary {
     let window = Window::of(series, from_time);
@@ -101,6 +155,15 @@ impl<'a> Window<'a> {
 
     fn column(&self, measure: Measure) -> &'a [f64] {
         &self.series.column(measure)[self.first..]
+    }
+
+    /// Change of a measure over the window per second; NaN where it has no length.
+    fn rate(&self, measure: Measure) -> f64 {
+        let values = self.column(measure);
+        match (values, self.time) {
+            ([first, .., last], [from, .., to]) => (last - first) / (to - from),
+            _ => f64::NAN,
+        }
     }
 
     fn avalanches(&self, smallest_drop: f64) -> Vec<Avalanche> {
@@ -161,6 +224,22 @@ fn add_means(summary: &mut Summary, window: &Window) {
     add(Measure::PackingFraction, note);
     add(Measure::CoordinationNumber, note);
     add(Measure::MeanSpeed, note);
+    add(Measure::SurfaceRoughness, note);
+    add(Measure::SurfaceCurvature, note);
+    add(Measure::Bridges, note);
+    add(Measure::DrumTorque, note);
+    summary.add(
+        "ruptures per second",
+        "1/s",
+        window.rate(Measure::Ruptures),
+        "liquid bridges that broke over the window, per second",
+    );
+    summary.add(
+        "drum power",
+        "W",
+        window.rate(Measure::WallWork),
+        "work of the moving walls over the window, per second",
+    );
     let overlap = window.column(Measure::LargestOverlap);
     summary.add(
         Measure::LargestOverlap.quantity().name,
@@ -234,7 +313,11 @@ fn add_energies(summary: &mut Summary, window: &Window) {
         Measure::RollingLoss,
     ];
     let at_end = |measure: Measure| window.column(measure).last().copied().unwrap_or(f64::NAN);
-    for measure in terms.into_iter().chain([Measure::EnergyResidual]) {
+    for measure in terms.into_iter().chain([
+        Measure::ViscousLoss,
+        Measure::CapillaryLoss,
+        Measure::EnergyResidual,
+    ]) {
         let quantity = measure.quantity();
         let note = "at the end, since the start of the run";
         summary.add(quantity.name, quantity.unit, at_end(measure), note);

@@ -39,6 +39,8 @@ pub struct SurfaceLine {
     pub half_length: f64,
     /// Mean distance h of the top grains' centres from the line (Eq. 24 of Kasper et al. 2021) [m].
     pub roughness: f64,
+    /// Curvature of the parabola through the same centres, positive where the surface is convex [1/m].
+    pub curvature: f64,
     /// Bins that held a grain.
     pub bins: usize,
 }
@@ -236,6 +238,23 @@ impl Fit {
         slope.is_finite().then_some(Self { mean, slope })
     }
 
+    /// Curvature of the least-squares parabola through `points`, positive where it is convex: `−2c` of the distances
+    /// `c (s² − …)` from this line, with the quadratic made orthogonal to constant and slope [1/m].
+    fn curvature(&self, points: &[DVec2]) -> f64 {
+        let mean_of = |value: &dyn Fn(f64) -> f64| {
+            points.iter().map(|p| value(p.x - self.mean.x)).sum::<f64>() / points.len() as f64
+        };
+        let (second, third) = (mean_of(&|s| s * s), mean_of(&|s| s * s * s));
+        let quadratic = |s: f64| s * s - third / second * s - second;
+        let (mut spread, mut covariance) = (0.0, 0.0);
+        for point in points {
+            let (s, n) = (point.x - self.mean.x, point.y - self.mean.y);
+            spread += quadratic(s) * quadratic(s);
+            covariance += quadratic(s) * n;
+        }
+        -2.0 * covariance / spread
+    }
+
     /// This line, fitted in the frame of `guess`, as the next guess.
     fn turned(&self, guess: Guess) -> Guess {
         let direction = guess
@@ -258,6 +277,7 @@ impl Fit {
             direction: own.direction,
             half_length: middle.half_length,
             roughness: tops.iter().map(distance).sum::<f64>() / tops.len() as f64,
+            curvature: self.curvature(tops),
             bins: tops.len(),
         }
     }

@@ -25,6 +25,7 @@ const SCENES: &[BuiltIn] = built_in![
     "dry-r3" in "papers/kasper2021",
     "dry-r2" in "papers/kasper2021",
     "dry-r1.25" in "papers/kasper2021",
+    "wet" in "papers/kasper2021",
     "small-drum" in "gallery",
     "two-frictions-drum" in "gallery",
     "two-sizes-drum" in "gallery",

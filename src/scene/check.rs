@@ -7,8 +7,8 @@ use super::error::Problem;
 use super::lattice::Lattice;
 use super::mixture::size_classes;
 use super::{
-    ContactLaw, PairOverride, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial,
-    ScenePlane, SceneSpecies, TimeStep,
+    ContactLaw, PairOverride, Scene, SceneContainer, SceneGrain, SceneGrains, SceneLiquid,
+    SceneMaterial, ScenePlane, SceneSpecies, SmallestGap, TimeStep,
 };
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -71,6 +71,26 @@ const SHARE: Rule = Rule {
     accepts: |x| (0.0..=1.0).contains(&x),
     expected: "a share between 0 and 1",
 };
+const SURFACE_TENSION: Rule = Rule {
+    accepts: |x| (0.0..=10.0).contains(&x),
+    expected: "a surface tension between 0 and 10 N/m",
+};
+const CONTACT_ANGLE: Rule = Rule {
+    accepts: |x| (0.0..=1.6).contains(&x),
+    expected: "an angle between 0 and 1.6 rad, about 90 degrees",
+};
+const VISCOSITY: Rule = Rule {
+    accepts: |x| (0.0..=1e4).contains(&x),
+    expected: "a viscosity between 0 and 1e4 Pa s",
+};
+const LIQUID_VOLUME: Rule = Rule {
+    accepts: |x| (0.0..=1e3).contains(&x),
+    expected: "a volume between 0 and 1e3 m³",
+};
+const SMALLEST_GAP: Rule = Rule {
+    accepts: |x| (1e-6..=10.0).contains(&x),
+    expected: "a gap between 1e-6 and 10 radii",
+};
 const STIFFNESS: Rule = Rule {
     accepts: |x| (1e-3..=1e12).contains(&x),
     expected: "a stiffness between 1e-3 N/m and 1e12 N/m",
@@ -103,9 +123,10 @@ impl Scene {
         check_container(&self.container)?;
         self.check_container_materials()?;
         match &self.grains {
-            SceneGrains::Fill { count, species } => self.check_filling(*count, species)?,
+            SceneGrains::Fill { count, species, .. } => self.check_filling(*count, species)?,
             SceneGrains::List(grains) => self.check_list(grains)?,
         }
+        self.liquid.as_ref().map_or(Ok(()), check_liquid)?;
         vector(self.gravity, 1000.0, "m/s²", || "gravity".to_owned())?;
         check_law(self.law)?;
         self.check_times()
@@ -192,6 +213,9 @@ impl Scene {
             vector(grain.position, 1e5, "m", || path("position"))?;
             vector(grain.velocity, 1e5, "m/s", || path("velocity"))?;
             vector(grain.spin, 1e7, "rad/s", || path("spin"))?;
+            if let Some(film) = grain.film {
+                LIQUID_VOLUME.check(film, || path("film"))?;
+            }
             self.check_material(&grain.material, || path("material"))?;
             check_inside(&self.container, grain, || path("position"))?;
         }
@@ -336,6 +360,9 @@ fn check_materials(materials: &[SceneMaterial]) -> Checked {
         DENSITY.check(material.density, || path("density"))?;
         RESTITUTION.check(material.restitution, || path("restitution"))?;
         FRICTION.check(material.friction, || path("friction"))?;
+        if let Some(friction) = material.wet_friction {
+            FRICTION.check(friction, || path("wet_friction"))?;
+        }
         FRICTION.check(material.rolling_friction, || path("rolling_friction"))?;
     }
     Ok(())
@@ -379,10 +406,24 @@ fn check_pair_values(pair: &PairOverride, path: impl Fn(&str) -> String) -> Chec
     if let Some(friction) = pair.friction {
         FRICTION.check(friction, || path("friction"))?;
     }
+    if let Some(friction) = pair.wet_friction {
+        FRICTION.check(friction, || path("wet_friction"))?;
+    }
     if let Some(rolling_friction) = pair.rolling_friction {
         FRICTION.check(rolling_friction, || path("rolling_friction"))?;
     }
     Ok(())
+}
+
+fn check_liquid(liquid: &SceneLiquid) -> Checked {
+    SURFACE_TENSION.check(liquid.surface_tension, || {
+        "liquid.surface_tension".to_owned()
+    })?;
+    CONTACT_ANGLE.check(liquid.contact_angle, || "liquid.contact_angle".to_owned())?;
+    VISCOSITY.check(liquid.viscosity, || "liquid.viscosity".to_owned())?;
+    LIQUID_VOLUME.check(liquid.volume, || "liquid.volume".to_owned())?;
+    let (SmallestGap::OfRadii(gap) | SmallestGap::OfEffectiveRadius(gap)) = liquid.law.viscous_gap;
+    SMALLEST_GAP.check(gap, || "liquid.law.viscous_gap".to_owned())
 }
 
 fn check_law(law: ContactLaw) -> Checked {

@@ -8,8 +8,8 @@
 use super::check::{check_container, fraction, volume};
 use super::error::Problem;
 use super::{
-    ContactLaw, PairOverride, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial,
-    ScenePlane, SceneSpecies, TimeStep,
+    BridgeLaw, ContactLaw, LiquidCase, PAPER_VOLUME, PairOverride, Scene, SceneContainer,
+    SceneGrain, SceneGrains, SceneLiquid, SceneMaterial, ScenePlane, SceneSpecies, TimeStep,
 };
 use glam::DVec3;
 use serde::de::{MapAccess, Visitor};
@@ -31,6 +31,8 @@ pub(super) struct SceneFile {
     pairs: Vec<PairOverride>,
     container: ContainerFile,
     grains: GrainsFile,
+    #[serde(default)]
+    liquid: Option<LiquidFile>,
     #[serde(default = "earth_gravity")]
     gravity: DVec3,
     #[serde(default)]
@@ -70,6 +72,7 @@ struct MaterialFile {
     density: f64,
     restitution: f64,
     friction: f64,
+    wet_friction: Option<f64>,
     rolling_friction: f64,
 }
 
@@ -81,6 +84,7 @@ impl Default for MaterialFile {
             density: 2500.0,
             restitution: 0.95,
             friction: 0.40,
+            wet_friction: None,
             rolling_friction: 0.01,
         }
     }
@@ -178,6 +182,32 @@ struct GrainFile {
     radius: Option<f64>,
     radius_mm: Option<f64>,
     material: String,
+    film: Option<f64>,
+}
+
+/// A liquid: a case of the paper's Table 1, whose values others may replace, or all of them.
+#[derive(Deserialize)]
+#[serde(rename = "Liquid", deny_unknown_fields)]
+struct LiquidFile {
+    case: Option<u8>,
+    surface_tension: Option<f64>,
+    contact_angle: Option<f64>,
+    contact_angle_deg: Option<f64>,
+    viscosity: Option<f64>,
+    viscosity_mpas: Option<f64>,
+    volume: Option<f64>,
+    volume_ml: Option<f64>,
+    #[serde(default)]
+    law: BridgeLawFile,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename = "BridgeLaw")]
+enum BridgeLawFile {
+    #[default]
+    AsPrinted,
+    AsCoded,
+    Choices(BridgeLaw),
 }
 
 impl SceneFile {
@@ -193,6 +223,7 @@ impl SceneFile {
             pairs: self.pairs,
             container,
             grains,
+            liquid: self.liquid.map(LiquidFile::into_liquid).transpose()?,
             gravity: self.gravity,
             law: self.law,
             time_step: self.time_step,
@@ -212,6 +243,7 @@ impl NamedMaterials {
             density: file.density,
             restitution: file.restitution,
             friction: file.friction,
+            wet_friction: file.wet_friction,
             rolling_friction: file.rolling_friction,
         };
         self.0.into_iter().map(with_name).collect()
@@ -278,16 +310,23 @@ impl GrainsFile {
                     .enumerate()
                     .map(|(index, species)| species.into_species(index, alone))
                     .collect::<Result<Vec<_>, _>>()?;
-                let count = match count {
-                    Some(count) => given_count(count, bulk_fraction, packing)?,
-                    None => count_for(
+                let solid_volume = match count {
+                    Some(_) => None,
+                    None => Some(solid_volume(
                         container,
                         bulk_fraction.unwrap_or(0.35),
                         packing.unwrap_or(0.60),
-                        &species,
-                    )?,
+                    )?),
                 };
-                Ok(SceneGrains::Fill { count, species })
+                let count = match count {
+                    Some(count) => given_count(count, bulk_fraction, packing)?,
+                    None => count_of(solid_volume.unwrap_or_default(), &species),
+                };
+                Ok(SceneGrains::Fill {
+                    count,
+                    solid_volume,
+                    species,
+                })
             }
             Self::List(grains) => Ok(SceneGrains::List(
                 grains
@@ -328,8 +367,57 @@ impl GrainFile {
             spin: self.spin,
             radius: required_radius(&format!("grains[{index}]"), self.radius, self.radius_mm)?,
             material: self.material,
+            film: self.film,
         })
     }
+}
+
+impl LiquidFile {
+    fn into_liquid(self) -> Result<SceneLiquid, Problem> {
+        let base = self.case.map(liquid_case).transpose()?;
+        let missing = |key: &str| {
+            Problem::new(
+                "liquid",
+                format!("has neither `case` nor `{key}`"),
+                "a `case` of the paper's Table 1, 1 to 7, or `viscosity`, `surface_tension` and `contact_angle`",
+            )
+        };
+        let of_case = |value: fn(&SceneLiquid) -> f64| base.as_ref().map(value);
+        let angle = self.contact_angle_deg.map(f64::to_radians);
+        let angle = either("liquid.contact_angle", self.contact_angle, "_deg", angle)?;
+        let viscosity = self.viscosity_mpas.map(|mpas| mpas / 1000.0);
+        let viscosity = either("liquid.viscosity", self.viscosity, "_mpas", viscosity)?;
+        let volume = self.volume_ml.map(|ml| ml * 1e-6);
+        let volume = either("liquid.volume", self.volume, "_ml", volume)?;
+        Ok(SceneLiquid {
+            surface_tension: self
+                .surface_tension
+                .or(of_case(|l| l.surface_tension))
+                .ok_or_else(|| missing("surface_tension"))?,
+            contact_angle: angle
+                .or(of_case(|l| l.contact_angle))
+                .ok_or_else(|| missing("contact_angle"))?,
+            viscosity: viscosity
+                .or(of_case(|l| l.viscosity))
+                .ok_or_else(|| missing("viscosity"))?,
+            volume: volume.unwrap_or(PAPER_VOLUME),
+            law: match self.law {
+                BridgeLawFile::AsPrinted => BridgeLaw::AS_PRINTED,
+                BridgeLawFile::AsCoded => BridgeLaw::AS_CODED,
+                BridgeLawFile::Choices(law) => law,
+            },
+        })
+    }
+}
+
+fn liquid_case(number: u8) -> Result<SceneLiquid, Problem> {
+    LiquidCase::of(number).map(LiquidCase::liquid).ok_or_else(|| {
+        Problem::value(
+            "liquid.case",
+            number.to_string(),
+            "a liquid of the paper's Table 1, 1 (water) to 7 (glycerol); a dry scene has no `liquid`",
+        )
+    })
 }
 
 fn metres(millimetres: f64) -> f64 {
@@ -386,25 +474,29 @@ fn given_count(
     Ok(usize::try_from(count).unwrap_or(usize::MAX))
 }
 
-/// Number of grains whose bed, packed at `packing`, takes `bulk_fraction` of the container's volume.
-fn count_for(
+/// Volume of the grains of a bed that takes `bulk_fraction` of the container's volume, packed at `packing` [m³].
+fn solid_volume(
     container: &SceneContainer,
     bulk_fraction: f64,
     packing: f64,
-    species: &[SceneSpecies],
-) -> Result<usize, Problem> {
+) -> Result<f64, Problem> {
     check_container(container)?;
     fraction("grains.bulk_fraction", bulk_fraction)?;
     fraction("grains.packing", packing)?;
+    Ok(volume(container)? * bulk_fraction * packing)
+}
+
+/// Number of grains of these species that fill `solid_volume` [m³].
+pub(super) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
     let grain_volume: f64 = species
         .iter()
         .map(|s| s.share * 4.0 / 3.0 * PI * s.radius.powi(3))
         .sum();
-    let count = volume(container)? * bulk_fraction * packing / grain_volume;
+    let count = solid_volume / grain_volume;
     // A nonsensical radius or share gives a nonsensical number here; their own checks say so.
-    Ok(if count.is_finite() {
+    if count.is_finite() {
         count.round().max(0.0) as usize
     } else {
         1
-    })
+    }
 }

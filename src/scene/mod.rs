@@ -10,6 +10,7 @@ mod check;
 mod error;
 mod file;
 mod lattice;
+mod liquid;
 mod mixture;
 mod outline;
 mod set;
@@ -18,6 +19,10 @@ mod syntax;
 pub use built_in::{BuiltIn, built_in};
 pub use error::SceneError;
 pub use lattice::Lattice;
+pub use liquid::{
+    BridgeLaw, BridgeVolume, CapillaryGap, CoulombBound, LIQUID_CASES, LiquidCase, PAPER_VOLUME,
+    PairAngle, Rupture, SceneLiquid, SmallestGap,
+};
 pub use mixture::{SizeClass, size_classes};
 pub use set::seconds;
 
@@ -48,6 +53,8 @@ pub struct Scene {
     pub container: SceneContainer,
     /// The grains.
     pub grains: SceneGrains,
+    /// The liquid between them, if any.
+    pub liquid: Option<SceneLiquid>,
     /// Gravitational acceleration [m/s²].
     pub gravity: DVec3,
     /// Which contact law acts.
@@ -103,6 +110,8 @@ pub struct SceneMaterial {
     pub restitution: f64,
     /// Sliding friction of two bodies of this material.
     pub friction: f64,
+    /// Sliding friction where there is liquid, where that differs.
+    pub wet_friction: Option<f64>,
     /// Rolling friction of two bodies of this material.
     pub rolling_friction: f64,
 }
@@ -118,6 +127,8 @@ pub struct PairOverride {
     pub restitution: Option<f64>,
     /// Sliding friction, where it differs.
     pub friction: Option<f64>,
+    /// Sliding friction where there is liquid, where that differs from both.
+    pub wet_friction: Option<f64>,
     /// Rolling friction, where it differs.
     pub rolling_friction: Option<f64>,
 }
@@ -173,6 +184,8 @@ pub enum SceneGrains {
     Fill {
         /// Number of grains (given, or from the bulk fraction of the container's volume at a packing fraction).
         count: usize,
+        /// Volume of all grains that a bulk fraction asks for [m³]; none where the count was given.
+        solid_volume: Option<f64>,
         /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
         species: Vec<SceneSpecies>,
     },
@@ -206,6 +219,8 @@ pub struct SceneGrain {
     pub radius: f64,
     /// Name of its material.
     pub material: String,
+    /// Volume of the liquid film on it, where it is not its share of the scene's liquid [m³].
+    pub film: Option<f64>,
 }
 
 impl Scene {
@@ -258,7 +273,11 @@ impl Scene {
         }
         let refuse = |problem| SceneError::from_problem(file, text, problem);
         let scene = ron::Options::default()
-            .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES)
+            .with_default_extension(
+                Extensions::IMPLICIT_SOME
+                    | Extensions::UNWRAP_NEWTYPES
+                    | Extensions::UNWRAP_VARIANT_NEWTYPES,
+            )
             .from_str::<SceneFile>(text)
             .map_err(|error| syntax::explain(file, text, &error))?
             .into_scene()

@@ -43,8 +43,9 @@ impl<'a> Outline<'a> {
         named(&|p| p == path)
             .or_else(|| {
                 named(&|p| {
-                    p.strip_prefix(path)
-                        .is_some_and(|unit| matches!(unit, "_mm" | "_rpm"))
+                    p.strip_prefix(path).is_some_and(|unit| {
+                        matches!(unit, "_mm" | "_rpm" | "_deg" | "_mpas" | "_ml")
+                    })
                 })
             })
             .or_else(|| self.find(path.rsplit_once(['.', '['])?.0))

@@ -4,7 +4,8 @@
 //! change while a run goes on is a [`crate::simulation::Parameter`] instead.
 
 use super::error::{Problem, SceneError, suggestion};
-use super::{Scene, SceneGrains, TimeStep};
+use super::file::count_of;
+use super::{BridgeLaw, LiquidCase, Scene, SceneGrains, SceneLiquid, TimeStep};
 
 /// One value that can be replaced.
 struct Setting {
@@ -15,7 +16,7 @@ struct Setting {
     apply: fn(&mut Scene, &str) -> Option<()>,
 }
 
-const SETTINGS: [Setting; 5] = [
+const SETTINGS: [Setting; 8] = [
     Setting {
         key: "seed",
         expected: "a whole number of at least 0",
@@ -55,11 +56,38 @@ const SETTINGS: [Setting; 5] = [
         key: "count",
         expected: "a whole number of grains, in a scene that fills its container",
         apply: |scene, text| match &mut scene.grains {
-            SceneGrains::Fill { count, .. } => {
+            SceneGrains::Fill {
+                count,
+                solid_volume,
+                ..
+            } => {
                 *count = text.parse().ok()?;
+                *solid_volume = None;
                 Some(())
             }
             SceneGrains::List(_) => None,
+        },
+    },
+    Setting {
+        key: "radius",
+        expected: "a length such as `2mm`, in a scene that fills its container with grains of one radius",
+        apply: |scene, text| set_radius(scene, metres(text)?),
+    },
+    Setting {
+        key: "liquid",
+        expected: "`dry` or 0, or a liquid of the paper's Table 1, 1 (water) to 7 (glycerol)",
+        apply: set_liquid,
+    },
+    Setting {
+        key: "bridge-law",
+        expected: "`as-printed` or `as-coded`, in a scene with a liquid",
+        apply: |scene, text| {
+            scene.liquid.as_mut()?.law = match text {
+                "as-printed" => BridgeLaw::AS_PRINTED,
+                "as-coded" => BridgeLaw::AS_CODED,
+                _ => return None,
+            };
+            Some(())
         },
     },
 ];
@@ -72,7 +100,8 @@ impl Scene {
             .map(|setting| (setting.key, setting.expected))
     }
 
-    /// Replaces one value before anything is built: `seed`, `duration`, `output-interval`, `time-step`, `count`.
+    /// Replaces one value before anything is built: `seed`, `duration`, `output-interval`, `time-step`, `count`,
+    /// `radius`, `liquid`, `bridge-law`.
     ///
     /// # Errors
     /// When there is no such key, the text is no such value, or the scene does not hold together with it; the scene is
@@ -91,6 +120,67 @@ impl Scene {
         *self = changed;
         Ok(())
     }
+}
+
+/// Gives all grains the radius `wanted` [m]; the bed keeps its volume, so their number changes.
+fn set_radius(scene: &mut Scene, wanted: f64) -> Option<()> {
+    let SceneGrains::Fill {
+        count,
+        solid_volume,
+        species,
+    } = &mut scene.grains
+    else {
+        return None;
+    };
+    let old = species.first()?.radius;
+    if species.iter().any(|kind| kind.radius != old) || !(wanted > 0.0) {
+        return None;
+    }
+    let volume = solid_volume
+        .unwrap_or_else(|| *count as f64 * 4.0 / 3.0 * std::f64::consts::PI * old.powi(3));
+    species.iter_mut().for_each(|kind| kind.radius = wanted);
+    *count = count_of(volume, species);
+    *solid_volume = Some(volume);
+    Some(())
+}
+
+/// Puts in another liquid; how much there is and its bridge law stay where the scene had one before.
+fn set_liquid(scene: &mut Scene, text: &str) -> Option<()> {
+    let case = match text {
+        "dry" => 0,
+        number => number.parse().ok()?,
+    };
+    scene.liquid = if case == 0 {
+        None
+    } else {
+        let liquid = LiquidCase::of(case)?.liquid();
+        Some(match scene.liquid.take() {
+            Some(old) => SceneLiquid {
+                volume: old.volume,
+                law: old.law,
+                ..liquid
+            },
+            None => liquid,
+        })
+    };
+    Some(())
+}
+
+/// The length that `text` states, a number of metres or one with the unit `um`, `mm`, `cm` or `m` [m].
+pub fn metres(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (number, unit) = text
+        .find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E')
+        .map_or((text, "m"), |at| text.split_at(at));
+    let number: f64 = number.trim().parse().ok()?;
+    let length = match unit {
+        "um" | "µm" => number / 1e6,
+        "mm" => number / 1e3,
+        "cm" => number / 1e2,
+        "m" => number,
+        _ => return None,
+    };
+    length.is_finite().then_some(length)
 }
 
 fn unknown(key: &str) -> Problem {

@@ -180,7 +180,9 @@ fn without_index(path: &str) -> &str {
 fn last_key(path: &str) -> &str {
     let path = without_index(path);
     let key = path.rsplit_once('.').map_or(path, |(_, key)| key);
-    key.trim_end_matches("_mm").trim_end_matches("_rpm")
+    ["_mm", "_rpm", "_deg", "_mpas", "_ml"]
+        .iter()
+        .fold(key, |key, unit| key.strip_suffix(unit).unwrap_or(key))
 }
 
 fn lower_first(text: &str) -> String {

@@ -4,7 +4,7 @@
 //! over everything that determines it, first among the beds shipped with the program, then in a folder of the user's. A
 //! bed that is stale, damaged or does not fit is no bed: settling makes it anew. Keeping one may fail, a run never does.
 
-use super::settling::{motions, standing, start};
+use super::settling::{standing, start};
 use crate::files::write_whole;
 use crate::world::{Contact, Partner, World};
 use glam::{DVec3, Vec3};
@@ -70,10 +70,13 @@ enum Unfit {
 }
 
 impl BedKey {
-    /// The key of the bed that `built`, a scene's world before settling, settles to. How its walls will move does not
-    /// matter.
-    pub fn of(built: &World) -> Self {
-        Self(blake3::hash(&bytes_of(&(FORMAT, standing(built.clone())))))
+    /// The key of the bed that `built`, a scene's world before settling, settles to with steps of `time_step` [s]. How
+    /// its walls will move does not matter, nor does its liquid.
+    pub fn of(built: &World, time_step: f64) -> Self {
+        Self(blake3::hash(&bytes_of(&(
+            FORMAT,
+            standing(built, time_step),
+        ))))
     }
 
     fn file_name(self) -> String {
@@ -220,7 +223,7 @@ impl Bed {
         world.grains.rolling_torque = double(&self.rolling_torque);
         world.grains.contact_count = self.contact_count;
         world.contacts = self.contacts.iter().map(BedContact::laid).collect();
-        start(world, &motions(built))
+        start(world, built)
     }
 }
 
@@ -242,6 +245,8 @@ impl BedContact {
             spring: self.spring.as_dvec3(),
             stiffness: self.stiffness.into(),
             force: self.force.as_dvec3(),
+            touching: true,
+            bridge: None,
         }
     }
 

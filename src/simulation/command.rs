@@ -40,8 +40,10 @@ pub struct StampedCommand {
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Parameter {
-    /// Sliding friction μ between two materials.
+    /// Sliding friction μ between two materials, dry.
     Friction(String, String),
+    /// Sliding friction μ between two materials where there is liquid.
+    WetFriction(String, String),
     /// Restitution e between two materials.
     Restitution(String, String),
     /// Rolling friction `μ_R` between two materials.
@@ -52,6 +54,16 @@ pub enum Parameter {
     Gravity,
     /// Share of a species by number, where species share one radius.
     Share(String),
+    /// Viscosity η of the liquid [Pa s].
+    Viscosity,
+    /// Surface tension γ of the liquid [N/m].
+    SurfaceTension,
+    /// Contact angle α of the liquid [rad].
+    ContactAngle,
+    /// Volume of all the liquid [m³].
+    LiquidVolume,
+    /// How bridges act: 0 as printed, 1 as coded.
+    BridgeLaw,
 }
 
 impl fmt::Display for Parameter {
@@ -59,11 +71,17 @@ impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Friction(a, b) => write!(f, "friction.{a}.{b}"),
+            Self::WetFriction(a, b) => write!(f, "wet-friction.{a}.{b}"),
             Self::Restitution(a, b) => write!(f, "restitution.{a}.{b}"),
             Self::RollingFriction(a, b) => write!(f, "rolling-friction.{a}.{b}"),
             Self::DrumSpeed => f.write_str("drum-speed"),
             Self::Gravity => f.write_str("gravity"),
             Self::Share(species) => write!(f, "share.{species}"),
+            Self::Viscosity => f.write_str("viscosity"),
+            Self::SurfaceTension => f.write_str("surface-tension"),
+            Self::ContactAngle => f.write_str("contact-angle"),
+            Self::LiquidVolume => f.write_str("liquid-volume"),
+            Self::BridgeLaw => f.write_str("bridge-law"),
         }
     }
 }
@@ -81,14 +99,21 @@ impl TryFrom<String> for Parameter {
         let parts: Vec<&str> = key.split('.').collect();
         match parts[..] {
             ["friction", a, b] => Ok(Self::Friction(a.into(), b.into())),
+            ["wet-friction", a, b] => Ok(Self::WetFriction(a.into(), b.into())),
             ["restitution", a, b] => Ok(Self::Restitution(a.into(), b.into())),
             ["rolling-friction", a, b] => Ok(Self::RollingFriction(a.into(), b.into())),
             ["drum-speed"] => Ok(Self::DrumSpeed),
             ["gravity"] => Ok(Self::Gravity),
             ["share", species] => Ok(Self::Share(species.into())),
+            ["viscosity"] => Ok(Self::Viscosity),
+            ["surface-tension"] => Ok(Self::SurfaceTension),
+            ["contact-angle"] => Ok(Self::ContactAngle),
+            ["liquid-volume"] => Ok(Self::LiquidVolume),
+            ["bridge-law"] => Ok(Self::BridgeLaw),
             _ => Err(format!(
-                "no parameter is called `{key}`; expected one of friction.A.B, restitution.A.B, rolling-friction.A.B \
-                 (A, B: materials), drum-speed, gravity, share.S (S: a species)"
+                "no parameter is called `{key}`; expected one of friction.A.B, wet-friction.A.B, restitution.A.B, \
+                 rolling-friction.A.B (A, B: materials), drum-speed, gravity, share.S (S: a species), viscosity, \
+                 surface-tension, contact-angle, liquid-volume, bridge-law"
             )),
         }
     }

@@ -5,7 +5,7 @@
 
 use super::preparation::{Preparation, Prepared};
 use super::{Command, ParameterInfo, Run, Script, ScriptedCommand, StampedCommand, Status};
-use crate::measure::Sample;
+use crate::measure::{FlowHistory, Sample};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub struct Update {
     pub restarted: bool,
     /// Samples taken.
     pub samples: Vec<Sample>,
+    /// The flowing layer up to the last of them.
+    pub flow: Option<Arc<FlowHistory>>,
     /// Commands carried out.
     pub commands: Vec<StampedCommand>,
     /// How many [`Order::Command`]s were answered since the engine was made.
@@ -55,6 +57,7 @@ impl Update {
         self.world = later.world.or(self.world.take());
         self.parameters = later.parameters.or(self.parameters.take());
         self.samples.extend(later.samples);
+        self.flow = later.flow.or(self.flow.take());
         self.commands.extend(later.commands);
         self.answered = later.answered;
         self.status = later.status.or(self.status.take());
@@ -188,6 +191,7 @@ impl Engine {
         update.samples = (self.told.samples..series.len())
             .filter_map(|index| series.get(index))
             .collect();
+        update.flow = (!update.samples.is_empty()).then(|| run.flow().clone());
         update.commands = commands[self.told.commands..].to_vec();
         let step = run.world().clock.step;
         if update.restarted || self.told.step != Some(step) || !update.commands.is_empty() {

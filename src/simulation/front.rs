@@ -9,7 +9,7 @@ use super::engine::{Engine, Order, Update};
 use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
 use super::{Command, Parameter, ScriptedCommand, StampedCommand};
-use crate::measure::{Avalanche, Measure, Series, avalanches};
+use crate::measure::{Avalanche, FlowHistory, Measure, Series, avalanches};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile, TimeStepAdvice, advise};
 use crate::world::World;
@@ -114,6 +114,7 @@ pub struct Simulation {
     world: Option<Arc<World>>,
     parameters: Arc<[ParameterInfo]>,
     series: Series,
+    flow: Arc<FlowHistory>,
     avalanches: Avalanches,
     commands: Vec<StampedCommand>,
     /// Values asked for and not yet carried out.
@@ -140,6 +141,7 @@ impl Simulation {
             world: None,
             parameters: Arc::new([]),
             series: Series::default(),
+            flow: Arc::default(),
             avalanches: Avalanches::default(),
             commands: Vec::new(),
             asked: BTreeMap::new(),
@@ -183,6 +185,11 @@ impl Simulation {
     /// The samples so far, one every [`super::SAMPLE_INTERVAL`].
     pub fn series(&self) -> &Series {
         &self.series
+    }
+
+    /// The flowing layer so far.
+    pub fn flow(&self) -> &FlowHistory {
+        &self.flow
     }
 
     /// The avalanches so far, of [`SMALLEST_DROP`] at least.
@@ -284,12 +291,14 @@ impl Simulation {
     fn take(&mut self, update: Update) {
         if update.restarted {
             self.series.truncate(0);
+            self.flow = Arc::default();
             self.commands.clear();
             self.avalanches = Avalanches::default();
         }
         for sample in update.samples {
             self.series.push(sample);
         }
+        self.flow = update.flow.unwrap_or(self.flow.clone());
         self.commands.extend(update.commands);
         self.warnings.extend(update.warnings);
         if update.answered == self.sent {

@@ -5,8 +5,8 @@
 
 use super::{Parameter, relabel};
 use crate::measure::elastic_energy;
-use crate::scene::{Scene, SceneContainer, SceneGrains, SceneSpecies};
-use crate::world::{MaterialId, Materials, PairProperties, World};
+use crate::scene::{BridgeLaw, Scene, SceneContainer, SceneGrains, SceneLiquid, SceneSpecies};
+use crate::world::{Liquid, MaterialId, Materials, PairProperties, World};
 use glam::DVec3;
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
@@ -53,6 +53,22 @@ const PERCENT: DisplayUnit = DisplayUnit {
     name: "%",
     factor: 100.0,
 };
+const MILLIPASCAL_SECONDS: DisplayUnit = DisplayUnit {
+    name: "mPa s",
+    factor: 1e3,
+};
+const MILLINEWTONS_PER_METRE: DisplayUnit = DisplayUnit {
+    name: "mN/m",
+    factor: 1e3,
+};
+const DEGREES: DisplayUnit = DisplayUnit {
+    name: "°",
+    factor: 180.0 / std::f64::consts::PI,
+};
+const MILLILITRES: DisplayUnit = DisplayUnit {
+    name: "ml",
+    factor: 1e6,
+};
 const METRES_PER_SECOND_SQUARED: DisplayUnit = DisplayUnit {
     name: "m/s²",
     factor: 1.0,
@@ -67,11 +83,21 @@ impl Parameter {
         };
         match self {
             Self::Friction(a, b) => Some(pair(a, b)?.friction),
+            Self::WetFriction(a, b) => Some(pair(a, b)?.wet_friction),
             Self::Restitution(a, b) => Some(pair(a, b)?.restitution),
             Self::RollingFriction(a, b) => Some(pair(a, b)?.rolling_friction),
             Self::DrumSpeed => Some(world.container.drum_speed()),
             Self::Gravity => Some(world.gravity.length()),
             Self::Share(species) => relabel::share(world, species),
+            Self::Viscosity => Some(world.liquid?.viscosity),
+            Self::SurfaceTension => Some(world.liquid?.surface_tension),
+            Self::ContactAngle => Some(world.liquid?.contact_angle),
+            Self::LiquidVolume => Some(world.liquid?.volume),
+            Self::BridgeLaw => match world.liquid?.law {
+                BridgeLaw::AS_PRINTED => Some(0.0),
+                BridgeLaw::AS_CODED => Some(1.0),
+                _ => None,
+            },
         }
     }
 
@@ -80,6 +106,10 @@ impl Parameter {
         match self {
             Self::DrumSpeed => "rad/s",
             Self::Gravity => "m/s²",
+            Self::Viscosity => "Pa s",
+            Self::SurfaceTension => "N/m",
+            Self::ContactAngle => "rad",
+            Self::LiquidVolume => "m³",
             _ => "1",
         }
     }
@@ -90,7 +120,15 @@ impl Parameter {
             Self::DrumSpeed => RPM,
             Self::Gravity => METRES_PER_SECOND_SQUARED,
             Self::Share(_) => PERCENT,
-            Self::Friction(..) | Self::Restitution(..) | Self::RollingFriction(..) => PURE,
+            Self::Viscosity => MILLIPASCAL_SECONDS,
+            Self::SurfaceTension => MILLINEWTONS_PER_METRE,
+            Self::ContactAngle => DEGREES,
+            Self::LiquidVolume => MILLILITRES,
+            Self::Friction(..)
+            | Self::WetFriction(..)
+            | Self::Restitution(..)
+            | Self::RollingFriction(..)
+            | Self::BridgeLaw => PURE,
         }
     }
 
@@ -105,6 +143,12 @@ impl Parameter {
     }
 }
 
+/// Most viscous liquid a slider offers [Pa s].
+const MOST_VISCOUS: f64 = 1.5;
+/// Strongest surface tension a slider offers [N/m].
+const STRONGEST_TENSION: f64 = 0.15;
+/// Largest contact angle a slider offers [rad], 80°.
+const LARGEST_CONTACT_ANGLE: f64 = 80.0 / DEGREES.factor;
 /// Fastest drum a slider offers [rad/s], 10 rpm.
 const FASTEST_DRUM: f64 = 10.0 / RPM.factor;
 /// Strongest gravity a slider offers [m/s²].
@@ -119,9 +163,10 @@ pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
     list.push(gravity(scene.gravity.length()));
     list.extend(meeting_pairs(world).into_iter().flat_map(|(a, b)| {
         let names = [a, b].map(|id| world.materials.get(id).name.clone());
-        pair_parameters(names, world.materials.pair(a, b))
+        pair_parameters(names, world.materials.pair(a, b), scene.liquid.is_some())
     }));
     list.extend(shares(scene));
+    list.extend(scene.liquid.iter().flat_map(liquid_parameters));
     list
 }
 
@@ -130,6 +175,7 @@ pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
 pub fn write(parameter: &Parameter, value: f64, scene: &Scene, world: &mut World) {
     match parameter {
         Parameter::Friction(a, b) => change_pair(world, a, b, |pair| pair.friction = value),
+        Parameter::WetFriction(a, b) => change_pair(world, a, b, |pair| pair.wet_friction = value),
         Parameter::Restitution(a, b) => change_pair(world, a, b, |pair| pair.restitution = value),
         Parameter::RollingFriction(a, b) => {
             change_pair(world, a, b, |pair| pair.rolling_friction = value);
@@ -139,6 +185,23 @@ pub fn write(parameter: &Parameter, value: f64, scene: &Scene, world: &mut World
         Parameter::Share(species) => booked(world, |world| {
             relabel::set_share(scene, world, species, value);
         }),
+        Parameter::LiquidVolume => world.set_liquid_volume(value),
+        Parameter::Viscosity => change_liquid(world, |liquid| liquid.viscosity = value),
+        Parameter::SurfaceTension => change_liquid(world, |liquid| liquid.surface_tension = value),
+        Parameter::ContactAngle => change_liquid(world, |liquid| liquid.contact_angle = value),
+        Parameter::BridgeLaw => change_liquid(world, |liquid| {
+            liquid.law = if value < 0.5 {
+                BridgeLaw::AS_PRINTED
+            } else {
+                BridgeLaw::AS_CODED
+            };
+        }),
+    }
+}
+
+fn change_liquid(world: &mut World, change: impl FnOnce(&mut Liquid)) {
+    if let Some(liquid) = &mut world.liquid {
+        change(liquid);
     }
 }
 
@@ -191,7 +254,8 @@ fn gravity(magnitude: f64) -> ParameterInfo {
     }
 }
 
-fn pair_parameters(names: [String; 2], pair: PairProperties) -> [ParameterInfo; 3] {
+/// What can change about how two materials meet; wet friction only where the scene has a liquid.
+fn pair_parameters(names: [String; 2], pair: PairProperties, wet: bool) -> Vec<ParameterInfo> {
     let [a, b] = names;
     let info = |parameter, name, symbol, range, default, description| ParameterInfo {
         parameter,
@@ -203,15 +267,26 @@ fn pair_parameters(names: [String; 2], pair: PairProperties) -> [ParameterInfo; 
         description,
         display: PURE,
     };
-    [
+    let wet_friction = wet.then(|| {
         info(
-            Parameter::Friction(a.clone(), b.clone()),
-            "friction",
-            "μ",
-            0.0..=pair.friction.max(1.0),
-            pair.friction,
-            "Sliding starts when the tangential force reaches this share of the normal force.",
-        ),
+            Parameter::WetFriction(a.clone(), b.clone()),
+            "wet friction",
+            "μ_w",
+            0.0..=pair.wet_friction.max(1.0),
+            pair.wet_friction,
+            "Friction where there is liquid: sliding starts when the tangential force reaches this share of the contact's \
+             normal force.",
+        )
+    });
+    let friction = info(
+        Parameter::Friction(a.clone(), b.clone()),
+        if wet { "dry friction" } else { "friction" },
+        "μ",
+        0.0..=pair.friction.max(1.0),
+        pair.friction,
+        "Sliding starts when the tangential force reaches this share of the normal force.",
+    );
+    let others = [
         info(
             Parameter::RollingFriction(a.clone(), b.clone()),
             "rolling friction",
@@ -228,7 +303,73 @@ fn pair_parameters(names: [String; 2], pair: PairProperties) -> [ParameterInfo; 
             pair.restitution,
             "Rebound speed over impact speed of a head-on impact.",
         ),
-    ]
+    ];
+    wet_friction
+        .into_iter()
+        .chain([friction])
+        .chain(others)
+        .collect()
+}
+
+/// What can change about the liquid.
+fn liquid_parameters(liquid: &SceneLiquid) -> Vec<ParameterInfo> {
+    let info =
+        |parameter: Parameter, label: &str, symbol, range, default, description| ParameterInfo {
+            label: label.into(),
+            symbol,
+            unit: parameter.unit(),
+            range,
+            default,
+            description,
+            display: parameter.display(),
+            parameter,
+        };
+    let mut list = vec![
+        info(
+            Parameter::Viscosity,
+            "viscosity",
+            "η",
+            0.0..=MOST_VISCOUS.max(2.0 * liquid.viscosity),
+            liquid.viscosity,
+            "How strongly bridges resist motion: water 1 mPa s, glycerol 1410 mPa s.",
+        ),
+        info(
+            Parameter::SurfaceTension,
+            "surface tension",
+            "γ",
+            0.0..=STRONGEST_TENSION.max(2.0 * liquid.surface_tension),
+            liquid.surface_tension,
+            "How strongly bridges pull grains together: water 72.8 mN/m.",
+        ),
+        info(
+            Parameter::ContactAngle,
+            "contact angle",
+            "α",
+            0.0..=LARGEST_CONTACT_ANGLE.max(liquid.contact_angle),
+            liquid.contact_angle,
+            "Angle at which the liquid meets the grains; the smaller, the better it wets them.",
+        ),
+        info(
+            Parameter::LiquidVolume,
+            "liquid",
+            "V_l",
+            0.0..=5.0 * liquid.volume.max(1e-9),
+            liquid.volume,
+            "Volume of all the liquid; none makes the grains dry.",
+        ),
+    ];
+    if matches!(liquid.law, BridgeLaw::AS_PRINTED | BridgeLaw::AS_CODED) {
+        let coded = liquid.law == BridgeLaw::AS_CODED;
+        list.push(info(
+            Parameter::BridgeLaw,
+            "bridge law",
+            "",
+            0.0..=1.0,
+            f64::from(u8::from(coded)),
+            "0: the paper's equations as printed. 1: what the public LIGGGHTS 3.8 computes, with far weaker viscous forces.",
+        ));
+    }
+    list
 }
 
 /// The pairs of materials that can touch: grain with grain and grain with wall, each once, in the scene's order.
@@ -261,6 +402,10 @@ pub fn canonical(parameter: &Parameter, materials: &Materials) -> Parameter {
             let (a, b) = ordered(a, b);
             Parameter::Friction(a, b)
         }
+        Parameter::WetFriction(a, b) => {
+            let (a, b) = ordered(a, b);
+            Parameter::WetFriction(a, b)
+        }
         Parameter::Restitution(a, b) => {
             let (a, b) = ordered(a, b);
             Parameter::Restitution(a, b)
@@ -269,7 +414,7 @@ pub fn canonical(parameter: &Parameter, materials: &Materials) -> Parameter {
             let (a, b) = ordered(a, b);
             Parameter::RollingFriction(a, b)
         }
-        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => parameter.clone(),
+        other => other.clone(),
     }
 }
 

@@ -8,7 +8,7 @@ use super::settling::{Settling, needs_settling};
 use super::{Run, bed};
 use crate::measure::elastic_energy;
 use crate::scene::Scene;
-use crate::solver::{Fault, Solver};
+use crate::solver::{Fault, Solver, advise};
 use crate::world::{self, Clock, World};
 use std::sync::Arc;
 
@@ -96,11 +96,12 @@ impl Preparation {
         if !needs_settling(&self.scene) {
             return self.ready(with_forces(built, self.threads));
         }
-        let key = BedKey::of(&built);
+        let step = settling_step(&self.scene);
+        let key = BedKey::of(&built, step);
         if let Some(settled) = self.beds.find(key, &built) {
             return self.ready(settled);
         }
-        let settling = Box::new(Settling::new(built, self.threads));
+        let settling = Box::new(Settling::new(built, step, self.threads));
         self.stage = Stage::Settling { key, settling };
         Prepared::NotYet
     }
@@ -118,6 +119,15 @@ impl Preparation {
     fn ready(&self, bed: World) -> Prepared {
         Prepared::Ready(Box::new(Run::new(self.scene.clone(), bed, self.threads)))
     }
+}
+
+/// The step with which the bed of `scene` settles [s]: the dry one, whatever its liquid asks for.
+fn settling_step(scene: &Scene) -> f64 {
+    let dry = Scene {
+        liquid: None,
+        ..scene.clone()
+    };
+    advise(&dry).time_step
 }
 
 /// `built` with the contacts and forces of grains that touch from the start, their elastic energy in the ledger.
@@ -146,10 +156,11 @@ fn with_forces(built: World, threads: usize) -> World {
 ///
 /// # Errors
 /// The solver's [`Fault`] while the grains settle.
-pub fn make_bed(scene: &Scene, time_step: f64, threads: usize) -> Result<Vec<u8>, Fault> {
-    let built = world::build(scene, time_step);
-    let key = BedKey::of(&built);
-    let mut settling = Settling::new(built, threads);
+pub fn make_bed(scene: &Scene, threads: usize) -> Result<Vec<u8>, Fault> {
+    let built = world::build(scene, settling_step(scene));
+    let step = settling_step(scene);
+    let key = BedKey::of(&built, step);
+    let mut settling = Settling::new(built, step, threads);
     while !settling.advance()? {}
     Ok(bed::encode(key, &settling.finish()))
 }

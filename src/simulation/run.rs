@@ -7,7 +7,7 @@
 use super::parameter::{self, ParameterInfo};
 use super::script::Script;
 use super::{Command, Parameter, StampedCommand};
-use crate::measure::{Series, sample};
+use crate::measure::{FlowHistory, Series, sample_and_surface};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile, Solver};
 use crate::world::World;
@@ -26,6 +26,7 @@ pub struct Run {
     commands: Vec<StampedCommand>,
     script: Script,
     series: Series,
+    flow: Arc<FlowHistory>,
     next_sample: u64,
 }
 
@@ -36,6 +37,7 @@ pub struct Snapshot {
     commands: usize,
     script: Script,
     samples: usize,
+    flow: Arc<FlowHistory>,
     next_sample: u64,
 }
 
@@ -78,6 +80,7 @@ impl Run {
             commands: Vec::new(),
             script: Script::default(),
             series: Series::default(),
+            flow: Arc::default(),
             next_sample: 0,
         };
         run.take_due_sample();
@@ -102,6 +105,11 @@ impl Run {
     /// The samples so far.
     pub fn series(&self) -> &Series {
         &self.series
+    }
+
+    /// The flowing layer so far.
+    pub fn flow(&self) -> &Arc<FlowHistory> {
+        &self.flow
     }
 
     /// The commands carried out since time zero.
@@ -166,6 +174,7 @@ impl Run {
             commands: self.commands.len(),
             script: self.script.clone(),
             samples: self.series.len(),
+            flow: self.flow.clone(),
             next_sample: self.next_sample,
         }
     }
@@ -176,6 +185,7 @@ impl Run {
         self.commands.truncate(snapshot.commands);
         self.script.clone_from(&snapshot.script);
         self.series.truncate(snapshot.samples);
+        self.flow.clone_from(&snapshot.flow);
         self.next_sample = snapshot.next_sample;
     }
 
@@ -219,6 +229,7 @@ impl Run {
         self.commands.clear();
         self.script = Script::default();
         self.series.truncate(0);
+        self.flow = Arc::default();
         self.next_sample = 0;
         self.take_due_sample();
         for (value, parameter) in present {
@@ -238,7 +249,11 @@ impl Run {
         if self.sample_step(self.next_sample) > self.world.clock.step {
             return;
         }
-        self.series.push(sample(&self.world));
+        let (sample, surface) = sample_and_surface(&self.world);
+        if let Some(line) = surface {
+            Arc::make_mut(&mut self.flow).add(&self.world, &sample, &line);
+        }
+        self.series.push(sample);
         while self.sample_step(self.next_sample) <= self.world.clock.step {
             self.next_sample += 1;
         }

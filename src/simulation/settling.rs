@@ -11,7 +11,7 @@
 use crate::measure::elastic_energy;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::solver::{Fault, Solver};
-use crate::world::{Motion, World};
+use crate::world::{Clock, Motion, World};
 use glam::DVec3;
 
 /// Share of its velocity that a grain keeps from one slice of the calming stage to the next.
@@ -37,7 +37,8 @@ pub fn needs_settling(scene: &Scene) -> bool {
 pub struct Settling {
     world: World,
     solver: Solver,
-    motions: Vec<Motion>,
+    /// The scene's world before settling.
+    built: World,
     stage: Stage,
     slice: u64,
     /// `Σ m g r` [J].
@@ -58,10 +59,10 @@ enum Stage {
 }
 
 impl Settling {
-    /// Starts from `world`, its grains placed and at rest, on `threads` threads.
-    pub fn new(world: World, threads: usize) -> Self {
-        let motions = motions(&world);
-        let world = standing(world);
+    /// Starts from `built`, a scene's world with its grains placed and at rest, on `threads` threads, with steps of
+    /// `time_step` [s].
+    pub fn new(built: World, time_step: f64, threads: usize) -> Self {
+        let world = standing(&built, time_step);
         let gravity = world.gravity.length();
         let radius = mean(&world.grains.radius);
         let steps = |time: f64| (time / world.clock.time_step).ceil().max(1.0) as u64;
@@ -72,7 +73,7 @@ impl Settling {
             relaxation: steps(RELAXATION * unit),
             patience: steps(PATIENCE * unit),
             energy_scale: energy_scale(&world),
-            motions,
+            built,
             world,
             solver: Solver::new(threads),
             stage: Stage::Falling,
@@ -111,7 +112,7 @@ impl Settling {
 
     /// The settled world at time zero, the walls moving as the scene says.
     pub fn finish(self) -> World {
-        start(self.world, &self.motions)
+        start(self.world, &self.built)
     }
 
     fn calm(&mut self) {
@@ -134,20 +135,36 @@ impl Settling {
     }
 }
 
-/// `world` with walls that stand still.
-pub fn standing(mut world: World) -> World {
+/// `built` as it settles: with walls that stand still, dry, with steps of `time_step` [s]. Liquid is poured over the
+/// settled bed, so that a drum has one bed for all liquids.
+pub fn standing(built: &World, time_step: f64) -> World {
+    let mut world = built.clone();
+    world.clock = Clock::new(time_step);
+    world.liquid = None;
+    world.grains.film.fill(0.0);
+    for pair in world.materials.pairs_mut() {
+        pair.wet_friction = pair.friction;
+    }
     for wall in &mut world.container.walls {
         wall.motion = Motion::default();
     }
     world
 }
 
-/// Puts `world` at rest at time zero, its walls moving as `motions` say.
+/// Puts a `settled` world at rest at time zero, with liquid, step and moving walls as in `built`.
 ///
 /// Forces and springs are rounded to single precision, which disturbs a bed far less than its last creeping does: kept
 /// beds are small and the same to the bit.
-pub fn start(mut world: World, motions: &[Motion]) -> World {
+pub fn start(settled: World, built: &World) -> World {
+    let mut world = World {
+        clock: built.clock,
+        liquid: built.liquid,
+        materials: built.materials.clone(),
+        container: built.container.clone(),
+        ..settled
+    };
     let grains = &mut world.grains;
+    grains.film.clone_from(&built.grains.film);
     grains.velocity.fill(DVec3::ZERO);
     grains.spin.fill(DVec3::ZERO);
     let on_grains = grains
@@ -163,20 +180,11 @@ pub fn start(mut world: World, motions: &[Motion]) -> World {
     }
     let elastic = elastic_energy(&world);
     world.restart_clock(elastic);
-    for (wall, motion) in world.container.walls.iter_mut().zip(motions) {
-        wall.motion = *motion;
-    }
     world
 }
 
 fn round(vector: &mut DVec3) {
     *vector = vector.as_vec3().as_dvec3();
-}
-
-/// How the walls of `world` move.
-pub fn motions(world: &World) -> Vec<Motion> {
-    let walls = world.container.walls.iter();
-    walls.map(|wall| wall.motion).collect()
 }
 
 fn mean(values: &[f64]) -> f64 {

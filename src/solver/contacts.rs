@@ -4,8 +4,12 @@
 //! pair, new springs. Pairs are computed in lanes and each writes rows of its own; nothing is summed here, so the order of
 //! work never shows.
 
-use super::lanes::{Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, times};
+use super::bridges::{BridgeGroup, BridgeRow, Encounter, LiquidAction, Wetting};
+use super::lanes::{
+    Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
+};
 use super::law::{Coefficients, Law, PairConstants, rolling_gain};
+use crate::scene::CoulombBound;
 use crate::world::{Motion, Surface};
 use glam::DVec3;
 
@@ -99,12 +103,6 @@ struct GrainAndWall<'a, N> {
 #[inline(always)]
 fn rows<'a>(bodies: [&'a Body; WIDEST], row: impl Fn(&'a Body) -> &'a Row) -> Rows<'a> {
     bodies.map(row)
-}
-
-/// What `of` makes of the numbers of the lanes; where there are fewer than [`WIDEST`], the last one fills up.
-#[inline(always)]
-fn side_by_side<N: Lanes, T>(of: impl Fn(usize) -> T) -> [T; WIDEST] {
-    std::array::from_fn(|k| of(k.min(N::COUNT - 1)))
 }
 
 impl<N: Lanes> Partners<N> for TwoGrains<'_> {
@@ -279,10 +277,12 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     constants: &Constants<N>,
     springs: &mut [Row],
     actions: &mut [Action],
-) {
+    liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
+) -> u32 {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
     let (half, dt) = (N::splat(processor, 0.5), N::splat(processor, dt));
     let (law_constants, [friction, rolling_arm, radius, partner_radius]) = *constants;
+    let mut ruptures = 0;
 
     let (normal, depth) = partners.geometry(processor, [radius, partner_radius]);
     let touching = depth.exceeds(zero);
@@ -318,6 +318,32 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         minus(velocity, times(normal, approach)),
         cross(rolling_sum, normal),
     );
+    let (rolling_spin, compliance) = partners.rolling(processor);
+    let mut bounding = law.coulomb_force(elastic, repulsion, zero);
+    let mut total_repulsion = repulsion;
+    let mut drag = [zero; 3];
+    let is_wet = liquid.is_some();
+    if let Some((bridges, film)) = liquid {
+        let encounter = Encounter {
+            depth,
+            touching,
+            approach,
+            slip,
+            compliance,
+        };
+        let total = bridges.wetting.liquid.law.coulomb == CoulombBound::Total;
+        let force = bridges.act(processor, dt, [radius, partner_radius], &film, &encounter);
+        total_repulsion = repulsion + force.repulsion;
+        drag = force.drag;
+        ruptures = force.ruptures;
+        if total {
+            bounding = N::choose(
+                zero.exceeds(total_repulsion),
+                -total_repulsion,
+                total_repulsion,
+            );
+        }
+    }
     let old = side_by_side::<N, _>(|k| &springs[k]);
     let [x, y, z, old_stiffness] = N::gather(processor, old);
     let old_spring = [x, y, z];
@@ -327,7 +353,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let stretched = minus(stretched, times(normal, dot(stretched, normal)));
     let stretch_squared = dot(stretched, stretched);
     let trial = tangential_stiffness * stretch_squared.sqrt();
-    let bound = friction * law.coulomb_force(elastic, repulsion, zero);
+    let bound = friction * bounding;
     let slides = trial.exceeds(bound);
     let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
     let damping = N::choose(touching, N::choose(slides, zero, tangential_damping), zero);
@@ -338,7 +364,12 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         *spring = new.row();
     }
     let tangential = minus(times(spring, -tangential_stiffness), times(slip, damping));
-    let force = minus(tangential, times(normal, repulsion));
+    let tangential = if is_wet {
+        plus(tangential, drag)
+    } else {
+        tangential
+    };
+    let force = minus(tangential, times(normal, total_repulsion));
     let twist = cross(normal, tangential);
     let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
     // What the mean of the old and the new spring's pull does along the slip, less the change of what they store.
@@ -346,7 +377,6 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let in_sliding = half * (old_work + new_work);
 
     // Rolling.
-    let (rolling_spin, compliance) = partners.rolling(processor);
     let speed = dot(rolling_spin, rolling_spin).sqrt();
     let gain = rolling_gain(rolling_arm * elastic, compliance, speed, zero, one);
     let without_twist = minus(rolling_spin, times(normal, dot(rolling_spin, normal)));
@@ -373,6 +403,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         action.rolling = rolling[k].row();
         action.exchanged = exchanged[k].row();
     }
+    ruptures
 }
 
 /// A range of pairs with the rows they write.
@@ -383,6 +414,10 @@ pub struct PairRows<'a> {
     pub springs: &'a mut [Row],
     /// What they do.
     pub actions: &'a mut [Action],
+    /// Their bridges and what those do; empty where nothing is wet.
+    pub bridges: &'a mut [BridgeRow],
+    /// What the bridges do.
+    pub liquid_actions: &'a mut [LiquidAction],
 }
 
 /// What every pair's force depends on.
@@ -397,6 +432,8 @@ pub struct Surroundings<'a, L> {
     pub walls: &'a [WallBody],
     /// Constants of every kind of pair.
     pub constants: &'a [PairConstants],
+    /// What bridges depend on, where there is liquid.
+    pub wetting: Option<Wetting<'a>>,
 }
 
 /// The forces of a range of pairs of grains and a range of pairs with walls.
@@ -409,37 +446,66 @@ pub struct Forces<'a, L> {
     pub of_walls: PairRows<'a>,
 }
 
-/// Pairs of grains, as many at a time as there are lanes.
 #[inline(always)]
-fn between_grains<N: Lanes, L: Law>(
+fn film_constants<N: Lanes>(
+    processor: N::Processor,
+    wetting: &Wetting<'_>,
+    pairs: &[Pair],
+) -> Constants<N> {
+    let kinds = side_by_side::<N, _>(|k| &wetting.constants[pairs[k].kind as usize]);
+    (
+        N::gather(processor, kinds.map(|kind| &kind.viscous)),
+        N::gather(processor, kinds.map(|kind| &kind.gaps)),
+    )
+}
+
+/// Pairs of grains, as many at a time as there are lanes; with bridges where `WET`. Returns how many of those broke.
+#[inline(always)]
+fn between_grains<N: Lanes, L: Law, const WET: bool>(
     processor: N::Processor,
     all: &Surroundings<'_, L>,
     rows: PairRows<'_>,
-) {
+) -> u64 {
     let Some(kind) = rows.pairs.first().map(|pair| pair.kind) else {
-        return;
+        return 0;
     };
     // As a rule all grains are of one class, and the constants are the same throughout.
     let uniform = rows.pairs.iter().all(|pair| pair.kind == kind);
     let common = common_constants::<N>(processor, &all.constants[kind as usize]);
-    let outputs = rows
-        .springs
-        .chunks_exact_mut(N::COUNT)
-        .zip(rows.actions.chunks_exact_mut(N::COUNT));
-    for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
+    let mut ruptures = 0;
+    for first in (0..rows.pairs.len()).step_by(N::COUNT) {
+        let group = first..first + N::COUNT;
+        let pairs = &rows.pairs[group.clone()];
         let partners = TwoGrains {
             first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]),
             second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner as usize]),
         };
-        if uniform {
-            interact(
-                processor, all.law, all.dt, partners, &common, springs, actions,
-            );
+        let springs = &mut rows.springs[group.clone()];
+        let actions = &mut rows.actions[group.clone()];
+        let liquid = match all.wetting {
+            Some(wetting) if WET => Some((
+                BridgeGroup {
+                    wetting,
+                    pairs,
+                    rows: &mut rows.bridges[group.clone()],
+                    actions: &mut rows.liquid_actions[group],
+                },
+                film_constants(processor, &wetting, pairs),
+            )),
+            _ => None,
+        };
+        let own;
+        let constants = if uniform {
+            &common
         } else {
-            let own = own_constants::<N>(processor, all.constants, pairs);
-            interact(processor, all.law, all.dt, partners, &own, springs, actions);
-        }
+            own = own_constants::<N>(processor, all.constants, pairs);
+            &own
+        };
+        ruptures += u64::from(interact(
+            processor, all.law, all.dt, partners, constants, springs, actions, liquid,
+        ));
     }
+    ruptures
 }
 
 /// Pairs with walls, as many at a time as there are lanes; each such group meets one wall.
@@ -458,16 +524,24 @@ fn at_walls<N: Lanes, L: Law>(
         let partners =
             GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
         let own = own_constants::<N>(processor, all.constants, pairs);
-        interact(processor, all.law, all.dt, partners, &own, springs, actions);
+        interact(
+            processor, all.law, all.dt, partners, &own, springs, actions, None,
+        );
     }
 }
 
 impl<L: Law> Work for Forces<'_, L> {
-    type Output = ();
+    type Output = u64;
 
+    /// Returns how many bridges broke.
     #[inline(always)]
-    fn run<N: Lanes>(self, processor: N::Processor) {
-        between_grains::<N, L>(processor, &self.surroundings, self.of_grains);
+    fn run<N: Lanes>(self, processor: N::Processor) -> u64 {
+        let ruptures = if self.surroundings.wetting.is_some() {
+            between_grains::<N, L, true>(processor, &self.surroundings, self.of_grains)
+        } else {
+            between_grains::<N, L, false>(processor, &self.surroundings, self.of_grains)
+        };
         at_walls::<N, L>(processor, &self.surroundings, self.of_walls);
+        ruptures
     }
 }

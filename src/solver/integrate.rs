@@ -3,6 +3,7 @@
 //! In: actions per pair, the bodies half a step behind in velocity. Out: the bodies half a step ahead, at their next
 //! positions; or, at the last step of a call, with velocities at the time of the positions.
 
+use super::bridges::LiquidAction;
 use super::contacts::{Action, Body};
 use super::lanes::{Lanes, Quad, Row, Work};
 use super::neighbours::Parts;
@@ -18,6 +19,8 @@ pub struct Total<Q> {
     pub rolling: Q,
     /// Energy exchanged at the grain's own pairs [J].
     pub exchanged: Q,
+    /// Energy that the grain's own bridges lose [J], bridges to grains that it does not touch, volume its film gains [m³].
+    pub liquid: Q,
 }
 
 impl<Q: Quad> Total<Q> {
@@ -29,6 +32,7 @@ impl<Q: Quad> Total<Q> {
             torque: zero,
             rolling: zero,
             exchanged: zero,
+            liquid: zero,
         }
     }
 
@@ -51,6 +55,21 @@ impl<Q: Quad> Total<Q> {
             + Q::load(processor, &action.exchanged) * Q::repeat(processor, BOOKED[side]);
     }
 
+    /// Adds the bridge of such a pair.
+    #[inline(always)]
+    fn add_bridge(&mut self, processor: Q::Processor, action: &LiquidAction, side: usize) {
+        // Losses are booked on the first side, both count the bridge, and what one film gains the other loses.
+        const SIGNS: [Row; 2] = [[1.0; 4], [0.0, 0.0, 1.0, -1.0]];
+        let sign = Q::load(processor, &SIGNS[side]);
+        self.liquid = self.liquid + Q::load(processor, action) * sign;
+    }
+
+    /// Partners that hold the grain: those it touches and those on bridges.
+    #[inline(always)]
+    fn partners(&self) -> f64 {
+        self.rolling.row()[3] + self.liquid.row()[2]
+    }
+
     #[inline(always)]
     fn load(processor: Q::Processor, total: &Total<Row>) -> Self {
         Self {
@@ -58,6 +77,7 @@ impl<Q: Quad> Total<Q> {
             torque: Q::load(processor, &total.torque),
             rolling: Q::load(processor, &total.rolling),
             exchanged: Q::load(processor, &total.exchanged),
+            liquid: Q::load(processor, &total.liquid),
         }
     }
 
@@ -68,6 +88,7 @@ impl<Q: Quad> Total<Q> {
             torque: self.torque.row(),
             rolling: self.rolling.row(),
             exchanged: self.exchanged.row(),
+            liquid: self.liquid.row(),
         }
     }
 }
@@ -79,6 +100,8 @@ pub struct Load {
     pub total: Total<Row>,
     /// Energy exchanged since the start [J].
     pub exchanged: Row,
+    /// Energy lost in bridges since the start [J], in the first two.
+    pub liquid_loss: Row,
     /// Time step over moment of inertia [1/(N m s)].
     pub compliance: f64,
     /// Largest speed that is not absurd, squared [m²/s²].
@@ -101,6 +124,8 @@ pub struct Motion {
 pub struct Incidence<'a> {
     /// What every pair does.
     pub actions: &'a [Action],
+    /// What every bridge does; empty where nothing is wet.
+    pub liquid_actions: &'a [LiquidAction],
     /// Each grain's parts in them.
     pub parts: &'a Parts,
 }
@@ -117,10 +142,13 @@ pub struct Outcome {
 impl Incidence<'_> {
     /// Sum over the pairs of grain `i`, in the pairs' order.
     #[inline(always)]
-    fn total<Q: Quad>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
+    fn total<Q: Quad, const WET: bool>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
         let mut total = Total::zero(processor);
         for part in self.parts.of(i) {
             total.add(processor, &self.actions[part.action()], part.side());
+            if WET && let Some(action) = self.liquid_actions.get(part.action()) {
+                total.add_bridge(processor, action, part.side());
+            }
         }
         total
     }
@@ -154,12 +182,12 @@ fn drift<Q: Quad>(
     let dt = motion.dt;
     let step = Q::load(processor, &[dt, dt, dt, 0.0]);
     let position = Q::load(processor, &body.position) + Q::load(processor, &body.velocity) * step;
-    let contacts = total.rolling.row()[3];
-    let contacts = if contacts > 1.0 { contacts } else { 1.0 };
+    let partners = total.partners();
+    let partners = if partners > 1.0 { partners } else { 1.0 };
     let free =
         Q::load(processor, &body.spin) + total.torque * Q::repeat(processor, dt * body.velocity[3]);
     let free = free.row();
-    body.free_spin = [free[0], free[1], free[2], load.compliance * contacts];
+    body.free_spin = [free[0], free[1], free[2], load.compliance * partners];
     body.position = position.row();
     (position - Q::load(processor, reference)).length_squared() > motion.slack_squared
 }
@@ -198,7 +226,7 @@ impl Work for Start<'_> {
 }
 
 /// Finishes a step for a range of grains and, unless it is the last of a call, starts the next.
-pub struct Finish<'a> {
+pub struct Finish<'a, const WET: bool> {
     /// Constants.
     pub motion: &'a Motion,
     /// Where to find the grains' pairs.
@@ -209,13 +237,15 @@ pub struct Finish<'a> {
     pub bodies: &'a mut [Body],
     /// What acts on it; written at the last step.
     pub loads: &'a mut [Load],
+    /// Volume of the film on each; empty where nothing is wet [m³].
+    pub films: &'a mut [f64],
     /// Where it was when the active list was filtered.
     pub references: &'a [Row],
     /// Whether this is the last step of a call.
     pub last: bool,
 }
 
-impl Work for Finish<'_> {
+impl<const WET: bool> Work for Finish<'_, WET> {
     type Output = Outcome;
 
     #[inline(always)]
@@ -226,6 +256,7 @@ impl Work for Finish<'_> {
             begin,
             bodies,
             loads,
+            films,
             references,
             last,
         } = self;
@@ -233,8 +264,13 @@ impl Work for Finish<'_> {
         for (k, ((body, load), reference)) in
             bodies.iter_mut().zip(loads).zip(references).enumerate()
         {
-            let total = pairs.total::<N::Quad>(processor, begin + k);
+            let total = pairs.total::<N::Quad, WET>(processor, begin + k);
             load.exchanged = (N::Quad::load(processor, &load.exchanged) + total.exchanged).row();
+            if WET {
+                load.liquid_loss =
+                    (N::Quad::load(processor, &load.liquid_loss) + total.liquid).row();
+                films[k] += total.liquid.row()[3];
+            }
             kick(processor, body, &total, motion);
             let speed_squared = N::Quad::load(processor, &body.velocity).length_squared();
             let spin_squared = N::Quad::load(processor, &body.spin).length_squared();

@@ -52,6 +52,10 @@ pub trait Lanes:
     fn exceeds(self, other: Self) -> Self::Mask;
     /// `a` where `mask` holds, elsewhere `b`.
     fn choose(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// In how many lanes `mask` holds.
+    fn count(mask: Self::Mask) -> u32;
+    /// One number from each lane; the first [`Lanes::COUNT`] of them count.
+    fn numbers(self) -> [f64; WIDEST];
 }
 
 /// A row in registers: four numbers of one grain or pair, whatever the number of lanes.
@@ -106,6 +110,12 @@ pub fn plus<N: Lanes>(a: [N; 3], b: [N; 3]) -> [N; 3] {
 #[inline(always)]
 pub fn minus<N: Lanes>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// What `of` makes of the numbers of the lanes; where there are fewer than [`WIDEST`], the last one fills up.
+#[inline(always)]
+pub fn side_by_side<N: Lanes, T>(of: impl Fn(usize) -> T) -> [T; WIDEST] {
+    std::array::from_fn(|k| of(k.min(N::COUNT - 1)))
 }
 
 /// The scalar twin.
@@ -203,6 +213,16 @@ impl Lanes for One {
     fn choose(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
     }
+
+    #[inline(always)]
+    fn count(mask: bool) -> u32 {
+        u32::from(mask)
+    }
+
+    #[inline(always)]
+    fn numbers(self) -> [f64; WIDEST] {
+        [self.0; WIDEST]
+    }
 }
 
 /// A row for any processor.
@@ -253,12 +273,12 @@ mod avx {
     use super::{Lanes, Quad, Row, Rows, WIDEST, Work};
     use std::arch::x86_64::{
         __m256d, __m512d, __mmask8, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd,
-        _mm256_div_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set_pd,
-        _mm256_set1_pd, _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd,
-        _mm256_unpacklo_pd, _mm256_xor_pd, _mm512_add_pd, _mm512_castpd256_pd512,
-        _mm512_castpd512_pd256, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_extractf64x4_pd,
-        _mm512_insertf64x4, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_sqrt_pd,
-        _mm512_sub_pd, _mm512_xor_pd,
+        _mm256_div_pd, _mm256_loadu_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd,
+        _mm256_set_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd,
+        _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd, _mm512_add_pd,
+        _mm512_castpd256_pd512, _mm512_castpd512_pd256, _mm512_cmp_pd_mask, _mm512_div_pd,
+        _mm512_extractf64x4_pd, _mm512_insertf64x4, _mm512_mask_blend_pd, _mm512_mul_pd,
+        _mm512_set1_pd, _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd, _mm512_xor_pd,
     };
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -522,6 +542,18 @@ mod avx {
             // SAFETY: AVX is there, as `a.0` proves.
             Self(a.0, unsafe { _mm256_blendv_pd(b.1, a.1, mask) })
         }
+
+        #[inline(always)]
+        fn count(mask: __m256d) -> u32 {
+            // SAFETY: masks come from comparisons, which took AVX.
+            unsafe { _mm256_movemask_pd(mask) }.count_ones()
+        }
+
+        #[inline(always)]
+        fn numbers(self) -> [f64; WIDEST] {
+            let [a, b, c, d] = self.row();
+            [a, b, c, d, a, b, c, d]
+        }
     }
 
     /// Rows of the first and of the last four numbers.
@@ -634,6 +666,19 @@ mod avx {
         fn choose(mask: __mmask8, a: Self, b: Self) -> Self {
             // SAFETY: AVX-512 is there, as `a.0` proves.
             Self(a.0, unsafe { _mm512_mask_blend_pd(mask, b.1, a.1) })
+        }
+
+        #[inline(always)]
+        fn count(mask: __mmask8) -> u32 {
+            mask.count_ones()
+        }
+
+        #[inline(always)]
+        fn numbers(self) -> [f64; WIDEST] {
+            let mut numbers = [0.0; WIDEST];
+            // SAFETY: AVX-512 is there, as `self.0` proves; the array holds eight numbers.
+            unsafe { _mm512_storeu_pd(numbers.as_mut_ptr(), self.1) };
+            numbers
         }
     }
 }

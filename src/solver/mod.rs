@@ -10,6 +10,7 @@
 //!
 //! What is not here: damping other than the contact laws', grains that are no spheres, periodic boundaries.
 
+mod bridges;
 mod contacts;
 mod fault;
 mod integrate;
@@ -32,7 +33,7 @@ use crate::world::World;
 use law::{HertzMindlin, Hooke, Law};
 use state::State;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use team::{Barrier, Team};
 
@@ -139,6 +140,7 @@ impl Solver {
         let (refresh, fault) = (AtomicBool::new(false), AtomicBool::new(false));
         let limit = remaining.min(self.state.steps_within_slack());
         let result = Mutex::new((0, [Duration::ZERO; 2]));
+        let ruptures = AtomicU64::new(0);
         let phase = self.state.phase();
         let processor = self.processor;
         self.team.run(|member| {
@@ -151,7 +153,10 @@ impl Solver {
             {
                 let begin = (member == 0 && steps % STEPS_PER_TIMING == 0).then(Instant::now);
                 // SAFETY: all members are between the same two barriers, each under its own number.
-                unsafe { phase.forces(processor, law, &walls, member, size) };
+                let broken = unsafe { phase.forces(processor, law, &walls, member, size) };
+                if broken > 0 {
+                    ruptures.fetch_add(broken, Ordering::Relaxed);
+                }
                 barrier.wait();
                 let middle = begin.map(|begin| (begin.elapsed(), Instant::now()));
                 steps += 1;
@@ -175,6 +180,7 @@ impl Solver {
                 *result = (steps, timings);
             }
         });
+        self.state.count_ruptures(ruptures.into_inner());
         let (steps, timings) = result.into_inner().unwrap_or_default();
         let moves = if steps == remaining { steps - 1 } else { steps };
         (0..moves).for_each(|_| self.state.move_walls());

@@ -4,9 +4,11 @@
 //! wide skin; the *active* list, filtered from it, holds pairs closer than a narrow skin and is what the pair loop runs
 //! over. Each list is good until some grain has moved by half its skin. Pairs are kept sorted by grain and partner and
 //! forces are summed in that order; a listed pair that does not touch adds exact zeros, so the sums do not depend on the
-//! skins. Tangential springs follow their pair from list to list. The last of the bodies is a ghost that fills groups of
+//! skins. A pair with a bridge is active however wide its gap. Tangential springs and bridges follow their pair from list to
+//! list. The last of the bodies is a ghost that fills groups of
 //! pairs up; nothing it does counts.
 
+use super::bridges::{BridgeRow, LiquidAction};
 use super::contacts::{Action, Body, GROUP, Pair, WallBody};
 use super::row::{Row, length_squared, sub, vector};
 use crate::world::{Contact, Partner, Surface};
@@ -18,6 +20,8 @@ pub struct PairList {
     pub pairs: Vec<Pair>,
     /// Tangential spring of each [m].
     pub springs: Vec<Row>,
+    /// Bridge of each; empty where nothing is wet.
+    pub bridges: Vec<BridgeRow>,
 }
 
 /// A grain's part in a pair.
@@ -99,6 +103,8 @@ pub struct Neighbours {
     pub walls: PairList,
     /// What each active pair does: first those of grains, then those with walls.
     pub actions: Vec<Action>,
+    /// What each active bridge does; empty where nothing is wet.
+    pub liquid_actions: Vec<LiquidAction>,
     /// The grains' parts in the active pairs.
     pub parts: Parts,
     near_grains: Vec<Pair>,
@@ -106,6 +112,8 @@ pub struct Neighbours {
     near_reference: Vec<Row>,
     near_surfaces: Vec<Surface>,
     skins: Skins,
+    /// Largest gap that a bridge can hold; none where nothing is wet [m].
+    reach: Option<f64>,
     /// Grain positions when the active list was filtered.
     pub reference: Vec<Row>,
     /// Near lists built since the start.
@@ -117,6 +125,8 @@ pub struct Neighbours {
 struct Skins {
     active: f64,
     near: f64,
+    /// Smallest radius, which both are measured by.
+    radius: f64,
 }
 
 /// Bounds of the active skin relative to the smallest radius: below the lower one refreshing costs more than the pairs
@@ -148,7 +158,8 @@ impl Neighbours {
 
     /// Whether the near list was built for these bodies and walls and still covers them.
     fn covers(&self, bodies: &[Body], walls: &[WallBody]) -> bool {
-        let slack = 0.5 * (self.skins.near - self.skins.active);
+        let inner = self.skins.active.max(self.reach.unwrap_or(0.0));
+        let slack = 0.5 * (self.skins.near - inner);
         self.near_reference.len() + 1 == bodies.len()
             && walls
                 .iter()
@@ -159,10 +170,12 @@ impl Neighbours {
             })
     }
 
-    /// The pair of which grain `i` has this part as a contact, if it touches and the grain is its first partner.
+    /// The pair of which a grain has this part as a contact, if it touches or has a bridge and the grain is its first
+    /// partner.
     pub fn contact(&self, part: Part) -> Option<Contact> {
         let (index, action) = (part.action(), &self.actions[part.action()]);
-        let touches = action.rolling[3] > 0.0;
+        let touching = action.rolling[3] > 0.0;
+        let bridge = self.grains.bridges.get(index).and_then(BridgeRow::bridge);
         let (pair, partner, spring) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
@@ -177,13 +190,33 @@ impl Neighbours {
                 (pair, Partner::Wall(pair.partner), self.walls.springs[k])
             }
         };
-        (touches && part.side() == 0).then(|| Contact {
+        ((touching || bridge.is_some()) && part.side() == 0).then(|| Contact {
             grain: pair.grain,
             partner,
             spring: vector(spring),
             stiffness: spring[3],
             force: vector(action.force),
+            touching,
+            bridge,
         })
+    }
+
+    /// Says how far bridges reach [m], none where nothing is wet. The lists follow at the next refresh.
+    pub fn set_reach(&mut self, reach: Option<f64>) {
+        if self.reach != reach {
+            self.reach = reach;
+            self.forget();
+        }
+    }
+
+    /// Takes over pairs with their springs and bridges, sorted by grain and partner, whatever was listed before. They are
+    /// no whole groups: a refresh must follow.
+    pub fn adopt(&mut self, pairs: Vec<Pair>, springs: Vec<Row>, bridges: Vec<BridgeRow>) {
+        self.grains = PairList {
+            pairs,
+            springs,
+            bridges,
+        };
     }
 
     /// Forgets the near list, for bodies or walls that are not those it was built for.
@@ -198,7 +231,7 @@ impl Neighbours {
             _ if steps > WANTED_STEPS.1 => 0.8,
             _ => 1.0,
         };
-        let radius = self.skins.near / NEAR_SKIN;
+        let radius = self.skins.radius;
         self.skins.active = (self.skins.active * factor)
             .clamp(ACTIVE_SKIN.start() * radius, ACTIVE_SKIN.end() * radius);
     }
@@ -233,9 +266,20 @@ impl Neighbours {
             partner: count as u32,
             kind: 0,
         };
-        let mut pairs: Vec<Pair> = self.near_grains.iter().filter(close).copied().collect();
+        let mut bridged = self.grains.bridged().peekable();
+        let mut is_bridged = |pair: &Pair| {
+            while bridged.next_if(|known| *known < grain_key(pair)).is_some() {}
+            bridged.next_if_eq(&grain_key(pair)).is_some()
+        };
+        let mut pairs: Vec<Pair> = self
+            .near_grains
+            .iter()
+            .filter(|pair| is_bridged(pair) || close(pair))
+            .copied()
+            .collect();
+        drop(bridged);
         fill_group(&mut pairs, ghost);
-        self.grains.replace(pairs, grain_key);
+        self.grains.replace(pairs, grain_key, self.reach.is_some());
         let mut pairs = Vec::new();
         for of_wall in self.near_walls.chunk_by(|a, b| a.partner == b.partner) {
             pairs.extend(of_wall.iter().filter(at_wall));
@@ -248,11 +292,13 @@ impl Neighbours {
                 },
             );
         }
-        self.walls.replace(pairs, wall_key);
+        self.walls.replace(pairs, wall_key, false);
         self.actions.resize(
             self.grains.pairs.len() + self.walls.pairs.len(),
             Action::default(),
         );
+        self.liquid_actions
+            .resize(self.grains.bridges.len(), LiquidAction::default());
         self.parts
             .fill(&self.grains.pairs, &self.walls.pairs, count);
         self.reference.clear();
@@ -273,13 +319,17 @@ impl Neighbours {
             .iter()
             .map(|body| body.spin[3])
             .fold(f64::INFINITY, f64::min);
-        let near = NEAR_SKIN * smallest;
-        let active = if self.skins.near == near {
+        let near = smallest * NEAR_SKIN + self.reach.unwrap_or(0.0);
+        let active = if self.skins.radius == smallest {
             self.skins.active
         } else {
             0.03 * smallest
         };
-        self.skins = Skins { active, near };
+        self.skins = Skins {
+            active,
+            near,
+            radius: smallest,
+        };
 
         self.near_grains.clear();
         let grid = CellGrid::new(bodies, near);
@@ -331,17 +381,27 @@ impl Neighbours {
 
 impl PairList {
     /// Takes over `pairs`, sorted by `key`; those that were listed before keep their springs.
-    fn replace(&mut self, pairs: Vec<Pair>, key: Key) {
+    fn replace(&mut self, pairs: Vec<Pair>, key: Key, wet: bool) {
         let mut springs = vec![[0.0; 4]; pairs.len()];
-        carry_springs(&self.pairs, &self.springs, &pairs, &mut springs, key);
+        carry(&self.pairs, &self.springs, &pairs, &mut springs, key);
         self.springs = springs;
+        let mut bridges = vec![BridgeRow::default(); if wet { pairs.len() } else { 0 }];
+        carry(&self.pairs, &self.bridges, &pairs, &mut bridges, key);
+        self.bridges = bridges;
         self.pairs = pairs;
     }
 
     /// Sets the springs of the listed pairs from `known` pairs with their springs, sorted by `key`; others are unloaded.
     pub fn load_springs(&mut self, known: &[Pair], springs: &[Row], key: Key) {
         self.springs.fill([0.0; 4]);
-        carry_springs(known, springs, &self.pairs, &mut self.springs, key);
+        carry(known, springs, &self.pairs, &mut self.springs, key);
+    }
+
+    /// The keys of the pairs that have a bridge, in order.
+    fn bridged(&self) -> impl Iterator<Item = (u32, u32)> {
+        let rows = self.pairs.iter().zip(&self.bridges);
+        rows.filter(|(_, bridge)| bridge.exists())
+            .map(|(pair, _)| grain_key(pair))
     }
 }
 
@@ -363,19 +423,19 @@ fn fill_group(pairs: &mut Vec<Pair>, ghost: Pair) {
     pairs.resize(pairs.len().next_multiple_of(GROUP), ghost);
 }
 
-/// Copies the springs of pairs that stand in both sorted lists.
-fn carry_springs(
+/// Copies what pairs remember from one sorted list to the other where they stand in both.
+fn carry<T: Copy>(
     old: &[Pair],
-    old_springs: &[Row],
+    old_memories: &[T],
     new: &[Pair],
-    new_springs: &mut [Row],
+    new_memories: &mut [T],
     key: Key,
 ) {
-    let mut known = old.iter().zip(old_springs).peekable();
-    for (pair, spring) in new.iter().zip(new_springs) {
+    let mut known = old.iter().zip(old_memories).peekable();
+    for (pair, memory) in new.iter().zip(new_memories) {
         while known.next_if(|(old, _)| key(old) < key(pair)).is_some() {}
-        if let Some((_, old_spring)) = known.next_if(|(old, _)| key(old) == key(pair)) {
-            *spring = *old_spring;
+        if let Some((_, old_memory)) = known.next_if(|(old, _)| key(old) == key(pair)) {
+            *memory = *old_memory;
         }
     }
 }

@@ -2,15 +2,16 @@
 //!
 //! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
 
+use super::bridges::{BridgeRow, LiquidAction, Wetting};
 use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
 use super::integrate::{Finish, Incidence, Load, Motion, Outcome, Start, Total};
 use super::lanes::Processor;
-use super::law::{Law, PairConstants, Pairing};
+use super::law::{FilmConstants, Law, PairConstants, Pairing, contributions, rupture_gap};
 use super::neighbours::{Neighbours, Parts, grain_key, wall_key};
 use super::row::{Row, length_squared, row, vector};
 use super::team::{Shared, share};
 use super::{Fault, FaultKind};
-use crate::world::{Contact, Partner, Surface, World};
+use crate::world::{Contact, Liquid, Partner, Surface, World};
 use std::collections::HashMap;
 
 /// A grain that moves by more than this share of its radius in one step is lost.
@@ -25,6 +26,12 @@ pub struct State {
     neighbours: Neighbours,
     kinds: Kinds,
     motion: Motion,
+    /// The liquid, where there is any.
+    liquid: Option<Liquid>,
+    /// Volume of the film on every grain and, of none, on the ghost; empty where nothing is wet [m³].
+    films: Vec<f64>,
+    /// Bridges that broke since the world was taken in.
+    ruptures: u64,
 }
 
 /// Kinds of pairs: grains of one class (radius, mass, material) are alike to every law.
@@ -36,6 +43,8 @@ struct Kinds {
     /// A pair of each kind, to compute its constants from.
     examples: Vec<(usize, Partner)>,
     constants: Vec<PairConstants>,
+    /// What bridges depend on, for each kind; empty where nothing is wet.
+    films: Vec<FilmConstants>,
 }
 
 /// The second side of a kind of pair.
@@ -82,10 +91,15 @@ impl Kinds {
     /// Computes the constants of every kind from the world's present materials.
     fn compute(&mut self, world: &World) {
         self.constants.clear();
-        self.constants
-            .extend(self.examples.iter().map(|(grain, partner)| {
-                Pairing::of(world, *grain, *partner).constants(world.law, &world.materials)
-            }));
+        self.films.clear();
+        let liquid = world.wetting();
+        for (grain, partner) in &self.examples {
+            let pairing = Pairing::of(world, *grain, *partner);
+            let constants = pairing.constants(world.law, &world.materials, liquid.is_some());
+            self.constants.push(constants);
+            self.films
+                .extend(liquid.map(|liquid| FilmConstants::of(&pairing, liquid)));
+        }
     }
 
     fn of(&mut self, grain: u32, partner: Partner) -> u32 {
@@ -103,6 +117,11 @@ impl Kinds {
 }
 
 impl State {
+    /// Counts bridges that broke.
+    pub fn count_ruptures(&mut self, ruptures: u64) {
+        self.ruptures += ruptures;
+    }
+
     /// Takes `world` in.
     pub fn load(&mut self, world: &World) {
         let (grains, dt) = (&world.grains, world.clock.time_step);
@@ -138,21 +157,61 @@ impl State {
                     torque: row(grains.torque[i], 0.0),
                     rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
                     exchanged: [0.0; 4],
+                    liquid: [0.0, 0.0, f64::from(grains.open_bridges[i]), 0.0],
                 },
                 exchanged: grains.exchanged[i],
+                liquid_loss: loss_row(grains.liquid_loss[i]),
                 compliance: dt / grains.inertia[i],
                 speed_limit_squared: speed_limit * speed_limit,
             });
         }
         // The ghost that fills groups of pairs up.
         self.bodies.push(Body::default());
+        self.load_liquid(world);
         self.refresh_lists(world);
         self.load_springs(&world.contacts);
     }
 
+    fn load_liquid(&mut self, world: &World) {
+        self.liquid = world.wetting().copied();
+        self.films.clear();
+        self.ruptures = 0;
+        let Some(liquid) = self.liquid else {
+            self.neighbours.set_reach(None);
+            return;
+        };
+        self.films.extend_from_slice(&world.grains.film);
+        self.films.push(0.0);
+        self.neighbours
+            .set_reach(Some(largest_reach(world, &liquid)));
+        self.adopt_bridges(world, &liquid);
+    }
+
+    /// Makes the pairs of `world` the listed ones, so that the next refresh keeps all that bridges hold.
+    fn adopt_bridges(&mut self, world: &World, liquid: &Liquid) {
+        let (mut pairs, mut springs, mut bridges) = (Vec::new(), Vec::new(), Vec::new());
+        for contact in &world.contacts {
+            let Partner::Grain(partner) = contact.partner else {
+                continue;
+            };
+            let radius = &world.grains.radius;
+            let radii = (radius[contact.grain as usize], radius[partner as usize]);
+            pairs.push(Pair {
+                grain: contact.grain,
+                partner,
+                kind: 0,
+            });
+            springs.push(row(contact.spring, contact.stiffness));
+            bridges.push(contact.bridge.map_or(BridgeRow::default(), |bridge| {
+                BridgeRow::of(&bridge, liquid, radii)
+            }));
+        }
+        self.neighbours.adopt(pairs, springs, bridges);
+    }
+
     /// Makes the lists fit the positions that were just loaded.
     fn refresh_lists(&mut self, world: &World) {
-        if !self.neighbours.active_covers(&self.bodies, &self.walls) {
+        if self.liquid.is_some() || !self.neighbours.active_covers(&self.bodies, &self.walls) {
             self.refresh();
         }
         self.kinds.compute(world);
@@ -197,7 +256,14 @@ impl State {
             grains.rolling_torque[i] = vector(load.total.rolling);
             grains.contact_count[i] = load.total.rolling[3] as u32;
             grains.exchanged[i] = load.exchanged;
+            grains.open_bridges[i] = load.total.liquid[2] as u32;
+            grains.liquid_loss[i] = [load.liquid_loss[0], load.liquid_loss[1]];
         }
+        if self.liquid.is_some() {
+            let count = grains.len();
+            grains.film.copy_from_slice(&self.films[..count]);
+        }
+        world.ledger.ruptures += self.ruptures;
         world.clock.step += steps;
         let container = &mut world.container;
         let turn = container.drum_speed() * self.motion.dt;
@@ -301,11 +367,15 @@ impl State {
             neighbours,
             kinds,
             motion,
+            liquid,
+            films,
+            ..
         } = self;
         let Neighbours {
             grains,
             walls: at_walls,
             actions,
+            liquid_actions,
             parts,
             reference,
             ..
@@ -316,6 +386,11 @@ impl State {
             grain_springs: Shared::new(&mut grains.springs),
             wall_springs: Shared::new(&mut at_walls.springs),
             actions: Shared::new(actions),
+            bridges: Shared::new(&mut grains.bridges),
+            liquid_actions: Shared::new(liquid_actions),
+            films: Shared::new(films),
+            liquid: liquid.as_ref(),
+            film_constants: &kinds.films,
             grain_pairs: &grains.pairs,
             wall_pairs: &at_walls.pairs,
             parts,
@@ -367,6 +442,23 @@ impl State {
     }
 }
 
+/// Energies lost in bridges as the integration adds them up.
+fn loss_row([viscous, capillary]: [f64; 2]) -> Row {
+    [viscous, capillary, 0.0, 0.0]
+}
+
+/// Largest gap that a bridge of `world` can hold [m], for the largest grains and the thickest films.
+fn largest_reach(world: &World, liquid: &Liquid) -> f64 {
+    let largest = |column: &[f64]| column.iter().copied().fold(0.0, f64::max);
+    let (radius, film) = (largest(&world.grains.radius), largest(&world.grains.film));
+    let (first, second) = contributions(liquid, (radius, radius), (film, film));
+    let held = world.contacts.iter().filter_map(|c| c.bridge);
+    let volume = held
+        .map(|bridge| bridge.volume)
+        .fold(first + second, f64::max);
+    rupture_gap(liquid, (radius, radius), volume)
+}
+
 /// The part of `count` pairs that is `member`'s, in whole groups.
 fn share_of_groups(count: usize, member: usize, size: usize) -> std::ops::Range<usize> {
     let groups = share(count / GROUP, member, size);
@@ -399,6 +491,11 @@ pub struct Phase<'a> {
     grain_springs: Shared<'a, Row>,
     wall_springs: Shared<'a, Row>,
     actions: Shared<'a, Action>,
+    bridges: Shared<'a, BridgeRow>,
+    liquid_actions: Shared<'a, LiquidAction>,
+    films: Shared<'a, f64>,
+    liquid: Option<&'a Liquid>,
+    film_constants: &'a [FilmConstants],
     grain_pairs: &'a [Pair],
     wall_pairs: &'a [Pair],
     parts: &'a Parts,
@@ -413,7 +510,8 @@ pub struct Phase<'a> {
     reason = "phases end at barriers: what one writes in shares the other reads whole"
 )]
 impl Phase<'_> {
-    /// Computes `member`'s share of the pairs. `walls` are the walls at the time of the positions.
+    /// Computes `member`'s share of the pairs. `walls` are the walls at the time of the positions. Returns how many
+    /// bridges broke.
     ///
     /// # Safety
     /// Every member of `size` calls it between the same two barriers, each with its own number, and nothing else.
@@ -424,11 +522,24 @@ impl Phase<'_> {
         walls: &[WallBody],
         member: usize,
         size: usize,
-    ) {
+    ) -> u64 {
         let of_grains = share_of_groups(self.grain_pairs.len(), member, size);
         let of_walls = share_of_groups(self.wall_pairs.len(), member, size);
         let offset = self.grain_pairs.len();
-        // SAFETY: in this phase bodies are only read, springs and actions only written, each member its own share.
+        let of_bridges = match self.liquid {
+            Some(_) => of_grains.clone(),
+            None => 0..0,
+        };
+        // SAFETY: in this phase bodies and films are only read, springs, bridges and actions only written, each member its
+        // own share.
+        let (films, bridges, liquid_actions) = unsafe {
+            (
+                self.films.all(),
+                self.bridges.range_mut(of_bridges.clone()),
+                self.liquid_actions.range_mut(of_bridges),
+            )
+        };
+        // SAFETY: likewise.
         let (bodies, grain_springs, grain_actions, wall_springs, wall_actions) = unsafe {
             (
                 self.bodies.all(),
@@ -446,18 +557,27 @@ impl Phase<'_> {
                 bodies,
                 walls,
                 constants: self.constants,
+                wetting: self.liquid.map(|liquid| Wetting {
+                    liquid,
+                    films,
+                    constants: self.film_constants,
+                }),
             },
             of_grains: PairRows {
                 pairs: &self.grain_pairs[of_grains],
                 springs: grain_springs,
                 actions: grain_actions,
+                bridges,
+                liquid_actions,
             },
             of_walls: PairRows {
                 pairs: &self.wall_pairs[of_walls],
                 springs: wall_springs,
                 actions: wall_actions,
+                bridges: &mut [],
+                liquid_actions: &mut [],
             },
-        });
+        })
     }
 
     /// Sums the forces on `member`'s share of the grains and moves them.
@@ -471,28 +591,46 @@ impl Phase<'_> {
         size: usize,
         last: bool,
     ) -> Outcome {
-        // SAFETY: in this phase actions are only read, bodies and loads only written, each member its own share.
         let own = share(self.reference.len(), member, size);
-        let (bodies, loads, actions) = unsafe {
+        let own_films = match self.liquid {
+            Some(_) => own.clone(),
+            None => 0..0,
+        };
+        // SAFETY: in this phase actions are only read, bodies, loads and films only written, each member its own share.
+        let (bodies, loads, films, actions, liquid_actions) = unsafe {
             (
                 self.bodies.range_mut(own.clone()),
                 self.loads.range_mut(own.clone()),
+                self.films.range_mut(own_films),
                 self.actions.all(),
+                self.liquid_actions.all(),
             )
         };
-        let incidence = Incidence {
+        let pairs = Incidence {
             actions,
+            liquid_actions,
             parts: self.parts,
         };
-        processor.run(Finish {
-            motion: &self.motion,
-            pairs: incidence,
-            begin: own.start,
-            bodies,
-            loads,
-            references: &self.reference[own],
-            last,
-        })
+        let (motion, begin, references) = (&self.motion, own.start, &self.reference[own]);
+        macro_rules! finish {
+            ($wet:literal) => {
+                processor.run(Finish::<$wet> {
+                    motion,
+                    pairs,
+                    begin,
+                    bodies,
+                    loads,
+                    films,
+                    references,
+                    last,
+                })
+            };
+        }
+        if self.liquid.is_some() {
+            finish!(true)
+        } else {
+            finish!(false)
+        }
     }
 
     /// The walls at the beginning of the stretch.

@@ -3,7 +3,8 @@
 //! In: a scene. Out: the step to take, every limit that was considered and the one that binds. A step given by the scene
 //! is taken as given, with a warning where it exceeds a limit.
 
-use crate::scene::{ContactLaw, Scene, SceneGrains, SceneMaterial, TimeStep};
+use super::law::{LARGEST_DRAG, smallest_viscous_gap};
+use crate::scene::{ContactLaw, Scene, SceneGrains, SceneLiquid, SceneMaterial, TimeStep};
 use std::f64::consts::PI;
 
 /// Share of the Rayleigh time that a step may take (physics of Kasper et al. 2021 as run by its authors: at most 0.2).
@@ -17,6 +18,9 @@ const IMPACT_SPEED: f64 = 0.2;
 
 /// Steps that half a period of a linear contact must last at least.
 const STEPS_PER_HALF_PERIOD: f64 = 20.0;
+
+/// Neighbours of a grain whose drag the step must bear without bounding it.
+const DRAGGING_NEIGHBOURS: f64 = 6.0;
 
 /// One limit on the time step.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -66,6 +70,13 @@ pub fn advise(scene: &Scene) -> TimeStepAdvice {
                 .collect()
         }
     };
+    if let Some(liquid) = scene
+        .liquid
+        .as_ref()
+        .filter(|liquid| liquid.viscosity > 0.0)
+    {
+        limits.extend(kinds.iter().map(|kind| lubrication_limit(kind, liquid)));
+    }
     limits.sort_by(|a, b| a.time_step.total_cmp(&b.time_step));
     limits.dedup_by(|later, earlier| later.name == earlier.name);
     let largest = limits.first().map_or(1e-5, |limit| limit.time_step);
@@ -184,6 +195,26 @@ fn hooke_limit(kind: &Kind, stiffness: f64) -> Limit {
         reason: format!(
             "1/{STEPS_PER_HALF_PERIOD} of the {time:.3e} s that two grains of {} touch on a spring of {stiffness:.3e} N/m",
             kind.material.name
+        ),
+    }
+}
+
+/// `1.6 m/(2 · 6 c)` with the drag `c = 6π η r*²/D` of two equal grains at the smallest gap: up to that step it acts
+/// unbounded on grains with six neighbours each.
+fn lubrication_limit(kind: &Kind, liquid: &SceneLiquid) -> Limit {
+    let mass = 4.0 / 3.0 * PI * kind.radius.powi(3) * kind.material.density;
+    let effective = 0.5 * kind.radius;
+    let gap = smallest_viscous_gap(liquid.law.viscous_gap, effective, 2.0 * kind.radius);
+    let drag = 6.0 * PI * liquid.viscosity * effective * effective / gap;
+    Limit {
+        name: "lubrication",
+        time_step: LARGEST_DRAG * mass / (2.0 * DRAGGING_NEIGHBOURS * drag),
+        reason: format!(
+            "{LARGEST_DRAG}/12 of the {:.3e} s in which the liquid film stops a grain of {} with r = {:.3e} m that closes \
+             the smallest gap",
+            mass / drag,
+            kind.material.name,
+            kind.radius
         ),
     }
 }

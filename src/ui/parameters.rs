@@ -1,7 +1,7 @@
 //! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
 
 use super::{Panel, Request, number, symbol};
-use crate::scene::{Scene, SceneContainer, SceneGrains};
+use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer, SceneGrains};
 use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
@@ -16,6 +16,7 @@ pub struct Parameters;
 /// What a parameter belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Group {
+    Liquid,
     GrainGrain,
     GrainWall,
     Drum,
@@ -24,7 +25,8 @@ enum Group {
 }
 
 impl Group {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
+        Self::Liquid,
         Self::GrainGrain,
         Self::GrainWall,
         Self::Drum,
@@ -34,6 +36,7 @@ impl Group {
 
     fn title(self) -> &'static str {
         match self {
+            Self::Liquid => "Liquid",
             Self::GrainGrain => "Grain – grain",
             Self::GrainWall => "Grain – wall",
             Self::Drum => "Drum",
@@ -47,7 +50,13 @@ impl Group {
             Parameter::DrumSpeed => Self::Drum,
             Parameter::Gravity => Self::Gravity,
             Parameter::Share(_) => Self::Mixture,
+            Parameter::Viscosity
+            | Parameter::SurfaceTension
+            | Parameter::ContactAngle
+            | Parameter::LiquidVolume
+            | Parameter::BridgeLaw => Self::Liquid,
             Parameter::Friction(a, b)
+            | Parameter::WetFriction(a, b)
             | Parameter::Restitution(a, b)
             | Parameter::RollingFriction(a, b) => {
                 if is_of_grains(scene, a) && is_of_grains(scene, b) {
@@ -108,6 +117,9 @@ impl Panel for Parameters {
                 let own = pair_of(&info.parameter);
                 if pair != Some(own) {
                     heading_ui(ui, group, own, simulation.scene());
+                    if group == Group::Liquid {
+                        out.extend(liquids_ui(ui, simulation));
+                    }
                     pair = Some(own);
                 }
                 let value = simulation.value(&info.parameter);
@@ -135,9 +147,10 @@ impl Panel for Parameters {
 fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
     match parameter {
         Parameter::Friction(a, b)
+        | Parameter::WetFriction(a, b)
         | Parameter::Restitution(a, b)
         | Parameter::RollingFriction(a, b) => Some((a, b)),
-        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => None,
+        _ => None,
     }
 }
 
@@ -145,11 +158,10 @@ fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
 fn short_name(info: &ParameterInfo) -> String {
     match &info.parameter {
         Parameter::Friction(..) => "Friction".into(),
+        Parameter::WetFriction(..) => "Wet friction".into(),
         Parameter::Restitution(..) => "Restitution".into(),
         Parameter::RollingFriction(..) => "Rolling friction".into(),
-        Parameter::DrumSpeed | Parameter::Gravity | Parameter::Share(_) => {
-            number::capitalised(&info.label)
-        }
+        _ => number::capitalised(&info.label),
     }
 }
 
@@ -165,6 +177,41 @@ fn heading_ui(ui: &mut egui::Ui, group: Group, pair: Option<(&str, &str)>, scene
             names.on_hover_text("Walls are made of it too: these values hold for them as well.");
         }
     });
+}
+
+/// The paper's liquids, water to glycerol, and none: each sets what makes it that liquid.
+fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
+    let set = |parameter, value| Request::Command(Command::Set { parameter, value });
+    let volume = simulation.value(&Parameter::LiquidVolume);
+    let mut wanted = Vec::new();
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let dry = ui.selectable_label(volume == 0.0, "dry");
+        if dry.on_hover_text("No liquid at all").clicked() {
+            wanted.push(set(Parameter::LiquidVolume, 0.0));
+        }
+        for case in &LIQUID_CASES {
+            let own = volume > 0.0 && simulation.value(&Parameter::Viscosity) == case.viscosity;
+            let button = ui.selectable_label(own, case.name.trim_end_matches(" glycerol"));
+            let hint = format!(
+                "{}: {} mPa s, case {} of Table 1 of Kasper et al. 2021",
+                case.name,
+                number::short(1e3 * case.viscosity),
+                case.number
+            );
+            if button.on_hover_text(hint).clicked() {
+                if volume == 0.0 {
+                    let scene = simulation.scene().liquid.as_ref();
+                    let poured = scene.map_or(PAPER_VOLUME, |liquid| liquid.volume);
+                    wanted.push(set(Parameter::LiquidVolume, poured));
+                }
+                wanted.push(set(Parameter::Viscosity, case.viscosity));
+                wanted.push(set(Parameter::SurfaceTension, case.surface_tension()));
+                wanted.push(set(Parameter::ContactAngle, case.contact_angle()));
+            }
+        }
+    });
+    wanted
 }
 
 /// The row of one parameter whose present value is `value` (SI); the command that a change asks for.
@@ -195,6 +242,8 @@ pub fn parameter_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Opti
         ui.spacing_mut().interact_size.y = 18.0;
         let slider = egui::Slider::new(&mut shown, range.clone())
             .show_value(false)
+            .logarithmic(info.parameter == Parameter::Viscosity)
+            .smallest_positive(0.1)
             .clamping(egui::SliderClamping::Edits);
         let slider = ui.add(slider);
         slider.widget_info(|| WidgetInfo::slider(true, shown, &info.label));

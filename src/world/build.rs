@@ -5,8 +5,8 @@
 
 use super::mixture::{assign_species, random};
 use super::{
-    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
-    Shape, Species, SpeciesId, Surface, Wall, World,
+    Clock, Container, Grains, Ledger, Liquid, Material, MaterialId, Materials, Motion,
+    PairProperties, Shape, Species, SpeciesId, Surface, Wall, World,
 };
 use crate::scene::{
     Lattice, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
@@ -26,7 +26,7 @@ const PLACES: u64 = 1;
 /// [`Scene::check`] passed; of any other, what does not fit is left out.
 pub fn build(scene: &Scene, time_step: f64) -> World {
     let (species, grains) = match &scene.grains {
-        SceneGrains::Fill { count, species } => fill(scene, *count, species),
+        SceneGrains::Fill { count, species, .. } => fill(scene, *count, species),
         SceneGrains::List(list) => listed(scene, list),
     };
     let mut world = World {
@@ -36,10 +36,17 @@ pub fn build(scene: &Scene, time_step: f64) -> World {
         materials: materials(scene),
         container: container(scene),
         gravity: scene.gravity,
+        liquid: scene.liquid.as_ref().map(Liquid::from),
         law: scene.law,
         contacts: Vec::new(),
         ledger: Ledger::default(),
     };
+    world.spread_liquid();
+    if let SceneGrains::List(list) = &scene.grains {
+        for (film, grain) in world.grains.film.iter_mut().zip(list) {
+            *film = grain.film.unwrap_or(*film);
+        }
+    }
     world.ledger = Ledger::starting_at(world.kinetic_energy(), world.potential_energy());
     world
 }
@@ -73,6 +80,9 @@ fn pair_properties(scene: &Scene, a: &SceneMaterial, b: &SceneMaterial) -> PairP
         friction: given
             .and_then(|pair| pair.friction)
             .unwrap_or_else(|| mixed(|m| m.friction)),
+        wet_friction: given
+            .and_then(|pair| pair.wet_friction.or(pair.friction))
+            .unwrap_or_else(|| mixed(|m| m.wet_friction.unwrap_or(m.friction))),
         rolling_friction: given
             .and_then(|pair| pair.rolling_friction)
             .unwrap_or_else(|| mixed(|m| m.rolling_friction)),

@@ -1,5 +1,6 @@
-//! A touching pair and what it remembers.
+//! A pair that touches or is held by a liquid bridge, and what it remembers.
 
+use super::Bridge;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,7 @@ pub enum Partner {
     Wall(u32),
 }
 
-/// A touching pair.
+/// A pair that touches or is held by a liquid bridge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// The grain on which [`Contact::force`] acts; the smaller index of a pair of grains.
@@ -26,4 +27,8 @@ pub struct Contact {
     pub stiffness: f64,
     /// Force on the grain at the last force evaluation [N].
     pub force: DVec3,
+    /// Whether the two touched then.
+    pub touching: bool,
+    /// The bridge between them, if there is one.
+    pub bridge: Option<Bridge>,
 }

@@ -45,6 +45,13 @@ pub struct Grains {
     /// Energy exchanged at the contacts of which the grain is the first partner, since the start [J]: lost in dashpots,
     /// lost in sliding (with what tangential springs lose as their stiffness changes), lost in rolling, done by walls.
     pub exchanged: Vec<[f64; 4]>,
+    /// Volume of the liquid film on each, its part in bridges included [m³].
+    pub film: Vec<f64>,
+    /// Bridges to grains that it did not touch at the last evaluation.
+    pub open_bridges: Vec<u32>,
+    /// Energy lost in bridges of which the grain is the first partner, since the start [J]: to viscosity, and to capillary
+    /// forces, which give back on the way together what they take on the way apart until the bridge breaks.
+    pub liquid_loss: Vec<[f64; 2]>,
 }
 
 impl Grains {
@@ -73,6 +80,9 @@ impl Grains {
         self.rolling_torque.push(DVec3::ZERO);
         self.contact_count.push(0);
         self.exchanged.push([0.0; 4]);
+        self.film.push(0.0);
+        self.open_bridges.push(0);
+        self.liquid_loss.push([0.0; 2]);
     }
 
     /// Makes grain `i` one of `species`, with the mass its radius and the `density` [kg/m³] give.

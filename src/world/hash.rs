@@ -52,6 +52,23 @@ impl World {
                 Partner::Wall(w) => number(-1.0 - f64::from(w)),
             }
             vectors(&mut number, [contact.spring]);
+            if let Some(bridge) = &contact.bridge {
+                [bridge.volume, bridge.transfer]
+                    .into_iter()
+                    .for_each(&mut number);
+                [bridge.capillary, bridge.viscous]
+                    .into_iter()
+                    .for_each(&mut number);
+                vectors(&mut number, [bridge.drag]);
+            }
+        }
+        if self.wetting().is_some() {
+            for i in 0..grains.len() {
+                number(grains.film[i]);
+                number(f64::from(grains.open_bridges[i]));
+                grains.liquid_loss[i].into_iter().for_each(&mut number);
+            }
+            number(self.ledger.ruptures as f64);
         }
         StateHash(hasher.finalize())
     }

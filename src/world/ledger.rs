@@ -13,6 +13,8 @@ pub struct Ledger {
     pub potential_reference: f64,
     /// Energy put in by commands that changed masses or stiffnesses [J].
     pub command_work: f64,
+    /// Bridges that broke.
+    pub ruptures: u64,
 }
 
 impl Ledger {

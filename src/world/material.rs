@@ -31,8 +31,10 @@ impl Material {
 pub struct PairProperties {
     /// Coefficient of restitution e, in (0, 1].
     pub restitution: f64,
-    /// Coefficient of sliding friction μ.
+    /// Coefficient of sliding friction μ of dry bodies.
     pub friction: f64,
+    /// Coefficient of sliding friction μ where there is liquid.
+    pub wet_friction: f64,
     /// Coefficient of rolling friction `μ_R`.
     pub rolling_friction: f64,
 }
@@ -81,6 +83,11 @@ impl Materials {
     /// How `a` and `b` meet; the order does not matter.
     pub fn pair(&self, a: MaterialId, b: MaterialId) -> PairProperties {
         self.pairs[slot(a, b)]
+    }
+
+    /// How all pairs meet, to change it.
+    pub fn pairs_mut(&mut self) -> impl Iterator<Item = &mut PairProperties> {
+        self.pairs.iter_mut()
     }
 
     /// Changes how `a` and `b` meet; the order does not matter.

@@ -10,6 +10,7 @@ mod container;
 mod grains;
 mod hash;
 mod ledger;
+mod liquid;
 mod material;
 mod mixture;
 
@@ -19,6 +20,7 @@ pub use container::{Container, Motion, Shape, Surface, Wall};
 pub use grains::{Grains, Species, SpeciesId};
 pub use hash::StateHash;
 pub use ledger::Ledger;
+pub use liquid::{Bridge, Liquid};
 pub use material::{Material, MaterialId, Materials, PairProperties};
 pub use mixture::{label_order, set_share};
 
@@ -41,9 +43,12 @@ pub struct World {
     pub container: Container,
     /// Gravitational acceleration [m/s²].
     pub gravity: DVec3,
+    /// The liquid between the grains, if the scene has one.
+    pub liquid: Option<Liquid>,
     /// Which contact law acts.
     pub law: ContactLaw,
-    /// Every touching pair with its history, sorted by ([`Contact::grain`], [`Contact::partner`]).
+    /// Every pair that touches or is held by a bridge, with its history, sorted by ([`Contact::grain`],
+    /// [`Contact::partner`]).
     pub contacts: Vec<Contact>,
     /// What the energy balance needs beside the grains' own columns.
     pub ledger: Ledger,
@@ -142,6 +147,7 @@ impl World {
         self.clock = Clock::new(self.clock.time_step);
         self.container.angle = 0.0;
         self.grains.exchanged.fill([0.0; 4]);
+        self.grains.liquid_loss.fill([0.0; 2]);
         self.ledger = Ledger::starting_at(self.kinetic_energy() + elastic, self.potential_energy());
     }
 }

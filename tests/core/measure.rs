@@ -2,6 +2,7 @@
 
 mod contacts;
 mod energy;
+mod flow;
 mod packing;
 mod sample;
 mod series;
@@ -32,6 +33,7 @@ fn empty(shape: Shape, walls: Vec<Wall>) -> World {
     let pair = PairProperties {
         restitution: 0.95,
         friction: 0.4,
+        wet_friction: 0.4,
         rolling_friction: 0.01,
     };
     World {
@@ -48,6 +50,7 @@ fn empty(shape: Shape, walls: Vec<Wall>) -> World {
             angle: 0.0,
         },
         gravity: DVec3::new(0.0, -9.81, 0.0),
+        liquid: None,
         law: ContactLaw::HertzMindlin,
         contacts: Vec::new(),
         ledger: Ledger::default(),
@@ -108,6 +111,8 @@ fn touch(world: &mut World, grain: u32, partner: Partner, spring: DVec3) {
         spring,
         stiffness: 0.0,
         force: DVec3::ZERO,
+        touching: true,
+        bridge: None,
     });
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Every case is a scene's text, so that each can be opened and looked at. Figures are printed: `--nocapture` shows them.
 
+mod bridges;
 mod cloud;
 mod determinism;
 mod drum;

@@ -132,6 +132,7 @@ fn world(shape: Shape, walls: Vec<Surface>) -> World {
     let pair = PairProperties {
         restitution: 0.9,
         friction: 0.4,
+        wet_friction: 0.4,
         rolling_friction: 0.01,
     };
     let species = |name: &str| Species {
@@ -157,6 +158,7 @@ fn world(shape: Shape, walls: Vec<Surface>) -> World {
             angle: 0.0,
         },
         gravity: DVec3::new(0.0, -9.81, 0.0),
+        liquid: None,
         law: ContactLaw::HertzMindlin,
         contacts: Vec::new(),
         ledger: Ledger::default(),

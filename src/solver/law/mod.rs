@@ -5,10 +5,15 @@
 //! tangential spring, the rolling friction and the geometry in [`super::contacts`]. A wall is a partner of infinite mass
 //! and radius, so no law asks whether there is one.
 
+mod bridge;
 mod hertz_mindlin;
 mod hooke;
 mod rolling;
 
+pub use bridge::{
+    BridgeConstants, FilmConstants, LARGEST_DRAG, attraction, contributions, drag, rupture_gap,
+    smallest_viscous_gap,
+};
 pub use hertz_mindlin::HertzMindlin;
 pub use hooke::Hooke;
 pub use rolling::rolling_gain;
@@ -89,8 +94,8 @@ impl Pairing {
         }
     }
 
-    /// Constants of the pair under the world's contact law.
-    pub fn constants(&self, law: ContactLaw, materials: &Materials) -> PairConstants {
+    /// Constants of the pair under the world's contact law, `wet` or dry.
+    pub fn constants(&self, law: ContactLaw, materials: &Materials, wet: bool) -> PairConstants {
         let pair = materials.pair(self.materials.0, self.materials.1);
         let coefficients = match law {
             ContactLaw::HertzMindlin => HertzMindlin::constants(self, materials),
@@ -107,7 +112,11 @@ impl Pairing {
         PairConstants {
             coefficients,
             contact: [
-                pair.friction,
+                if wet {
+                    pair.wet_friction
+                } else {
+                    pair.friction
+                },
                 pair.rolling_friction * self.effective_radius,
                 self.radii.0,
                 self.radii.1,
@@ -124,7 +133,7 @@ impl Pairing {
         spring: f64,
     ) -> f64 {
         let constants = self
-            .constants(law, materials)
+            .constants(law, materials, false)
             .coefficients
             .map(|x| One::splat((), x));
         let at = One::splat((), overlap);

@@ -152,6 +152,7 @@ fn belt_does_twice_the_work_that_the_grain_keeps() {
         PairProperties {
             restitution: 0.5,
             friction: 0.4,
+            wet_friction: 0.4,
             rolling_friction: 0.0,
         },
     );
@@ -185,6 +186,7 @@ fn damped_impact_loses_what_its_dashpot_is_said_to_take() {
         PairProperties {
             restitution,
             friction: 0.0,
+            wet_friction: 0.0,
             rolling_friction: 0.0,
         },
     );

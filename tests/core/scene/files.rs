@@ -1,6 +1,8 @@
 //! Good files are read; each bad one is refused with the message that stands in it.
 
-use grainfall::scene::{ContactLaw, Scene, SceneContainer, SceneGrains, TimeStep, built_in};
+use grainfall::scene::{
+    BridgeLaw, ContactLaw, LiquidCase, Scene, SceneContainer, SceneGrains, TimeStep, built_in,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -165,7 +167,7 @@ fn the_paper_drums_hold_the_paper_number_of_grains() {
         ("dry-r1.25", 6494, 1.25),
     ] {
         let scene = Scene::open(name).unwrap();
-        let SceneGrains::Fill { count, species } = &scene.grains else {
+        let SceneGrains::Fill { count, species, .. } = &scene.grains else {
             panic!("{name} lists its grains");
         };
         assert_eq!(*count, wanted);
@@ -275,7 +277,45 @@ fn values_can_be_replaced_before_a_run() {
     );
     assert_eq!(scene.time_step, TimeStep::Given(1e-5));
     assert!(matches!(scene.grains, SceneGrains::Fill { count: 50, .. }));
-    assert_eq!(Scene::settings().count(), 5);
+    assert_eq!(Scene::settings().count(), 8);
+}
+
+#[test]
+fn one_scene_makes_every_case_of_the_paper() {
+    for (radius, count) in [("3mm", 470), ("2mm", 1585), ("1.25mm", 6494)] {
+        for case in 0..=7_u8 {
+            let mut scene = Scene::open("wet").unwrap();
+            scene.set("liquid", &case.to_string()).unwrap();
+            scene.set("radius", radius).unwrap();
+            let SceneGrains::Fill { count: found, .. } = scene.grains else {
+                panic!("the drum is filled");
+            };
+            assert_eq!(found, count);
+            let viscosity = scene.liquid.map(|liquid| liquid.viscosity);
+            assert_eq!(viscosity, LiquidCase::of(case).map(|case| case.viscosity));
+        }
+    }
+}
+
+#[test]
+fn dry_case_of_the_wet_drum_is_the_dry_drum() {
+    let mut wet = Scene::open("wet").unwrap();
+    wet.set("liquid", "dry").unwrap();
+    let dry = Scene::open("dry-r3").unwrap();
+    assert_eq!(wet.grains, dry.grains);
+    assert_eq!(wet.container, dry.container);
+    assert_eq!(wet.liquid, None);
+}
+
+#[test]
+fn another_liquid_keeps_its_volume_and_its_bridge_law() {
+    let mut scene = Scene::open("wet").unwrap();
+    scene.liquid.as_mut().unwrap().volume = 2e-6;
+    scene.set("bridge-law", "as-coded").unwrap();
+    scene.set("liquid", "7").unwrap();
+    let liquid = scene.liquid.unwrap();
+    assert_eq!((liquid.volume, liquid.viscosity), (2e-6, 1.41));
+    assert_eq!(liquid.law, BridgeLaw::AS_CODED);
 }
 
 #[test]
@@ -290,6 +330,10 @@ fn impossible_replacements_are_refused_and_change_nothing() {
         ("count", "5000", "do not fit"),
         ("time-step", "-1", "`Automatic`"),
         ("output-interval", "1ns", "a time such as"),
+        ("radius", "big", "a length such as `2mm`"),
+        ("radius", "-1mm", "a length such as `2mm`"),
+        ("liquid", "8", "1 (water) to 7 (glycerol)"),
+        ("bridge-law", "as-coded", "in a scene with a liquid"),
     ] {
         let message = scene.set(key, text).unwrap_err().to_string();
         assert!(message.contains(expected), "{message}");

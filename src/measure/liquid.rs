@@ -1,0 +1,58 @@
+//! What the liquid does: bridges, dimensionless numbers, the paper's law for the drops; and the drum's torque.
+
+use super::surface::mean_radius;
+use crate::world::{Contact, Partner, Shape, World};
+
+/// Number of liquid bridges.
+pub fn bridges(world: &World) -> usize {
+    let bridged = |contact: &&Contact| contact.bridge.is_some();
+    world.contacts.iter().filter(bridged).count()
+}
+
+/// Capillary number `Ca = η v_c/(γ cos α)` with `v_c = √(4 g r)` (Eq. 1 of Kasper et al. 2021), r the mean radius; none
+/// without liquid.
+pub fn capillary_number(world: &World) -> Option<f64> {
+    let liquid = world.wetting()?;
+    let speed = (4.0 * world.gravity.length() * mean_radius(&world.grains)).sqrt();
+    Some(liquid.viscosity * speed / (liquid.surface_tension * liquid.contact_angle.cos()))
+}
+
+/// Galilei number `Ga = ρ² g r³/η²` (Eq. 25) with the mean density and radius of the grains; none without viscosity.
+pub fn galilei_number(world: &World) -> Option<f64> {
+    let viscosity = world.wetting()?.viscosity;
+    let grains = &world.grains;
+    let volume: f64 =
+        grains.radius.iter().map(|r| r.powi(3)).sum::<f64>() * 4.0 / 3.0 * std::f64::consts::PI;
+    let density = grains.mass.iter().sum::<f64>() / volume;
+    let radius = mean_radius(grains);
+    (viscosity > 0.0).then(|| {
+        density * density * world.gravity.length() * radius.powi(3) / (viscosity * viscosity)
+    })
+}
+
+/// The paper's law for wet over dry drops, `0.4 + 0.47 exp(−η/295 mPa s)` (Eq. 23), at the viscosity η [Pa s].
+pub fn drop_ratio_law(viscosity: f64) -> f64 {
+    0.4 + 0.47 * (-viscosity / 0.295).exp()
+}
+
+/// Torque about its axis that turns a drum against its grains [N m]: that of the contact forces, without rolling friction.
+/// NaN where there is no drum.
+pub fn drum_torque(world: &World) -> f64 {
+    if !matches!(world.container.shape, Shape::Drum { .. }) {
+        return f64::NAN;
+    }
+    let of_contact = |contact: &Contact| {
+        let Partner::Wall(wall) = contact.partner else {
+            return 0.0;
+        };
+        let grain = contact.grain as usize;
+        let position = world.grains.position[grain];
+        let (distance, normal) = world.container.walls[wall as usize]
+            .surface
+            .distance(position);
+        let arm = 0.5 * (world.grains.radius[grain] + distance);
+        let point = position + arm * normal;
+        point.cross(contact.force).z
+    };
+    world.contacts.iter().map(of_contact).sum()
+}

@@ -1,0 +1,276 @@
+//! Liquid bridges, Eqs. 11–17 of Kasper et al. 2021, built from the named choices of [`BridgeLaw`].
+//!
+//! In: the liquid, the pair, the bridge's volume, the gap and the relative motion. Out: capillary attraction, viscous forces
+//! along and across the normal, the rupture gap. What depends on the volume alone is computed once, when a bridge forms
+//! ([`BridgeConstants`]); a step then takes one exponential and one logarithm, both of sums and products alone.
+//!
+//! The drag of a thin film can exceed what a step of this length can bear. It is bounded so that it never can: with `d`
+//! partners of each grain, coefficients `c ≤ 1.6/(Δt Σ d/m)` leave the explicit step stable whatever the viscosity (for
+//! any grains that hold together, `Σ c (v_i − v_j)² ≤ Σ c (d_i/m_i + d_j/m_j)(m_i v_i²/d_i + m_j v_j²/d_j) ≤ (1.6/Δt) Σ m v²`).
+//! The advised time step is short enough that the bound acts on next to no pair.
+
+use super::{Pairing, natural_log};
+use crate::scene::{BridgeVolume, CapillaryGap, PairAngle, Rupture, SmallestGap};
+use crate::solver::lanes::{Lanes, One, Row};
+use crate::world::Liquid;
+use std::f64::consts::{LN_2, PI};
+
+/// What the forces of any bridge between two kinds of grain depend on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct FilmConstants {
+    /// `6π η r*²` [N s]; `6π η r*` [N s/m]; effective radius r* [m]; `2/5 r²` of the larger grain [m²].
+    pub viscous: Row,
+    /// Smallest gap in the capillary and in the viscous forces, largest gap in both [m]; unused.
+    pub gaps: Row,
+}
+
+/// What the capillary force of one bridge depends on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BridgeConstants {
+    /// Constant part of the attraction [N], its decaying part at no gap [N], rate of the decay [1/m], rupture gap [m].
+    pub row: Row,
+}
+
+/// Share of the grain radii's sum at which gaps are cut off, Eq. 15.
+const SMALLEST_GAP: f64 = 0.01;
+const LARGEST_GAP: f64 = 0.1;
+/// Share of both films that makes a bridge, Eq. 11.
+const FILM_SHARE: f64 = 0.05;
+/// Largest drag coefficient times the step over the mass that partners leave free; 2 is the limit of stability.
+pub const LARGEST_DRAG: f64 = 1.6;
+/// How much more freely a sphere's surface moves across the normal than its centre does: `1 + m r²/I`.
+const SURFACE_MOBILITY: f64 = 3.5;
+
+impl FilmConstants {
+    /// For the grains of `pairing`.
+    pub fn of(pairing: &Pairing, liquid: &Liquid) -> Self {
+        let radius = pairing.effective_radius;
+        let sum = pairing.radii.0 + pairing.radii.1;
+        let larger = pairing.radii.0.max(pairing.radii.1);
+        let smallest = smallest_viscous_gap(liquid.law.viscous_gap, radius, sum);
+        let in_contact = match liquid.law.capillary_gap {
+            CapillaryGap::Clamped => SMALLEST_GAP * sum,
+            CapillaryGap::Open => 0.0,
+        };
+        let drag = 6.0 * PI * liquid.viscosity * radius;
+        Self {
+            viscous: [drag * radius, drag, radius, 0.4 * larger * larger],
+            gaps: [in_contact, smallest, (LARGEST_GAP * sum).max(smallest), 0.0],
+        }
+    }
+}
+
+/// Smallest gap in the viscous forces of grains with this effective radius and sum of radii [m].
+pub fn smallest_viscous_gap(gap: SmallestGap, effective_radius: f64, sum: f64) -> f64 {
+    match gap {
+        SmallestGap::OfRadii(share) => share * sum,
+        SmallestGap::OfEffectiveRadius(share) => share * effective_radius,
+    }
+}
+
+/// Parts of a new bridge that the films of both grains give, with films of these volumes [m³].
+pub fn contributions(liquid: &Liquid, radii: (f64, f64), films: (f64, f64)) -> (f64, f64) {
+    match liquid.law.volume {
+        BridgeVolume::FilmShare => (FILM_SHARE * films.0, FILM_SHARE * films.1),
+        BridgeVolume::ShadedCap => {
+            let sum = radii.0 + radii.1;
+            let cap = |other: f64| 0.5 * (1.0 - (1.0 - (other / sum) * (other / sum)).sqrt());
+            (cap(radii.1) * films.0, cap(radii.0) * films.1)
+        }
+    }
+}
+
+/// Gap at which a bridge of this volume [m³] between grains of these radii breaks [m].
+pub fn rupture_gap(liquid: &Liquid, radii: (f64, f64), volume: f64) -> f64 {
+    let gap = (1.0 + 0.5 * pair_angle(liquid)) * cube_root(volume);
+    match liquid.law.rupture {
+        Rupture::Capped => gap.min(LARGEST_GAP * (radii.0 + radii.1)),
+        Rupture::AtRuptureGap => gap,
+    }
+}
+
+impl BridgeConstants {
+    /// Eqs. 13 and 14 for a bridge of this volume [m³].
+    pub fn of(liquid: &Liquid, radii: (f64, f64), volume: f64) -> Self {
+        let larger = radii.0.max(radii.1);
+        let log = natural_log(volume / (larger * larger * larger));
+        let angles = 2.0 * pair_angle(liquid);
+        let a = -1.1 * exponential(-0.53 * log);
+        let b = (-0.037 * log - 0.24) * angles * angles - 0.0082 * log + 0.48;
+        let c = 0.0018 * log + 0.078;
+        let scale = PI * liquid.surface_tension * (radii.0 * radii.1).sqrt();
+        Self {
+            row: [
+                scale * c,
+                scale * exponential(b),
+                a / larger,
+                rupture_gap(liquid, radii, volume),
+            ],
+        }
+    }
+}
+
+/// Contact angle of a pair [rad].
+fn pair_angle(liquid: &Liquid) -> f64 {
+    let angle = liquid.contact_angle;
+    match liquid.law.angle {
+        PairAngle::Mean => angle,
+        PairAngle::HalfProduct => 0.5 * angle * angle,
+    }
+}
+
+/// Capillary attraction [N] across the gap, clamped as the law says [m].
+#[inline(always)]
+pub fn attraction<N: Lanes>(processor: N::Processor, constants: [N; 4], gap: N) -> N {
+    let [constant, decaying, rate, _] = constants;
+    constant + decaying * decay(processor, rate * gap)
+}
+
+/// Coefficients of the drag along and across the normal [N s/m] at the gap, clamped as the law says [m].
+///
+/// `mobility` is the step over the mass that partners leave free, summed over both sides [s/kg].
+#[inline(always)]
+pub fn drag<N: Lanes>(processor: N::Processor, film: [N; 4], gap: N, mobility: N) -> [N; 2] {
+    let [normal, across, radius, _] = film;
+    let zero = N::splat(processor, 0.0);
+    let bracket = N::splat(processor, 8.0 / 15.0) * logarithm(processor, radius / gap)
+        + N::splat(processor, 0.9588);
+    let bracket = N::choose(bracket.exceeds(zero), bracket, zero);
+    let bound = N::splat(processor, LARGEST_DRAG) / mobility;
+    let bound_across = N::splat(processor, 1.0 / SURFACE_MOBILITY) * bound;
+    let (normal, across) = (normal / gap, across * bracket);
+    [
+        N::choose(normal.exceeds(bound), bound, normal),
+        N::choose(across.exceeds(bound_across), bound_across, across),
+    ]
+}
+
+/// `eˣ` for `x ≤ 0`, to 1e-14 of itself down to e⁻⁸, and next to nothing below e⁻³².
+///
+/// `eˣ = (e^(x/64))⁶⁴`, the inner one by its series.
+#[inline(always)]
+fn decay<N: Lanes>(processor: N::Processor, x: N) -> N {
+    let lowest = N::splat(processor, -32.0);
+    let x = N::choose(x.exceeds(lowest), x, lowest);
+    let y = x * N::splat(processor, 1.0 / 64.0);
+    let mut sum = N::splat(processor, 1.0);
+    for n in [11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0] {
+        sum = N::splat(processor, 1.0) + sum * y * N::splat(processor, 1.0 / n);
+    }
+    for _ in 0..6 {
+        sum = sum * sum;
+    }
+    sum
+}
+
+/// `ln x` for x between 2⁻¹² and 2¹², as [`natural_log`] but side by side.
+#[inline(always)]
+fn logarithm<N: Lanes>(processor: N::Processor, x: N) -> N {
+    const OFFSET: f64 = 12.0;
+    let one = N::splat(processor, 1.0);
+    let mut m = x * N::splat(processor, 4096.0);
+    let mut k = N::splat(processor, -OFFSET);
+    // m lies between 1 and 2²⁴: halve it until it is at most √2.
+    for halvings in [16.0, 8.0, 4.0, 2.0, 1.0_f64] {
+        let power = f64::from(1_u32 << halvings as u32);
+        let large = m.exceeds(N::splat(processor, power * std::f64::consts::FRAC_1_SQRT_2));
+        m = N::choose(large, m * N::splat(processor, 1.0 / power), m);
+        k = N::choose(large, k + N::splat(processor, halvings), k);
+    }
+    let s = (m - one) / (m + one);
+    let square = s * s;
+    let mut series = N::splat(processor, 0.0);
+    for n in [19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0] {
+        series = series * square + N::splat(processor, 1.0 / n);
+    }
+    k * N::splat(processor, LN_2) + N::splat(processor, 2.0) * s * series
+}
+
+/// `eˣ`, by sums and products alone.
+fn exponential(x: f64) -> f64 {
+    let power = decay::<One>((), One::splat((), -x.abs())).get();
+    if x > 0.0 { 1.0 / power } else { power }
+}
+
+/// Cube root of a volume.
+fn cube_root(volume: f64) -> f64 {
+    if volume <= 0.0 {
+        return 0.0;
+    }
+    // Two steps of Newton's rule end in the last bits.
+    let guess = large_exponential(natural_log(volume) / 3.0);
+    (0..2).fold(guess, |root, _| {
+        root - (root - volume / (root * root)) / 3.0
+    })
+}
+
+/// `eˣ` for any x, halved into the range of [`exponential`].
+fn large_exponential(x: f64) -> f64 {
+    let (mut x, mut doublings) = (x, 0);
+    while x.abs() > 4.0 {
+        (x, doublings) = (0.5 * x, doublings + 1);
+    }
+    (0..doublings).fold(exponential(x), |power, _| power * power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponentials_and_logarithms_are_those_of_the_platform() {
+        for x in [0.0, -1e-9, -0.01, -0.5, -1.0, -3.0, -7.9] {
+            let found = decay::<One>((), One::splat((), x)).get();
+            assert!(
+                (found / f64::exp(x) - 1.0).abs() < 2e-14,
+                "e^{x}: {found:e}"
+            );
+        }
+        assert!(decay::<One>((), One::splat((), -1e6)).get() < 1e-13);
+        for x in [2.5e-4, 0.01, 0.5, 0.7, 1.0, 1.5, 2.0, 3.999, 25.0, 4000.0] {
+            let found = logarithm::<One>((), One::splat((), x)).get();
+            assert!(
+                (found - f64::ln(x)).abs() < 4e-15 * (1.0 + f64::ln(x).abs()),
+                "ln {x}: {found}"
+            );
+        }
+        for x in [1e-30, 6.2e-11, 1e-6, 0.5, 27.0] {
+            assert!((cube_root(x) / f64::cbrt(x) - 1.0).abs() < 1e-14, "{x}");
+        }
+    }
+
+    /// Attraction over `π γ r` of equal grains of radius 1 mm with bridges of `Ṽ` and a contact angle in degrees.
+    fn soulie(volume: f64, degrees: f64, gap: f64) -> f64 {
+        let liquid = Liquid {
+            surface_tension: 0.07,
+            contact_angle: f64::to_radians(degrees),
+            viscosity: 0.0,
+            volume: 1.0,
+            law: crate::scene::BridgeLaw::AS_PRINTED,
+        };
+        let constants = BridgeConstants::of(&liquid, (1e-3, 1e-3), volume * 1e-9);
+        let row = constants.row.map(|x| One::splat((), x));
+        let force = attraction((), row, One::splat((), gap * 1e-3)).get();
+        force / (PI * 0.07 * 1e-3)
+    }
+
+    #[test]
+    fn capillary_attraction_is_that_of_soulie() {
+        let gaps = [0.0, 0.02, 0.1, 0.2];
+        let table = [
+            (0.001, 0.0, [1.77582, 0.79226, 0.08925, 0.06589]),
+            (0.01, 20.0, [1.69200, 1.32988, 0.52851, 0.19947]),
+            (0.0315, 40.0, [1.40805, 1.23638, 0.74368, 0.40962]),
+        ];
+        for (volume, angle, expected) in table {
+            for (gap, expected) in gaps.into_iter().zip(expected) {
+                let found = soulie(volume, angle, gap);
+                assert!(
+                    (found - expected).abs() < 1e-5,
+                    "{volume} {angle} {gap}: {found}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Profile of the flowing layer, curvature of the surface, torque of the drum, numbers of the liquid.
+
+use super::*;
+use glam::DVec2;
+use grainfall::measure::{
+    FlowHistory, MIDDLE_SHARE, Measure, capillary_number, drop_ratio_law, drum_torque,
+    galilei_number, mean_velocity, sample, sample_and_surface, surface_line,
+};
+use grainfall::scene::LIQUID_CASES;
+use grainfall::world::Liquid;
+
+const RADIUS: f64 = 0.0605;
+const WIDTH: f64 = 0.022;
+const GRAIN: f64 = 0.002;
+
+/// A closed lattice whose surface is tilted by `angle` and whose top grains lie `bulge(s)` above the plane at distance s
+/// from the middle.
+fn bed(angle: f64, bulge: impl Fn(f64) -> f64) -> World {
+    let mut world = drum(RADIUS, WIDTH, 0.0);
+    let along = DVec2::from_angle(angle);
+    for x in lattice_in_drum(RADIUS, WIDTH, 2.0 * GRAIN, angle, -0.01) {
+        let lift = along.perp() * bulge(x.truncate().dot(along));
+        push(&mut world, x + lift.extend(0.0), GRAIN);
+    }
+    world
+}
+
+#[test]
+fn curvature_is_that_of_a_parabola_and_none_of_a_plane() {
+    for angle in [-0.4, 0.0, 0.5] {
+        let flat = surface_line(&bed(angle, |_| 0.0), MIDDLE_SHARE).unwrap();
+        assert_close(flat.curvature, 0.0, 1e-6);
+        for curvature in [2.0, -1.5] {
+            let world = bed(angle, |s| -0.5 * curvature * s * s);
+            let line = surface_line(&world, MIDDLE_SHARE).unwrap();
+            assert_close(line.curvature, curvature, 0.01);
+            assert_close(line.angle, angle, 1e-3);
+        }
+    }
+}
+
+#[test]
+fn profile_of_a_sheared_bed_is_its_shear() {
+    // Velocity along the surface falls linearly with depth; a Gaussian mean of a line is the line where grains lie all
+    // round. Fluctuations make the bed count as flowing.
+    let angle = 0.4_f64;
+    let (along, up) = (DVec2::from_angle(angle), DVec2::from_angle(angle).perp());
+    let mut world = bed(angle, |_| 0.0);
+    let line = surface_line(&world, MIDDLE_SHARE).unwrap();
+    let mut noise = Noise::new(3);
+    for i in 0..world.grains.len() {
+        let depth = -(world.grains.position[i].truncate() - line.midpoint).dot(up);
+        let jitter = 1e-3 * noise.vector();
+        world.grains.velocity[i] = (along * (0.1 - 2.0 * depth)).extend(0.0) + jitter;
+    }
+    let (sample, line) = sample_and_surface(&world);
+    let mut history = FlowHistory::default();
+    history.add(&world, &sample, &line.unwrap());
+    let profile = history.since(0.0);
+    let velocity = profile.velocity();
+    let mut compared = 0;
+    for (depth, velocity) in profile.depth.iter().zip(velocity) {
+        // A kernel's reach away from the surface and from the rim.
+        if (0.012..0.028).contains(depth) {
+            assert_close(velocity, 0.1 - 2.0 * depth, 1.5e-3);
+            compared += 1;
+        }
+    }
+    assert!(compared > 8, "{compared}");
+}
+
+#[test]
+fn rest_is_not_averaged_and_time_before_the_window_neither() {
+    let mut world = bed(0.3, |_| 0.0);
+    let mut history = FlowHistory::default();
+    let (still, line) = sample_and_surface(&world);
+    history.add(&world, &still, &line.unwrap());
+    assert!(
+        history.since(0.0).depth.is_empty(),
+        "a bed at rest does not flow"
+    );
+    let mut noise = Noise::new(1);
+    for velocity in &mut world.grains.velocity {
+        *velocity = noise.vector() * 1e-2;
+    }
+    let (moving, line) = sample_and_surface(&world);
+    history.add(&world, &moving, &line.unwrap());
+    assert_eq!(history.since(0.0).samples[0], 1);
+    assert!(history.since(0.5).depth.is_empty(), "it all came before");
+}
+
+#[test]
+fn mean_velocity_weighs_near_grains_more() {
+    let mut world = drum(RADIUS, WIDTH, 0.0);
+    push(&mut world, DVec3::ZERO, GRAIN);
+    push(&mut world, DVec3::X * 0.004, GRAIN);
+    push(&mut world, DVec3::X * 0.02, GRAIN);
+    world.grains.velocity = vec![DVec3::X, DVec3::Y, DVec3::ONE * 100.0];
+    let found = mean_velocity(&world, DVec2::ZERO, 0.008).unwrap();
+    // One standard deviation away weighs e^-1/2; beyond two nothing does.
+    let weight = (-0.5_f64).exp();
+    assert_close(found.x, 1.0 / (1.0 + weight), 1e-12);
+    assert_close(found.y, weight / (1.0 + weight), 1e-12);
+    assert!(mean_velocity(&world, DVec2::Y * 0.05, 0.008).is_none());
+}
+
+#[test]
+fn torque_of_the_drum_holds_the_weight_of_its_grains() {
+    // A grain at rest on the rim at 30°, carried by a normal force and friction: the torque is m g x.
+    let mut world = drum(RADIUS, WIDTH, 0.0);
+    let place = DVec2::from_angle(-60_f64.to_radians()) * (RADIUS - GRAIN);
+    push(&mut world, place.extend(0.0), GRAIN);
+    let weight = world.grains.mass[0] * 9.81;
+    touch(&mut world, 0, Partner::Wall(0), DVec3::ZERO);
+    world.contacts[0].force = DVec3::Y * weight;
+    let rim = place.length() + GRAIN;
+    let arm = rim * 60_f64.to_radians().cos();
+    assert_close(drum_torque(&world), weight * arm, 1e-12 * weight);
+}
+
+#[test]
+fn numbers_of_the_liquid_are_the_papers() {
+    let mut world = drum(RADIUS, WIDTH, 0.0);
+    push(&mut world, DVec3::ZERO, 1.25e-3);
+    assert_eq!(galilei_number(&world), None, "dry");
+    assert!(sample(&world).value(Measure::Bridges) == 0.0);
+    let inverse_roots = [0.0029, 0.315, 0.633, 1.061, 1.511, 2.713, 4.075];
+    for (case, expected) in LIQUID_CASES.iter().zip(inverse_roots) {
+        world.liquid = Some(Liquid::from(&case.liquid()));
+        let found = galilei_number(&world).unwrap().powf(-0.5);
+        assert_close(found, expected, 1e-3 * expected + 6e-5);
+    }
+    assert_close(capillary_number(&world).unwrap(), 6.39, 0.06);
+    // Eq. 23 at n = 1 … 7.
+    let law = [0.868, 0.725, 0.624, 0.536, 0.480, 0.420, 0.404];
+    for (case, expected) in LIQUID_CASES.iter().zip(law) {
+        assert_close(drop_ratio_law(case.viscosity), expected, 1e-3);
+    }
+}
