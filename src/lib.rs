@@ -29,6 +29,7 @@
 //! | [`measure`] | read-only numbers from a world |
 //! | [`simulation`] | the run (world, solver, commands, samples) and the Bevy plugin that steps it |
 //! | [`headless`] | the windowless runner and its output files |
+//! | [`sweep`] | variations of a scene side by side: cases, checkpoints, table, plots |
 //! | [`files`] | files that appear whole or not at all |
 //! | `view` | a world as pixels: grains, container, camera, colours |
 //! | `ui` | the egui panels |
@@ -46,6 +47,7 @@ pub mod measure;
 pub mod scene;
 pub mod simulation;
 pub mod solver;
+pub mod sweep;
 #[cfg(feature = "desktop")]
 pub mod ui;
 #[cfg(feature = "desktop")]

@@ -4,9 +4,10 @@
 
 use clap::{Args, Parser, Subcommand};
 use grainfall::files::write_whole;
-use grainfall::headless::{self, HeadlessError, Job, read_commands};
+use grainfall::headless::{self, HeadlessError, Job, apply_setting, read_commands};
 use grainfall::scene::{Scene, built_in};
-use grainfall::simulation::{BedStore, Command, Options, Parameter, ScriptedCommand, make_bed};
+use grainfall::simulation::{BedStore, Options, ScriptedCommand, make_bed};
+use grainfall::sweep::{self, Sweep, Variation};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -96,6 +97,28 @@ struct What {
 
 #[derive(Subcommand)]
 enum Task {
+    /// Run a scene's variations side by side and set their results beside each other
+    ///
+    /// Stopped with Ctrl-C, it goes on where it was when it is called again. Results: table.csv, table.md and plots.
+    Sweep {
+        /// A scene file, or the name of a built-in scene
+        scene: String,
+        /// What to vary: liquid=0..7, radius=3mm,2mm (may be repeated: every combination is run)
+        #[arg(long, value_name = "KEY=VALUES", required = true)]
+        vary: Vec<String>,
+        /// Change a value in every case, as in a single run
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Simulated time of each case: 10s, 2min
+        #[arg(long, value_name = "TIME")]
+        duration: Option<String>,
+        /// Folder for the results [default: out/<scene>-sweep]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Cases that run at the same time [default: all cores]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
+        jobs: Option<u16>,
+    },
     /// Settle a scene's bed and write it to a file
     #[command(hide = true)]
     Bed {
@@ -121,8 +144,10 @@ fn main() -> ExitCode {
 }
 
 fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
-    if let Some(Task::Bed { scene, out }) = arguments.task {
-        return write_bed(&scene, &out);
+    match arguments.task {
+        Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
+        Some(task @ Task::Sweep { .. }) => return run_sweep(task),
+        None => {}
     }
     let what = arguments.what;
     let name = what.scene.clone().unwrap_or_else(first_scene);
@@ -178,37 +203,12 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
     }
     let mut script = Vec::new();
     for setting in &what.set {
-        script.extend(set(&mut scene, setting)?);
+        script.extend(apply_setting(&mut scene, setting)?);
     }
     if let Some(path) = &what.commands {
         script.extend(read_commands(path)?);
     }
     Ok((scene, script))
-}
-
-/// Carries out one `--set`: at once where it is the scene's, as a command at step zero where it is a live parameter's.
-fn set(scene: &mut Scene, setting: &str) -> Result<Option<ScriptedCommand>, HeadlessError> {
-    let refuse = |reason: String| HeadlessError::Input(format!("--set {setting}: {reason}"));
-    let Some((key, text)) = setting.split_once('=') else {
-        return Err(refuse("expected KEY=VALUE, such as drum-speed=1rpm".into()));
-    };
-    if Scene::settings().any(|(known, _)| known == key) {
-        scene.set(key, text)?;
-        return Ok(None);
-    }
-    let parameter = Parameter::try_from(key.to_owned()).map_err(|reason| {
-        let known: Vec<&str> = Scene::settings().map(|(known, _)| known).collect();
-        refuse(format!("{reason}; or before a run: {}", known.join(", ")))
-    })?;
-    let value = parameter.parse_value(text).ok_or_else(|| {
-        let (unit, shown) = (parameter.unit(), parameter.display().name);
-        refuse(format!("`{text}` is no value; expected a number in SI units ({unit}), or one with its unit {shown}"))
-    })?;
-    Ok(Some(ScriptedCommand {
-        step: Some(0),
-        time: None,
-        command: Command::Set { parameter, value },
-    }))
 }
 
 /// `scenes/papers/kasper2021/dry-r3.ron` is called `dry-r3`.
@@ -270,6 +270,36 @@ fn interruption() -> Result<Arc<AtomicBool>, HeadlessError> {
     })
     .map_err(|error| HeadlessError::Input(format!("cannot listen to Ctrl-C: {error}")))?;
     Ok(flag)
+}
+
+fn run_sweep(task: Task) -> Result<u8, HeadlessError> {
+    let Task::Sweep {
+        scene: name,
+        vary,
+        set,
+        duration,
+        out,
+        jobs,
+    } = task
+    else {
+        return Ok(0);
+    };
+    let mut scene = Scene::open(&name)?;
+    if let Some(duration) = &duration {
+        scene.set("duration", duration)?;
+    }
+    let variations = vary.iter().map(|text| Variation::parse(text));
+    let sweep = Sweep {
+        out: out.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", short_name(&name)))),
+        name,
+        scene,
+        settings: set,
+        variations: variations.collect::<Result<_, _>>()?,
+        jobs: jobs.map_or(Options::headless().threads, usize::from),
+        beds: BedStore::user(),
+    };
+    let ending = sweep::run(&sweep, &*interruption()?)?;
+    Ok(ending.exit_code())
 }
 
 fn write_bed(name: &str, path: &Path) -> Result<u8, HeadlessError> {

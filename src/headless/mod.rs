@@ -13,10 +13,17 @@ mod progress;
 mod recorder;
 mod report;
 mod series_file;
+mod setting;
 mod summary_file;
 
 pub use commands_file::read_commands;
 pub use error::HeadlessError;
+pub(crate) use flow_file::{FLOW, write_flow};
+pub(crate) use folder::SUMMARY;
+pub(crate) use progress::{Progress, spoken};
+pub(crate) use series_file::{SERIES, write_series};
+pub use setting::apply_setting;
+pub(crate) use summary_file::SummaryFile;
 
 use crate::scene::Scene;
 use crate::simulation::{
@@ -27,7 +34,6 @@ use crate::world::World;
 use bevy::MinimalPlugins;
 use bevy::app::{App, PluginGroup, TaskPoolOptions, TaskPoolPlugin};
 use bevy::time::TimeUpdateStrategy;
-use progress::{Progress, spoken};
 use recorder::Recorder;
 use report::report;
 use std::path::PathBuf;

@@ -9,7 +9,7 @@ use super::surface::{SurfaceLine, mean_radius};
 use super::{Measure, NON_RIGID_TEMPERATURE, Sample};
 use crate::world::World;
 use glam::DVec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Depths at which the profile is taken.
 const DEPTHS: usize = 48;
@@ -23,7 +23,7 @@ const REACH: std::ops::RangeInclusive<f64> = 0.008..=0.011;
 const CUT_OFF: f64 = 2.0;
 
 /// Profiles of every second of a run, so that any later part of it can be averaged.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowHistory {
     seconds: Vec<FlowProfile>,
 }
@@ -51,7 +51,7 @@ impl FlowHistory {
 }
 
 /// Profile of the velocity along the surface over the depth below its middle, averaged over time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowProfile {
     /// Depths below the surface line, along its inward normal [m].
     pub depth: Vec<f64>,

@@ -1,6 +1,7 @@
 //! Samples of a run, kept in columns so that a plot or an average can borrow one.
 
 use super::Measure;
+use serde::{Deserialize, Serialize};
 
 /// Every measure of a world at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +22,7 @@ impl Sample {
 }
 
 /// Samples in order of time, column by column.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     steps: Vec<u64>,
     time: Vec<f64>,

@@ -33,5 +33,5 @@ pub use front::{DriverKind, Options, SMALLEST_DROP, Simulation, Status};
 pub use parameter::{DisplayUnit, ParameterInfo};
 pub use plugin::{SimulationPlugin, SimulationSystems, advance_simulation};
 pub use preparation::{Preparation, Prepared, make_bed};
-pub use run::{CommandError, Run, SAMPLE_INTERVAL, Snapshot};
+pub use run::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
 pub use script::{Script, ScriptError, ScriptedCommand};

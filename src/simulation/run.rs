@@ -11,6 +11,7 @@ use crate::measure::{FlowHistory, Series, sample_and_surface};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile, Solver};
 use crate::world::World;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Simulated time between two samples [s].
@@ -38,6 +39,16 @@ pub struct Snapshot {
     script: Script,
     samples: usize,
     flow: Arc<FlowHistory>,
+    next_sample: u64,
+}
+
+/// A run as a file can keep it: all it takes to go on in another process, to the same bits.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Checkpoint {
+    world: World,
+    commands: Vec<StampedCommand>,
+    series: Series,
+    flow: FlowHistory,
     next_sample: u64,
 }
 
@@ -165,6 +176,28 @@ impl Run {
             self.carry_out_due();
         }
         Ok(())
+    }
+
+    /// All it takes to go on from here in another process.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            world: self.world.clone(),
+            commands: self.commands.clone(),
+            series: self.series.clone(),
+            flow: (*self.flow).clone(),
+            next_sample: self.next_sample,
+        }
+    }
+
+    /// Goes on from a `checkpoint` of a run of the same scene and script. Commands of the script that were carried out
+    /// before it are not carried out again.
+    pub fn resume(&mut self, checkpoint: Checkpoint) {
+        self.world = checkpoint.world;
+        self.commands = checkpoint.commands;
+        self.series = checkpoint.series;
+        self.flow = Arc::new(checkpoint.flow);
+        self.next_sample = checkpoint.next_sample;
+        while self.script.take_due(self.world.clock.step).is_some() {}
     }
 
     /// All it takes to come back to this moment.

@@ -36,23 +36,25 @@ impl<Q: Quad> Total<Q> {
         }
     }
 
-    /// Adds a pair of which this grain is the first partner (`side` 0) or the second (1).
+    /// Adds a pair of which this grain is the first partner: the energy is booked on it.
     #[inline(always)]
-    fn add(&mut self, processor: Q::Processor, action: &Action, side: usize) {
-        // On the second side forces turn round, the count of partners does not; the energy is booked on the first.
-        const SIGNS: [Row; 2] = [[1.0; 4], [-1.0, -1.0, -1.0, 1.0]];
-        const BOOKED: [f64; 2] = [1.0, 0.0];
-        let sign = Q::load(processor, &SIGNS[side]);
-        let arm = if side == 0 {
-            action.force[3]
-        } else {
-            action.twist[3]
-        };
-        self.force = self.force + Q::load(processor, &action.force) * sign;
-        self.torque = self.torque + Q::load(processor, &action.twist) * Q::repeat(processor, arm);
-        self.rolling = self.rolling + Q::load(processor, &action.rolling) * sign;
-        self.exchanged = self.exchanged
-            + Q::load(processor, &action.exchanged) * Q::repeat(processor, BOOKED[side]);
+    fn add_first(&mut self, processor: Q::Processor, action: &Action) {
+        let arm = Q::repeat(processor, action.force[3]);
+        self.force = self.force + Q::load(processor, &action.force);
+        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
+        self.rolling = self.rolling + Q::load(processor, &action.rolling);
+        self.exchanged = self.exchanged + Q::load(processor, &action.exchanged);
+    }
+
+    /// Adds a pair of which this grain is the second partner: forces turn round, the count of partners does not.
+    #[inline(always)]
+    fn add_second(&mut self, processor: Q::Processor, action: &Action) {
+        const TURNED: Row = [-1.0, -1.0, -1.0, 1.0];
+        let arm = Q::repeat(processor, action.twist[3]);
+        self.force = self.force - Q::load(processor, &action.force);
+        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
+        let turned = Q::load(processor, &TURNED);
+        self.rolling = self.rolling + Q::load(processor, &action.rolling) * turned;
     }
 
     /// Adds the bridge of such a pair.
@@ -144,10 +146,17 @@ impl Incidence<'_> {
     #[inline(always)]
     fn total<Q: Quad, const WET: bool>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
         let mut total = Total::zero(processor);
-        for part in self.parts.of(i) {
-            total.add(processor, &self.actions[part.action()], part.side());
+        let [as_second, as_first] = self.parts.by_side(i);
+        for part in as_second {
+            total.add_second(processor, &self.actions[part.action()]);
+            if WET {
+                total.add_bridge(processor, &self.liquid_actions[part.action()], 1);
+            }
+        }
+        for part in as_first {
+            total.add_first(processor, &self.actions[part.action()]);
             if WET && let Some(action) = self.liquid_actions.get(part.action()) {
-                total.add_bridge(processor, action, part.side());
+                total.add_bridge(processor, action, 0);
             }
         }
         total

@@ -5,3 +5,4 @@ mod measure;
 mod run;
 mod scene;
 mod solver;
+mod sweep;

@@ -1,0 +1,140 @@
+//! Which cases a sweep consists of.
+
+use super::Sweep;
+use crate::headless::{HeadlessError, apply_setting};
+use crate::scene::{Scene, SceneGrains};
+use crate::simulation::ScriptedCommand;
+use crate::solver::advise;
+
+/// Cases a sweep may have.
+const MOST_CASES: usize = 10_000;
+
+/// A key and the values it takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variation {
+    /// A key of `--set`.
+    pub key: String,
+    /// Its values as text.
+    pub values: Vec<String>,
+}
+
+/// One case: a scene with its commands.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its folder's name: `liquid=3_radius=2mm`.
+    pub name: String,
+    /// The varied values, in the order of the variations.
+    pub values: Vec<String>,
+    /// The scene.
+    pub scene: Scene,
+    /// What is set at its first step.
+    pub script: Vec<ScriptedCommand>,
+    /// Length of its steps [s].
+    pub time_step: f64,
+}
+
+impl Variation {
+    /// Reads `key=a,b,c`, or `key=0..7` for whole numbers from the first to the last.
+    ///
+    /// # Errors
+    /// When the text has no such form.
+    pub fn parse(text: &str) -> Result<Self, HeadlessError> {
+        let refuse = || {
+            HeadlessError::Input(format!(
+                "--vary {text}: expected KEY=VALUES, such as liquid=0..7 or radius=3mm,2mm,1.25mm"
+            ))
+        };
+        let (key, list) = text.split_once('=').ok_or_else(refuse)?;
+        let values: Vec<String> = match list.split_once("..") {
+            Some((first, last)) => {
+                let number = |text: &str| text.trim().parse::<i64>().map_err(|_| refuse());
+                let (first, last) = (number(first)?, number(last)?);
+                if last < first || last - first >= MOST_CASES as i64 {
+                    return Err(refuse());
+                }
+                (first..=last).map(|n| n.to_string()).collect()
+            }
+            None => list
+                .split(',')
+                .map(|value| value.trim().to_owned())
+                .collect(),
+        };
+        if key.is_empty() || values.iter().any(String::is_empty) {
+            return Err(refuse());
+        }
+        Ok(Self {
+            key: key.to_owned(),
+            values,
+        })
+    }
+}
+
+impl Case {
+    /// What it costs to run, in grains times steps.
+    pub fn cost(&self) -> f64 {
+        let grains = match &self.scene.grains {
+            SceneGrains::Fill { count, .. } => *count,
+            SceneGrains::List(list) => list.len(),
+        };
+        grains as f64 * self.scene.duration / self.time_step
+    }
+}
+
+/// Every combination of the variations, the last one changing fastest.
+///
+/// # Errors
+/// When a key or value does not suit the scene, or there are too many cases.
+pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, HeadlessError> {
+    let number: usize = sweep.variations.iter().map(|v| v.values.len()).product();
+    if number > MOST_CASES {
+        return Err(HeadlessError::Input(format!(
+            "the sweep has {number} cases; expected at most {MOST_CASES}"
+        )));
+    }
+    (0..number).map(|index| case(sweep, index)).collect()
+}
+
+fn case(sweep: &Sweep, index: usize) -> Result<Case, HeadlessError> {
+    let mut rest = index;
+    let mut values: Vec<String> = Vec::new();
+    for variation in sweep.variations.iter().rev() {
+        let count = variation.values.len();
+        values.insert(0, variation.values[rest % count].clone());
+        rest /= count;
+    }
+    let mut scene = sweep.scene.clone();
+    let mut script = Vec::new();
+    let varied: Vec<String> = sweep
+        .variations
+        .iter()
+        .zip(&values)
+        .map(|(variation, value)| format!("{}={value}", variation.key))
+        .collect();
+    for setting in varied.iter().chain(&sweep.settings) {
+        if is_for_wet_cases(setting) && scene.liquid.is_none() {
+            continue;
+        }
+        script.extend(apply_setting(&mut scene, setting)?);
+    }
+    Ok(Case {
+        name: varied.join("_").replace(['/', '\\'], "-"),
+        values,
+        time_step: advise(&scene).time_step,
+        scene,
+        script,
+    })
+}
+
+/// Whether a setting says nothing about a dry scene: a sweep from dry to wet sets it where it has a meaning.
+fn is_for_wet_cases(setting: &str) -> bool {
+    [
+        "bridge-law=",
+        "viscosity=",
+        "surface-tension=",
+        "contact-angle=",
+        "liquid-volume=",
+        "wet-friction.",
+    ]
+    .iter()
+    .any(|key| setting.starts_with(key))
+}

@@ -1,0 +1,173 @@
+//! Sweeps: cases, results side by side, stopping and going on, wrong input.
+
+use grainfall::headless::HeadlessError;
+use grainfall::scene::Scene;
+use grainfall::simulation::BedStore;
+use grainfall::sweep::{Sweep, SweepEnding, Variation, run};
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+const DRUM: &str = r#"(
+    title: "Small wet drum",
+    materials: {"glass": (friction: 0.4, wet_friction: 0.1), "drum": (youngs_modulus: 12e6, poisson_ratio: 0.35)},
+    container: Drum(radius_mm: 24, width_mm: 16, speed_rpm: 10, material: "drum"),
+    grains: Fill(count: 30, species: [(radius_mm: 3, material: "glass")]),
+    liquid: (case: 2, volume_ml: 0.3),
+    duration: 0.3,
+    output_interval: 0.1,
+)"#;
+
+fn sweep(out: &Path, variations: &[&str]) -> Sweep {
+    Sweep {
+        name: "drum".into(),
+        scene: Scene::parse("drum", DRUM).unwrap(),
+        settings: vec!["drum-speed=5rpm".into()],
+        variations: variations
+            .iter()
+            .map(|v| Variation::parse(v).unwrap())
+            .collect(),
+        out: out.to_owned(),
+        jobs: 2,
+        beds: BedStore::none(),
+    }
+}
+
+fn hashes(out: &Path) -> Vec<String> {
+    let table = fs::read_to_string(out.join("table.csv")).unwrap();
+    let rows = table.lines().skip(1);
+    rows.map(|row| row.rsplit(',').next().unwrap().to_owned())
+        .collect()
+}
+
+#[test]
+fn sweep_sets_every_combination_beside_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sweep");
+    let sweep = sweep(&out, &["liquid=0,7", "radius=3mm,2.5mm"]);
+    let ending = run(&sweep, &AtomicBool::new(false)).unwrap();
+    assert_eq!((ending, ending.exit_code()), (SweepEnding::Done, 0));
+    let table = fs::read_to_string(out.join("table.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert!(rows[0].starts_with("liquid,radius,θ [°],"), "{}", rows[0]);
+    let starts = ["0,3mm,", "0,2.5mm,", "7,3mm,", "7,2.5mm,"];
+    assert_eq!(rows.len(), 5);
+    for (row, start) in rows[1..].iter().zip(starts) {
+        assert!(row.starts_with(start) && row.contains(",done,"), "{row}");
+    }
+    let markdown = fs::read_to_string(out.join("table.md")).unwrap();
+    assert_eq!(markdown.lines().count(), 6);
+    for file in ["summary.json", "series.csv"] {
+        assert!(
+            out.join("liquid=7_radius=3mm").join(file).is_file(),
+            "{file}"
+        );
+    }
+    for plot in [
+        "surface-angle.svg",
+        "packing-fraction.svg",
+        "courses/liquid=7_radius=3mm-angle.svg",
+    ] {
+        let text = fs::read_to_string(out.join("plots").join(plot)).unwrap();
+        assert!(
+            text.starts_with("<svg") && text.trim_end().ends_with("</svg>"),
+            "{plot}"
+        );
+    }
+    let summary = fs::read_to_string(out.join("liquid=7_radius=3mm/summary.json")).unwrap();
+    assert!(
+        summary.contains("drum-speed"),
+        "settings hold in every case"
+    );
+}
+
+#[test]
+fn stopped_sweep_goes_on_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    let variations = ["viscosity=0.01,0.5"];
+    run(&sweep(&whole, &variations), &AtomicBool::new(false)).unwrap();
+    let mut calls = 0;
+    loop {
+        // Stopped a moment after it began, again and again.
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopper = stop.clone();
+        let timer = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(60 + 40 * calls));
+            stopper.store(true, Ordering::Relaxed);
+        });
+        let ending = run(&sweep(&parts, &variations), &stop).unwrap();
+        timer.join().unwrap();
+        calls += 1;
+        if ending == SweepEnding::Done {
+            break;
+        }
+        assert_eq!(ending, SweepEnding::Interrupted);
+        assert!(calls < 200, "it comes to an end");
+    }
+    println!("{calls} calls");
+    assert_eq!(hashes(&parts), hashes(&whole));
+    // A finished one is only read.
+    run(&sweep(&parts, &variations), &AtomicBool::new(false)).unwrap();
+    assert_eq!(hashes(&parts), hashes(&whole));
+}
+
+#[test]
+fn longer_sweep_goes_on_from_a_shorter_one_and_another_scene_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sweep");
+    let mut shorter = sweep(&out, &["viscosity=0.1"]);
+    shorter.scene.duration = 0.1;
+    run(&shorter, &AtomicBool::new(false)).unwrap();
+    let first = hashes(&out);
+    let longer = sweep(&out, &["viscosity=0.1"]);
+    run(&longer, &AtomicBool::new(false)).unwrap();
+    let second = hashes(&out);
+    assert_ne!(first, second);
+    let fresh = folder.path().join("fresh");
+    run(&sweep(&fresh, &["viscosity=0.1"]), &AtomicBool::new(false)).unwrap();
+    assert_eq!(hashes(&fresh), second);
+    let mut other = sweep(&out, &["viscosity=0.1"]);
+    other.settings = vec!["drum-speed=7rpm".into()];
+    run(&other, &AtomicBool::new(false)).unwrap();
+    assert_ne!(
+        hashes(&out),
+        second,
+        "its checkpoint is not taken for another's"
+    );
+}
+
+#[test]
+fn wrong_variations_say_what_was_expected() {
+    for text in [
+        "liquid",
+        "liquid=",
+        "=3",
+        "liquid=7..0",
+        "radius=3mm,,2mm",
+        "liquid=0..99999999",
+    ] {
+        let message = Variation::parse(text).unwrap_err().to_string();
+        assert!(
+            message.contains(&format!("--vary {text}: expected KEY=VALUES")),
+            "{message}"
+        );
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (variation, expected) in [
+        ("liquid=0..9", "1 (water) to 7 (glycerol)"),
+        ("liqud=1", "no parameter is called `liqud`"),
+        ("viscosity=1e9", "`viscosity` cannot be"),
+    ] {
+        let out = folder.path().join("none");
+        let error = run(&sweep(&out, &[variation]), &AtomicBool::new(false)).unwrap_err();
+        assert!(matches!(
+            error,
+            HeadlessError::Scene(_) | HeadlessError::Input(_)
+        ));
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}
