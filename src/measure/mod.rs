@@ -15,6 +15,7 @@
 //! | `energy` | elastic energy and the energy ledger |
 //! | `avalanches` | extrema of θ(t) |
 //! | `flow` | velocity in the cross-section, its profile over depth |
+//! | `reference` | stored dry drums to compare wet ones with |
 //! | `liquid` | bridges, capillary and Galilei number, torque of a drum |
 //! | `summary` | averages over a window of a series |
 //!
@@ -28,6 +29,7 @@ mod liquid;
 mod neighbours;
 mod packing;
 mod quantity;
+mod reference;
 mod series;
 mod summary;
 mod surface;
@@ -40,6 +42,7 @@ pub use flow::{FlowHistory, FlowProfile, kernel_reach, mean_velocity};
 pub use liquid::{bridges, capillary_number, drop_ratio_law, drum_torque, galilei_number};
 pub use packing::packing_fraction;
 pub use quantity::{Measure, QUANTITIES, Quantity};
+pub use reference::{DryDrum, dry_drum};
 pub use series::{Sample, Series};
 pub use summary::{
     NON_RIGID_TEMPERATURE, Regime, SMALLEST_DROPS, Summary, SummaryEntry, summarise,

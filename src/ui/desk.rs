@@ -3,6 +3,7 @@
 //! In: the simulation and the view's settings. Out: requests, and what is left free for the picture. Needs no Bevy app.
 
 use super::about_scene::AboutScene;
+use super::beside_paper::BesidePaper;
 use super::menu::{Shown, menu_ui};
 use super::parameters::Parameters;
 use super::path_dialog::PathDialog;
@@ -64,6 +65,7 @@ fn left() -> Vec<Section> {
 fn right() -> Vec<Section> {
     vec![
         section(Plots::default(), true),
+        section(BesidePaper::default(), true),
         section(Results::default(), true),
     ]
 }
@@ -241,6 +243,9 @@ fn sections_ui(
         // Room for the scroll bar, so that it never lies over a number.
         ui.set_width(ui.available_width() - 6.0);
         for section in sections {
+            if !section.panel.concerns(simulation) {
+                continue;
+            }
             let title = RichText::new(section.panel.title()).strong().size(17.0);
             CollapsingHeader::new(title)
                 .default_open(section.open_at_first)

@@ -17,6 +17,7 @@
 //! | `number`, `symbol`, `table`, `decimate` | numbers and symbols in text, tables, fewer points for the same picture |
 
 mod about_scene;
+mod beside_paper;
 mod carry_out;
 mod decimate;
 mod desk;
@@ -58,6 +59,11 @@ use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 pub trait Panel: Send + Sync + 'static {
     /// What stands over it.
     fn title(&self) -> &'static str;
+
+    /// Whether it has anything to say of this simulation; it is left out where it has not.
+    fn concerns(&self, _simulation: &Simulation) -> bool {
+        true
+    }
 
     /// Draws it; what is asked for goes into `out`.
     fn ui(

@@ -123,7 +123,11 @@ impl Panel for Parameters {
                     pair = Some(own);
                 }
                 let value = simulation.value(&info.parameter);
-                out.extend(parameter_ui(ui, info, value).map(Request::Command));
+                let wanted = match info.parameter {
+                    Parameter::BridgeLaw => bridge_law_ui(ui, info, value),
+                    _ => parameter_ui(ui, info, value),
+                };
+                out.extend(wanted.map(Request::Command));
             }
         }
         ui.add_space(4.0);
@@ -157,6 +161,7 @@ fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
 /// What stands beside a slider, under a heading that says the rest.
 fn short_name(info: &ParameterInfo) -> String {
     match &info.parameter {
+        Parameter::Friction(..) if info.label.starts_with("dry") => "Dry friction".into(),
         Parameter::Friction(..) => "Friction".into(),
         Parameter::WetFriction(..) => "Wet friction".into(),
         Parameter::Restitution(..) => "Restitution".into(),
@@ -212,6 +217,20 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
         }
     });
     wanted
+}
+
+/// The choice between the two bridge laws; the command that a change asks for.
+fn bridge_law_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<Command> {
+    let mut chosen = value;
+    ui.horizontal(|ui| {
+        let name = ui.label("Bridges");
+        name.on_hover_ui(|ui| explanation_ui(ui, info));
+        for (law, name) in [(0.0, "as printed"), (1.0, "as coded")] {
+            ui.selectable_value(&mut chosen, law, name)
+                .on_hover_text(info.description);
+        }
+    });
+    (chosen != value).then(|| set(info, chosen))
 }
 
 /// The row of one parameter whose present value is `value` (SI); the command that a change asks for.

@@ -11,7 +11,7 @@ use bevy_egui::egui::{self, RichText};
 const SAMPLES_BETWEEN_SUMMARIES: usize = 25;
 
 /// What the latest sample shows, energies apart.
-const LATEST: [Measure; 7] = [
+const LATEST: [Measure; 11] = [
     Measure::SurfaceAngle,
     Measure::GranularTemperature,
     Measure::CorotatingTemperature,
@@ -19,6 +19,10 @@ const LATEST: [Measure; 7] = [
     Measure::CoordinationNumber,
     Measure::MeanSpeed,
     Measure::LargestOverlap,
+    Measure::SurfaceRoughness,
+    Measure::SurfaceCurvature,
+    Measure::Bridges,
+    Measure::DrumTorque,
 ];
 
 /// What the averages show, by the summary's names, and what they are called here.
@@ -34,7 +38,7 @@ const AVERAGES: [(&str, &str); 8] = [
 ];
 
 /// Terms of the energy balance, and whether each is put in, kept or lost.
-const ENERGIES: [(Measure, &str); 7] = [
+const ENERGIES: [(Measure, &str); 9] = [
     (Measure::GravityWork, "in"),
     (Measure::WallWork, "in"),
     (Measure::KineticEnergy, "kept"),
@@ -42,6 +46,8 @@ const ENERGIES: [(Measure, &str); 7] = [
     (Measure::DashpotLoss, "lost"),
     (Measure::SlidingLoss, "lost"),
     (Measure::RollingLoss, "lost"),
+    (Measure::ViscousLoss, "lost"),
+    (Measure::CapillaryLoss, "lost"),
 ];
 
 /// The panel of results.

@@ -1,0 +1,194 @@
+//! The running wet drum beside the laws of Kasper et al. 2021: the drops over viscosity with Eq. 23, the non-rigid share over
+//! √(1/Ga).
+//!
+//! In: the samples since the last change of a parameter. Out: one point on each plot that moves as the run goes on.
+
+use super::theme::Palette;
+use super::{Panel, Request, number};
+use crate::measure::{Series, Summary, drop_ratio_law, dry_drum, galilei_number, summarise};
+use crate::simulation::{Command, Parameter, SMALLEST_DROP, Simulation};
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText};
+use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, Points, VLine};
+
+/// Averages are taken anew whenever this many samples have been added, half a simulated second.
+const SAMPLES_BETWEEN_SUMMARIES: usize = 25;
+/// Height of a plot in points.
+const HEIGHT: f32 = 130.0;
+
+/// The panel.
+#[derive(Default)]
+pub struct BesidePaper {
+    averaged: Option<(Key, Summary)>,
+}
+
+/// What a summary was made of.
+#[derive(Clone, Copy, PartialEq)]
+struct Key {
+    samples: usize,
+    from: f64,
+}
+
+/// One plot: a law, a threshold, and where the run stands.
+struct Comparison {
+    id: &'static str,
+    title: &'static str,
+    law: Vec<[f64; 2]>,
+    law_name: &'static str,
+    threshold: Option<f64>,
+    point: Option<[f64; 2]>,
+    x: std::ops::RangeInclusive<f64>,
+    y: std::ops::RangeInclusive<f64>,
+}
+
+impl Panel for BesidePaper {
+    fn title(&self) -> &'static str {
+        "Beside the paper"
+    }
+
+    fn concerns(&self, simulation: &Simulation) -> bool {
+        simulation.scene().liquid.is_some()
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        _out: &mut Vec<Request>,
+    ) {
+        let viscosity = simulation.value(&Parameter::Viscosity);
+        let Some(world) = simulation.world() else {
+            ui.weak("The laws appear when the bed stands.");
+            return;
+        };
+        let radius = world.grains.radius.first().copied().unwrap_or(0.0);
+        let from = last_change(simulation);
+        let summary = self.summary(simulation.series(), from);
+        let drop = summary.value("drop Δθ");
+        let count = summary.value("avalanches").unwrap_or(0.0);
+        let dry = dry_drum(radius).map(|drum| drum.drop);
+        let ratio = drop.zip(dry).map(|(drop, dry)| drop / dry);
+        let flowing = summary.value("non-rigid share ta/ts");
+        let inverse_root = galilei_number(world).map(|number| number.powf(-0.5));
+        let millipascals = 1e3 * viscosity;
+        comparison_ui(
+            ui,
+            Comparison {
+                id: "drop ratio",
+                title: "Wet over dry drop, over viscosity η [mPa s]",
+                law: law(),
+                law_name: "0.4 + 0.47 exp(−η/295 mPa s)",
+                threshold: None,
+                point: ratio.map(|ratio| [millipascals.max(0.1).log10(), ratio]),
+                x: -0.5..=3.4,
+                y: 0.0..=ratio.unwrap_or(0.0).max(1.1) * 1.05,
+            },
+        );
+        comparison_ui(
+            ui,
+            Comparison {
+                id: "flowing share",
+                title: "Non-rigid share ta/ts, over √(1/Ga)",
+                law: Vec::new(),
+                law_name: "",
+                threshold: Some(0.0),
+                point: inverse_root.zip(flowing).map(|(x, y)| [x.log10(), y]),
+                x: -3.5..=1.2,
+                y: 0.0..=1.1,
+            },
+        );
+        let missing = match (dry, drop) {
+            (None, _) => "No stored dry drum has this radius: set a drum of 3 or 2 mm beside it. ",
+            (_, None) => "No avalanche yet. ",
+            _ => "",
+        };
+        let averages = format!(
+            "{missing}Averages since {} s, the last change: {} avalanches. The paper takes 30 s.",
+            number::fixed(from, 1),
+            number::fixed(count, 0)
+        );
+        ui.label(RichText::new(averages).small().weak());
+    }
+}
+
+impl BesidePaper {
+    fn summary(&mut self, series: &Series, from: f64) -> &Summary {
+        let key = Key {
+            samples: series.len() / SAMPLES_BETWEEN_SUMMARIES,
+            from,
+        };
+        if self.averaged.as_ref().is_some_and(|(made, _)| *made != key) {
+            self.averaged = None;
+        }
+        let make = || (key, summarise(series, from, SMALLEST_DROP));
+        &self.averaged.get_or_insert_with(make).1
+    }
+}
+
+/// When a parameter was last changed [s].
+fn last_change(simulation: &Simulation) -> f64 {
+    let mut commands = simulation.commands().iter().rev();
+    let change = commands.find(|stamped| matches!(stamped.command, Command::Set { .. }));
+    change.map_or(0.0, |stamped| stamped.time)
+}
+
+/// Eq. 23 on the axis of powers of ten.
+fn law() -> Vec<[f64; 2]> {
+    let at = |k: i32| -0.5 + 3.9 * f64::from(k) / 80.0;
+    let point = |place: f64| [place, drop_ratio_law(1e-3 * 10_f64.powf(place))];
+    (0..=80).map(at).map(point).collect()
+}
+
+fn comparison_ui(ui: &mut egui::Ui, shown: Comparison) {
+    let palette = Palette::of(ui.visuals());
+    ui.label(RichText::new(shown.title).strong());
+    Plot::new(shown.id)
+        .height(HEIGHT)
+        .width(ui.available_width() - 14.0)
+        .show_crosshair(false)
+        .grid_color(palette.grid)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .auto_bounds(false)
+        .x_grid_spacer(|input| {
+            let (first, last) = (input.bounds.0.ceil() as i32, input.bounds.1.floor() as i32);
+            (first..=last)
+                .map(|decade| GridMark {
+                    value: f64::from(decade),
+                    step_size: 1.0,
+                })
+                .collect()
+        })
+        .custom_x_axes(vec![
+            AxisHints::new_x().formatter(|mark, _| number::power_of_ten(mark.value.round() as i32)),
+        ])
+        .custom_y_axes(vec![AxisHints::new_y().min_thickness(46.0)])
+        .show(ui, |plot| {
+            plot.set_plot_bounds(egui_plot::PlotBounds::from_min_max(
+                [*shown.x.start(), *shown.y.start()],
+                [*shown.x.end(), *shown.y.end()],
+            ));
+            if !shown.law.is_empty() {
+                let law = Line::new(shown.law_name, shown.law).color(palette.threshold);
+                plot.line(law.width(1.6));
+            }
+            if let Some(x) = shown.threshold {
+                let line = VLine::new("Ga = 1", x).color(palette.threshold);
+                plot.vline(line.style(LineStyle::dashed_dense()));
+            }
+            if let Some(point) = shown.point {
+                let points = Points::new("this run", vec![point]);
+                plot.points(
+                    points
+                        .shape(MarkerShape::Diamond)
+                        .radius(7.0)
+                        .color(palette.temperature),
+                );
+            }
+        });
+}
