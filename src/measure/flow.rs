@@ -76,8 +76,8 @@ impl FlowProfile {
 
     fn add(&mut self, world: &World, sample: &Sample, line: &SurfaceLine) {
         let temperature = sample.value(Measure::GranularTemperature);
-        // Written so that a NaN does not flow.
-        if !(temperature >= NON_RIGID_TEMPERATURE) {
+        // A NaN does not flow.
+        if temperature.is_nan() || temperature < NON_RIGID_TEMPERATURE {
             return;
         }
         if self.depth.is_empty() {

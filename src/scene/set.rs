@@ -133,12 +133,14 @@ fn set_radius(scene: &mut Scene, wanted: f64) -> Option<()> {
         return None;
     };
     let old = species.first()?.radius;
-    if species.iter().any(|kind| kind.radius != old) || !(wanted > 0.0) {
+    if species.iter().any(|kind| kind.radius != old) || wanted <= 0.0 {
         return None;
     }
     let volume = solid_volume
         .unwrap_or_else(|| *count as f64 * 4.0 / 3.0 * std::f64::consts::PI * old.powi(3));
-    species.iter_mut().for_each(|kind| kind.radius = wanted);
+    for kind in species.iter_mut() {
+        kind.radius = wanted;
+    }
     *count = count_of(volume, species);
     *solid_volume = Some(volume);
     Some(())

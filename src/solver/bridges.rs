@@ -127,13 +127,12 @@ impl BridgeGroup<'_> {
     #[inline(always)]
     fn form<N: Lanes>(&mut self, depth: N, radii: [N; 2]) {
         let depths = depth.numbers();
-        for k in 0..N::COUNT {
-            if depths[k] > 0.0 && !self.rows[k].exists() {
-                let pair = &self.pairs[k];
-                let films = self.wetting.films;
+        let films = self.wetting.films;
+        for (k, (row, pair)) in self.rows.iter_mut().zip(self.pairs).enumerate() {
+            if depths[k] > 0.0 && !row.exists() {
                 let films = (films[pair.grain as usize], films[pair.partner as usize]);
                 let radii = (radii[0].numbers()[k], radii[1].numbers()[k]);
-                self.rows[k] = BridgeRow::new(self.wetting.liquid, radii, films);
+                *row = BridgeRow::new(self.wetting.liquid, radii, films);
             }
         }
     }

@@ -8,7 +8,7 @@ use super::bridges::{BridgeGroup, BridgeRow, Encounter, LiquidAction, Wetting};
 use super::lanes::{
     Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
 };
-use super::law::{Coefficients, Law, PairConstants, rolling_gain};
+use super::law::{Law, PairConstants, rolling_gain};
 use crate::scene::CoulombBound;
 use crate::world::{Motion, Surface};
 use glam::DVec3;
@@ -267,12 +267,72 @@ fn own_constants<N: Lanes>(
     )
 }
 
-/// Contact law, sliding and rolling of as many pairs as there are lanes.
+/// Tangential springs after a step.
+struct Springs<N: Lanes> {
+    /// The springs [m].
+    spring: [N; 3],
+    /// Where the contact slides.
+    slides: N::Mask,
+    /// Energy that the springs lost [J].
+    lost: N,
+}
+
+/// Stretches the springs by what has `slipped`, turns them into the tangent plane and lets those slide whose pull would
+/// exceed `bound`; `stiffness` is none where grains do not touch.
+#[inline(always)]
+fn stretch<N: Lanes>(
+    processor: N::Processor,
+    rows: &mut [Row],
+    slipped: [N; 3],
+    normal: [N; 3],
+    touching: N::Mask,
+    stiffness: N,
+    bound: N,
+) -> Springs<N> {
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let old = side_by_side::<N, _>(|k| &rows[k]);
+    let [x, y, z, old_stiffness] = N::gather(processor, old);
+    let old_spring = [x, y, z];
+    let stretched = plus(old_spring, slipped);
+    let old_work = old_stiffness * dot(old_spring, stretched);
+    let stretched = minus(stretched, times(normal, dot(stretched, normal)));
+    let trial = stiffness * dot(stretched, stretched).sqrt();
+    let slides = trial.exceeds(bound);
+    let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
+    let spring = times(stretched, kept);
+    let new = N::rows([spring[0], spring[1], spring[2], stiffness]);
+    for (row, new) in rows.iter_mut().zip(new) {
+        *row = new.row();
+    }
+    // What the mean of the old and the new spring's pull does along the slip, less the change of what they store.
+    let new_work = stiffness * dot(spring, minus(slipped, spring));
+    Springs {
+        spring,
+        slides,
+        lost: N::splat(processor, 0.5) * (old_work + new_work),
+    }
+}
+
+/// Torque of rolling friction on the grains, at most `cap` [N m].
+#[inline(always)]
+fn roll<N: Lanes>(
+    processor: N::Processor,
+    normal: [N; 3],
+    cap: N,
+    (spin, compliance): ([N; 3], N),
+) -> [N; 3] {
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let speed = dot(spin, spin).sqrt();
+    let gain = rolling_gain(cap, compliance, speed, zero, one);
+    let without_twist = minus(spin, times(normal, dot(spin, normal)));
+    times(without_twist, -gain)
+}
+
+/// Contact law, bridges, sliding and rolling of as many pairs as there are lanes. Returns how many bridges broke.
 #[inline(always)]
 fn interact<N: Lanes, L: Law, P: Partners<N>>(
     processor: N::Processor,
-    law: L,
-    dt: f64,
+    all: &Surroundings<'_, L>,
     partners: P,
     constants: &Constants<N>,
     springs: &mut [Row],
@@ -280,9 +340,8 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
 ) -> u32 {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
-    let (half, dt) = (N::splat(processor, 0.5), N::splat(processor, dt));
+    let (half, dt) = (N::splat(processor, 0.5), N::splat(processor, all.dt));
     let (law_constants, [friction, rolling_arm, radius, partner_radius]) = *constants;
-    let mut ruptures = 0;
 
     let (normal, depth) = partners.geometry(processor, [radius, partner_radius]);
     let touching = depth.exceeds(zero);
@@ -297,17 +356,14 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     // Normal force.
     let velocity = partners.velocity(processor);
     let approach = dot(velocity, normal);
-    let Coefficients {
-        normal_stiffness,
-        normal_damping,
-        tangential_stiffness,
-        tangential_damping,
-    } = law.coefficients(law_constants, overlap);
-    let normal_damping = N::choose(touching, normal_damping, zero);
-    let elastic = normal_stiffness * overlap;
-    let repulsion = law.normal_force(elastic, normal_damping * approach, zero);
+    let law = all.law.coefficients(law_constants, overlap);
+    let normal_damping = N::choose(touching, law.normal_damping, zero);
+    let elastic = law.normal_stiffness * overlap;
+    let repulsion = all
+        .law
+        .normal_force(elastic, normal_damping * approach, zero);
 
-    // Slip of the grain's surface over its partner's, and the spring it stretches.
+    // Slip of the grain's surface over its partner's.
     let (spin, partner_spin) = partners.spins(processor);
     let rolling_sum = if P::WALL {
         times(spin, arm)
@@ -318,69 +374,55 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         minus(velocity, times(normal, approach)),
         cross(rolling_sum, normal),
     );
-    let (rolling_spin, compliance) = partners.rolling(processor);
-    let mut bounding = law.coulomb_force(elastic, repulsion, zero);
-    let mut total_repulsion = repulsion;
-    let mut drag = [zero; 3];
-    let is_wet = liquid.is_some();
-    if let Some((bridges, film)) = liquid {
+    let rolling_spin = partners.rolling(processor);
+
+    let mut bounding = all.law.coulomb_force(elastic, repulsion, zero);
+    let bridge = if let Some((bridges, film)) = liquid {
         let encounter = Encounter {
             depth,
             touching,
             approach,
             slip,
-            compliance,
+            compliance: rolling_spin.1,
         };
-        let total = bridges.wetting.liquid.law.coulomb == CoulombBound::Total;
+        let coulomb = bridges.wetting.liquid.law.coulomb;
         let force = bridges.act(processor, dt, [radius, partner_radius], &film, &encounter);
-        total_repulsion = repulsion + force.repulsion;
-        drag = force.drag;
-        ruptures = force.ruptures;
-        if total {
-            bounding = N::choose(
-                zero.exceeds(total_repulsion),
-                -total_repulsion,
-                total_repulsion,
-            );
+        if coulomb == CoulombBound::Total {
+            let total = repulsion + force.repulsion;
+            bounding = N::choose(zero.exceeds(total), -total, total);
         }
-    }
-    let old = side_by_side::<N, _>(|k| &springs[k]);
-    let [x, y, z, old_stiffness] = N::gather(processor, old);
-    let old_spring = [x, y, z];
-    let slipped = times(slip, dt);
-    let stretched = plus(old_spring, slipped);
-    let old_work = old_stiffness * dot(old_spring, stretched);
-    let stretched = minus(stretched, times(normal, dot(stretched, normal)));
-    let stretch_squared = dot(stretched, stretched);
-    let trial = tangential_stiffness * stretch_squared.sqrt();
-    let bound = friction * bounding;
-    let slides = trial.exceeds(bound);
-    let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
-    let damping = N::choose(touching, N::choose(slides, zero, tangential_damping), zero);
-    let spring = times(stretched, kept);
-    let stiffness = N::choose(touching, tangential_stiffness, zero);
-    let new = N::rows([spring[0], spring[1], spring[2], stiffness]);
-    for (spring, new) in springs.iter_mut().zip(new) {
-        *spring = new.row();
-    }
-    let tangential = minus(times(spring, -tangential_stiffness), times(slip, damping));
-    let tangential = if is_wet {
-        plus(tangential, drag)
+        Some(force)
     } else {
-        tangential
+        None
     };
+
+    // Tangential force.
+    let stiffness = N::choose(touching, law.tangential_stiffness, zero);
+    let slipped = times(slip, dt);
+    let stretched = stretch(
+        processor,
+        springs,
+        slipped,
+        normal,
+        touching,
+        stiffness,
+        friction * bounding,
+    );
+    let unslid = N::choose(stretched.slides, zero, law.tangential_damping);
+    let damping = N::choose(touching, unslid, zero);
+    let mut tangential = minus(times(stretched.spring, -stiffness), times(slip, damping));
+    let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
+
+    let (mut total_repulsion, mut ruptures) = (repulsion, 0);
+    if let Some(bridge) = bridge {
+        total_repulsion = repulsion + bridge.repulsion;
+        tangential = plus(tangential, bridge.drag);
+        ruptures = bridge.ruptures;
+    }
     let force = minus(tangential, times(normal, total_repulsion));
     let twist = cross(normal, tangential);
-    let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
-    // What the mean of the old and the new spring's pull does along the slip, less the change of what they store.
-    let new_work = stiffness * dot(spring, minus(slipped, spring));
-    let in_sliding = half * (old_work + new_work);
 
-    // Rolling.
-    let speed = dot(rolling_spin, rolling_spin).sqrt();
-    let gain = rolling_gain(rolling_arm * elastic, compliance, speed, zero, one);
-    let without_twist = minus(rolling_spin, times(normal, dot(rolling_spin, normal)));
-    let rolling = times(without_twist, -gain);
+    let rolling = roll(processor, normal, rolling_arm * elastic, rolling_spin);
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = if P::WALL {
         dt * (dot(force, partners.wall_velocity(processor)) + dot(rolling, partner_spin))
@@ -388,19 +430,15 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         zero
     };
 
-    let force = N::rows([force[0], force[1], force[2], arm]);
-    let twist = N::rows([twist[0], twist[1], twist[2], partner_arm]);
-    let rolling = N::rows([
-        rolling[0],
-        rolling[1],
-        rolling[2],
-        N::choose(touching, one, zero),
-    ]);
-    let exchanged = N::rows([in_dashpots, in_sliding, in_rolling, by_wall]);
+    let count = N::choose(touching, one, zero);
+    let forces = N::rows([force[0], force[1], force[2], arm]);
+    let twists = N::rows([twist[0], twist[1], twist[2], partner_arm]);
+    let rollings = N::rows([rolling[0], rolling[1], rolling[2], count]);
+    let exchanged = N::rows([in_dashpots, stretched.lost, in_rolling, by_wall]);
     for (k, action) in actions.iter_mut().enumerate() {
-        action.force = force[k].row();
-        action.twist = twist[k].row();
-        action.rolling = rolling[k].row();
+        action.force = forces[k].row();
+        action.twist = twists[k].row();
+        action.rolling = rollings[k].row();
         action.exchanged = exchanged[k].row();
     }
     ruptures
@@ -502,7 +540,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             &own
         };
         ruptures += u64::from(interact(
-            processor, all.law, all.dt, partners, constants, springs, actions, liquid,
+            processor, all, partners, constants, springs, actions, liquid,
         ));
     }
     ruptures
@@ -524,9 +562,7 @@ fn at_walls<N: Lanes, L: Law>(
         let partners =
             GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
         let own = own_constants::<N>(processor, all.constants, pairs);
-        interact(
-            processor, all.law, all.dt, partners, &own, springs, actions, None,
-        );
+        interact(processor, all, partners, &own, springs, actions, None);
     }
 }
 

@@ -52,14 +52,14 @@ pub struct Parts {
     first: Vec<u32>,
     /// Where each grain's parts as the first partner begin: those as the second come before them, as pairs are sorted.
     own: Vec<u32>,
-    parts: Vec<Part>,
+    list: Vec<Part>,
 }
 
 impl Parts {
     /// The parts of grain `i`.
     #[inline(always)]
     pub fn of(&self, i: usize) -> &[Part] {
-        &self.parts[self.first[i] as usize..self.first[i + 1] as usize]
+        &self.list[self.first[i] as usize..self.first[i + 1] as usize]
     }
 
     /// The parts of grain `i` as the second partner, then those as the first, each in the order of the pairs.
@@ -67,8 +67,8 @@ impl Parts {
     pub fn by_side(&self, i: usize) -> [&[Part]; 2] {
         let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
         [
-            &self.parts[first as usize..own as usize],
-            &self.parts[own as usize..end as usize],
+            &self.list[first as usize..own as usize],
+            &self.list[own as usize..end as usize],
         ]
     }
 
@@ -96,13 +96,13 @@ impl Parts {
             self.first[i + 1] += self.first[i];
         }
         let mut next = self.first.clone();
-        self.parts
+        self.list
             .resize(self.first[count] as usize, Part::default());
         self.own.clear();
         self.own.extend_from_slice(&self.first[..count]);
         for (grain, part) in sides() {
             let place = &mut next[grain as usize];
-            self.parts[*place as usize] = part;
+            self.list[*place as usize] = part;
             *place += 1;
             self.own[grain as usize] += part.side() as u32;
         }

@@ -7,7 +7,7 @@ use crate::simulation::ScriptedCommand;
 use crate::solver::advise;
 
 /// Cases a sweep may have.
-const MOST_CASES: usize = 10_000;
+const MOST_CASES: u16 = 10_000;
 
 /// A key and the values it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl Variation {
             Some((first, last)) => {
                 let number = |text: &str| text.trim().parse::<i64>().map_err(|_| refuse());
                 let (first, last) = (number(first)?, number(last)?);
-                if last < first || last - first >= MOST_CASES as i64 {
+                if last < first || last - first >= i64::from(MOST_CASES) {
                     return Err(refuse());
                 }
                 (first..=last).map(|n| n.to_string()).collect()
@@ -86,7 +86,7 @@ impl Case {
 /// When a key or value does not suit the scene, or there are too many cases.
 pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, HeadlessError> {
     let number: usize = sweep.variations.iter().map(|v| v.values.len()).product();
-    if number > MOST_CASES {
+    if number > usize::from(MOST_CASES) {
         return Err(HeadlessError::Input(format!(
             "the sweep has {number} cases; expected at most {MOST_CASES}"
         )));

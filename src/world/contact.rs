@@ -23,7 +23,7 @@ pub struct Contact {
     /// Tangential spring ξ, the elastic part of the tangential displacement of the grain's surface over its
     /// partner's [m].
     pub spring: DVec3,
-    /// Stiffness k_t with which the spring was last stretched [N/m].
+    /// Stiffness `k_t` with which the spring was last stretched [N/m].
     pub stiffness: f64,
     /// Force on the grain at the last force evaluation [N].
     pub force: DVec3,
