@@ -110,14 +110,16 @@ impl BridgeRow {
     }
 
     /// The bridge, if there is one.
-    pub fn bridge(&self) -> Option<Bridge> {
+    pub fn bridge(&self) -> Option<Box<Bridge>> {
         let [volume, transfer, capillary, viscous] = self.state;
-        self.exists().then_some(Bridge {
-            volume,
-            transfer,
-            capillary,
-            viscous,
-            drag: vector(self.drag),
+        self.exists().then(|| {
+            Box::new(Bridge {
+                volume,
+                transfer,
+                capillary,
+                viscous,
+                drag: vector(self.drag),
+            })
         })
     }
 }

@@ -72,25 +72,15 @@ impl<Q: Quad> Total<Q> {
         self.rolling.row()[3] + self.liquid.row()[2]
     }
 
+    /// The sum that `load` holds, of a grain with so many open bridges.
     #[inline(always)]
-    fn load(processor: Q::Processor, total: &Total<Row>) -> Self {
+    fn load(processor: Q::Processor, load: &Load, open_bridges: f64) -> Self {
         Self {
-            force: Q::load(processor, &total.force),
-            torque: Q::load(processor, &total.torque),
-            rolling: Q::load(processor, &total.rolling),
-            exchanged: Q::load(processor, &total.exchanged),
-            liquid: Q::load(processor, &total.liquid),
-        }
-    }
-
-    #[inline(always)]
-    fn rows(self) -> Total<Row> {
-        Total {
-            force: self.force.row(),
-            torque: self.torque.row(),
-            rolling: self.rolling.row(),
-            exchanged: self.exchanged.row(),
-            liquid: self.liquid.row(),
+            force: Q::load(processor, &load.force),
+            torque: Q::load(processor, &load.torque),
+            rolling: Q::load(processor, &load.rolling),
+            liquid: Q::load(processor, &[0.0, 0.0, open_bridges, 0.0]),
+            exchanged: Q::repeat(processor, 0.0),
         }
     }
 }
@@ -98,17 +88,23 @@ impl<Q: Quad> Total<Q> {
 /// What only the integration reads or writes of a grain.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Load {
-    /// Sum over the grain's contacts at the last evaluation.
-    pub total: Total<Row>,
+    /// Contact forces at the last evaluation [N].
+    pub force: Row,
+    /// Their torque [N m].
+    pub torque: Row,
+    /// Torque of rolling friction [N m]; number of touching partners.
+    pub rolling: Row,
     /// Energy exchanged since the start [J].
     pub exchanged: Row,
-    /// Energy lost in bridges since the start [J], in the first two.
-    pub liquid_loss: Row,
     /// Time step over moment of inertia [1/(N m s)].
     pub compliance: f64,
     /// Largest speed that is not absurd, squared [m²/s²].
     pub speed_limit_squared: f64,
 }
+
+/// What the bridges of a grain have done: energy lost to viscosity and to capillary forces since the start [J]; bridges to
+/// grains that it does not touch.
+pub type BridgeLoad = [f64; 3];
 
 /// Constants of the integration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -209,6 +205,8 @@ pub struct Start<'a> {
     pub bodies: &'a mut [Body],
     /// What acts on it.
     pub loads: &'a [Load],
+    /// What their bridges have done; empty where nothing is wet.
+    pub bridge_loads: &'a [BridgeLoad],
     /// Where it was when the active list was filtered.
     pub references: &'a [Row],
 }
@@ -222,11 +220,14 @@ impl Work for Start<'_> {
             motion,
             bodies,
             loads,
+            bridge_loads,
             references,
         } = self;
         let mut outcome = Outcome::default();
-        for ((body, load), reference) in bodies.iter_mut().zip(loads).zip(references) {
-            let total = Total::<N::Quad>::load(processor, &load.total);
+        let rows = bodies.iter_mut().zip(loads).zip(references);
+        for (i, ((body, load), reference)) in rows.enumerate() {
+            let open_bridges = bridge_loads.get(i).map_or(0.0, |load| load[2]);
+            let total = Total::<N::Quad>::load(processor, load, open_bridges);
             kick(processor, body, &total, motion);
             outcome.refresh |= drift(processor, body, load, &total, reference, motion);
         }
@@ -248,6 +249,8 @@ pub struct Finish<'a, const WET: bool> {
     pub loads: &'a mut [Load],
     /// Volume of the film on each; empty where nothing is wet [m³].
     pub films: &'a mut [f64],
+    /// What the bridges of each have done; empty where nothing is wet.
+    pub bridge_loads: &'a mut [BridgeLoad],
     /// Where it was when the active list was filtered.
     pub references: &'a [Row],
     /// Whether this is the last step of a call.
@@ -266,6 +269,7 @@ impl<const WET: bool> Work for Finish<'_, WET> {
             bodies,
             loads,
             films,
+            bridge_loads,
             references,
             last,
         } = self;
@@ -276,9 +280,10 @@ impl<const WET: bool> Work for Finish<'_, WET> {
             let total = pairs.total::<N::Quad, WET>(processor, begin + k);
             load.exchanged = (N::Quad::load(processor, &load.exchanged) + total.exchanged).row();
             if WET {
-                load.liquid_loss =
-                    (N::Quad::load(processor, &load.liquid_loss) + total.liquid).row();
-                films[k] += total.liquid.row()[3];
+                let [viscous, capillary, open, gained] = total.liquid.row();
+                let [viscous_before, capillary_before, ..] = bridge_loads[k];
+                bridge_loads[k] = [viscous_before + viscous, capillary_before + capillary, open];
+                films[k] += gained;
             }
             kick(processor, body, &total, motion);
             let speed_squared = N::Quad::load(processor, &body.velocity).length_squared();
@@ -287,7 +292,9 @@ impl<const WET: bool> Work for Finish<'_, WET> {
             let sane = speed_squared <= load.speed_limit_squared && spin_squared < f64::INFINITY;
             outcome.fault |= !sane;
             if last {
-                load.total = total.rows();
+                load.force = total.force.row();
+                load.torque = total.torque.row();
+                load.rolling = total.rolling.row();
             } else if sane {
                 // A grain in fault stays where it is, for the diagnosis.
                 kick(processor, body, &total, motion);

@@ -4,7 +4,7 @@
 
 use super::bridges::{BridgeRow, LiquidAction, Wetting};
 use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
-use super::integrate::{Finish, Incidence, Load, Motion, Outcome, Start, Total};
+use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion, Outcome, Start};
 use super::lanes::Processor;
 use super::law::{FilmConstants, Law, PairConstants, Pairing, contributions, rupture_gap};
 use super::neighbours::{Neighbours, Parts, grain_key, wall_key};
@@ -30,6 +30,8 @@ pub struct State {
     liquid: Option<Liquid>,
     /// Volume of the film on every grain and, of none, on the ghost; empty where nothing is wet [m³].
     films: Vec<f64>,
+    /// What the bridges of every grain have done; empty where nothing is wet.
+    bridge_loads: Vec<BridgeLoad>,
     /// Bridges that broke since the world was taken in.
     ruptures: u64,
 }
@@ -152,15 +154,10 @@ impl State {
             });
             let speed_limit = LARGEST_MOVE * radius / dt;
             self.loads.push(Load {
-                total: Total {
-                    force: row(grains.force[i], 0.0),
-                    torque: row(grains.torque[i], 0.0),
-                    rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
-                    exchanged: [0.0; 4],
-                    liquid: [0.0, 0.0, f64::from(grains.open_bridges[i]), 0.0],
-                },
+                force: row(grains.force[i], 0.0),
+                torque: row(grains.torque[i], 0.0),
+                rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
                 exchanged: grains.exchanged[i],
-                liquid_loss: loss_row(grains.liquid_loss[i]),
                 compliance: dt / grains.inertia[i],
                 speed_limit_squared: speed_limit * speed_limit,
             });
@@ -175,12 +172,18 @@ impl State {
     fn load_liquid(&mut self, world: &World) {
         self.liquid = world.wetting().copied();
         self.films.clear();
+        self.bridge_loads.clear();
         self.ruptures = 0;
         let Some(liquid) = self.liquid else {
             self.neighbours.set_reach(None);
             return;
         };
-        self.films.extend_from_slice(&world.grains.film);
+        let grains = &world.grains;
+        let losses = grains.liquid_loss.iter().zip(&grains.open_bridges);
+        self.bridge_loads.extend(
+            losses.map(|([viscous, capillary], open)| [*viscous, *capillary, f64::from(*open)]),
+        );
+        self.films.extend_from_slice(&grains.film);
         self.films.push(0.0);
         self.neighbours
             .set_reach(Some(largest_reach(world, &liquid)));
@@ -202,8 +205,9 @@ impl State {
                 kind: 0,
             });
             springs.push(row(contact.spring, contact.stiffness));
-            bridges.push(contact.bridge.map_or(BridgeRow::default(), |bridge| {
-                BridgeRow::of(&bridge, liquid, radii)
+            let bridge = contact.bridge.as_ref();
+            bridges.push(bridge.map_or(BridgeRow::default(), |bridge| {
+                BridgeRow::of(bridge, liquid, radii)
             }));
         }
         self.neighbours.adopt(pairs, springs, bridges);
@@ -251,17 +255,16 @@ impl State {
             grains.position[i] = vector(body.position);
             grains.velocity[i] = vector(body.velocity);
             grains.spin[i] = vector(body.spin);
-            grains.force[i] = vector(load.total.force);
-            grains.torque[i] = vector(load.total.torque);
-            grains.rolling_torque[i] = vector(load.total.rolling);
-            grains.contact_count[i] = load.total.rolling[3] as u32;
+            grains.force[i] = vector(load.force);
+            grains.torque[i] = vector(load.torque);
+            grains.rolling_torque[i] = vector(load.rolling);
+            grains.contact_count[i] = load.rolling[3] as u32;
             grains.exchanged[i] = load.exchanged;
-            grains.open_bridges[i] = load.total.liquid[2] as u32;
-            grains.liquid_loss[i] = [load.liquid_loss[0], load.liquid_loss[1]];
         }
-        if self.liquid.is_some() {
-            let count = grains.len();
-            grains.film.copy_from_slice(&self.films[..count]);
+        for (i, [viscous, capillary, open]) in self.bridge_loads.iter().enumerate() {
+            grains.film[i] = self.films[i];
+            grains.open_bridges[i] = *open as u32;
+            grains.liquid_loss[i] = [*viscous, *capillary];
         }
         world.ledger.ruptures += self.ruptures;
         world.clock.step += steps;
@@ -296,6 +299,7 @@ impl State {
             loads,
             neighbours,
             motion,
+            bridge_loads,
             ..
         } = self;
         let count = loads.len();
@@ -305,6 +309,7 @@ impl State {
                 motion,
                 bodies: &mut bodies[..count],
                 loads,
+                bridge_loads,
                 references,
             })
             .refresh
@@ -369,6 +374,7 @@ impl State {
             motion,
             liquid,
             films,
+            bridge_loads,
             ..
         } = self;
         let Neighbours {
@@ -389,6 +395,7 @@ impl State {
             bridges: Shared::new(&mut grains.bridges),
             liquid_actions: Shared::new(liquid_actions),
             films: Shared::new(films),
+            bridge_loads: Shared::new(bridge_loads),
             liquid: liquid.as_ref(),
             film_constants: &kinds.films,
             grain_pairs: &grains.pairs,
@@ -442,17 +449,12 @@ impl State {
     }
 }
 
-/// Energies lost in bridges as the integration adds them up.
-fn loss_row([viscous, capillary]: [f64; 2]) -> Row {
-    [viscous, capillary, 0.0, 0.0]
-}
-
 /// Largest gap that a bridge of `world` can hold [m], for the largest grains and the thickest films.
 fn largest_reach(world: &World, liquid: &Liquid) -> f64 {
     let largest = |column: &[f64]| column.iter().copied().fold(0.0, f64::max);
     let (radius, film) = (largest(&world.grains.radius), largest(&world.grains.film));
     let (first, second) = contributions(liquid, (radius, radius), (film, film));
-    let held = world.contacts.iter().filter_map(|c| c.bridge);
+    let held = world.contacts.iter().filter_map(|c| c.bridge.as_ref());
     let volume = held
         .map(|bridge| bridge.volume)
         .fold(first + second, f64::max);
@@ -494,6 +496,7 @@ pub struct Phase<'a> {
     bridges: Shared<'a, BridgeRow>,
     liquid_actions: Shared<'a, LiquidAction>,
     films: Shared<'a, f64>,
+    bridge_loads: Shared<'a, BridgeLoad>,
     liquid: Option<&'a Liquid>,
     film_constants: &'a [FilmConstants],
     grain_pairs: &'a [Pair],
@@ -597,11 +600,12 @@ impl Phase<'_> {
             None => 0..0,
         };
         // SAFETY: in this phase actions are only read, bodies, loads and films only written, each member its own share.
-        let (bodies, loads, films, actions, liquid_actions) = unsafe {
+        let (bodies, loads, films, bridge_loads, actions, liquid_actions) = unsafe {
             (
                 self.bodies.range_mut(own.clone()),
                 self.loads.range_mut(own.clone()),
-                self.films.range_mut(own_films),
+                self.films.range_mut(own_films.clone()),
+                self.bridge_loads.range_mut(own_films),
                 self.actions.all(),
                 self.liquid_actions.all(),
             )
@@ -621,6 +625,7 @@ impl Phase<'_> {
                     bodies,
                     loads,
                     films,
+                    bridge_loads,
                     references,
                     last,
                 })

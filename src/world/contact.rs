@@ -14,7 +14,7 @@ pub enum Partner {
 }
 
 /// A pair that touches or is held by a liquid bridge.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// The grain on which [`Contact::force`] acts; the smaller index of a pair of grains.
     pub grain: u32,
@@ -29,6 +29,6 @@ pub struct Contact {
     pub force: DVec3,
     /// Whether the two touched then.
     pub touching: bool,
-    /// The bridge between them, if there is one.
-    pub bridge: Option<Bridge>,
+    /// The bridge between them, if there is one. In a box: dry contacts stay small.
+    pub bridge: Option<Box<Bridge>>,
 }
