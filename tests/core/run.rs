@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use grainfall::measure::{EnergyLedger, Series};
-use grainfall::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
+use grainfall::scene::{LIQUID_CASES, Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
 use grainfall::simulation::{
     BedStore, Command, CommandError, DriverKind, Options, Parameter, Preparation, Prepared, Run,
     SAMPLE_INTERVAL, Script, ScriptError, ScriptedCommand, Simulation, Status,
@@ -123,6 +123,45 @@ fn recorded_commands_play_again_to_the_bit() {
     again.advance_to(1500).unwrap();
     assert_eq!(again.world().hash(), played.world().hash());
     assert_eq!(again.commands(), played.commands());
+}
+
+#[test]
+fn liquids_changed_while_it_runs_play_again_to_the_bit() {
+    let mut scene = scene("small-drum");
+    scene.liquid = Some(LIQUID_CASES[3].liquid());
+    let mut played = run_of(&scene);
+    let glycerol = &LIQUID_CASES[6];
+    for (step, parameter, value) in [
+        (300, Parameter::Viscosity, glycerol.viscosity),
+        (400, Parameter::SurfaceTension, glycerol.surface_tension()),
+        (500, Parameter::ContactAngle, 0.2),
+        (600, Parameter::LiquidVolume, 2e-6),
+        (700, Parameter::BridgeLaw, 1.0),
+        (800, Parameter::LiquidVolume, 0.0),
+        (900, Parameter::LiquidVolume, 3e-6),
+        (
+            1000,
+            Parameter::WetFriction("glass".into(), "glass".into()),
+            0.05,
+        ),
+    ] {
+        played.advance_to(step).unwrap();
+        let mut unchanged = prepared(&scene, 1, shared_beds()).0;
+        unchanged.resume(played.checkpoint());
+        played.apply(set(parameter.clone(), value)).unwrap();
+        assert_eq!(parameter.read(played.world()), Some(value));
+        played.advance_to(step + 50).unwrap();
+        unchanged.advance_to(step + 50).unwrap();
+        let bits = |run: &Run| (run.world().hash(), run.world().grains.force.clone());
+        assert_ne!(bits(&played), bits(&unchanged), "{parameter} acts at once");
+    }
+    played.advance_to(1500).unwrap();
+    let list: Vec<ScriptedCommand> = played.commands().iter().map(Into::into).collect();
+    let mut again = prepared(&scene, 2, shared_beds()).0;
+    let script = Script::new(&list, &again.world().clock).unwrap();
+    again.schedule(script).unwrap();
+    again.advance_to(1500).unwrap();
+    assert_eq!(again.world().hash(), played.world().hash());
 }
 
 #[test]

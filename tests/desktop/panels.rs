@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Key, Modifiers, Shape};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, Node};
 use grainfall::measure::Avalanche;
-use grainfall::scene::Scene;
+use grainfall::scene::{LIQUID_CASES, PAPER_VOLUME, Scene};
 use grainfall::simulation::{
     BedStore, Command, DisplayUnit, DriverKind, Options, Parameter, ParameterInfo, Simulation,
     Status,
@@ -42,9 +42,26 @@ fn three_grains() -> Simulation {
     Simulation::open(scene, options)
 }
 
-/// The same, prepared.
+/// Three grains with a liquid between them, prepared.
+fn wet() -> Simulation {
+    let mut scene = three_grains().scene().clone();
+    scene.liquid = Some(LIQUID_CASES[3].liquid());
+    let options = Options {
+        driver: DriverKind::Inline,
+        threads: 1,
+        autoplay: false,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    ready(Simulation::open(scene, options))
+}
+
+/// The three grains, prepared.
 fn prepared() -> Simulation {
-    let mut simulation = three_grains();
+    ready(three_grains())
+}
+
+fn ready(mut simulation: Simulation) -> Simulation {
     for _ in 0..1000 {
         simulation.tick(Duration::from_millis(16));
         if !matches!(simulation.status(), Status::Preparing { .. }) {
@@ -170,6 +187,64 @@ fn a_typed_friction_is_set_once() {
     let mut harness = Window::of(prepared());
     type_number(&mut harness, "friction glass – glass", "0.25");
     assert_eq!(commands(&harness.state().asked), [set(friction(), 0.25)]);
+}
+
+#[test]
+fn a_liquid_is_chosen_with_all_that_makes_it() {
+    let mut harness = Window::of(wet());
+    harness.get_by_label("glycerol").click();
+    harness.run_steps(2);
+    let glycerol = &LIQUID_CASES[6];
+    let expected = [
+        set(Parameter::Viscosity, glycerol.viscosity),
+        set(Parameter::SurfaceTension, glycerol.surface_tension()),
+        set(Parameter::ContactAngle, glycerol.contact_angle()),
+    ];
+    assert_eq!(commands(&harness.state().asked), expected);
+}
+
+#[test]
+fn dry_takes_the_liquid_away_and_a_liquid_brings_it_back() {
+    let mut harness = Window::of(wet());
+    harness.get_by_label("dry").click();
+    harness.run_steps(2);
+    let dried = set(Parameter::LiquidVolume, 0.0);
+    assert_eq!(commands(&harness.state().asked), [dried.clone()]);
+    harness.state_mut().simulation.send(dried);
+    harness.state_mut().asked.clear();
+    harness.run_steps(2);
+    harness.get_by_label("water").click();
+    harness.run_steps(2);
+    let poured = commands(&harness.state().asked);
+    assert_eq!(poured[0], set(Parameter::LiquidVolume, PAPER_VOLUME));
+    assert_eq!(poured.len(), 4);
+}
+
+#[test]
+fn bridge_laws_are_chosen_by_name() {
+    let mut harness = Window::of(wet());
+    harness.get_by_label("as coded").click();
+    harness.run_steps(2);
+    let asked = commands(&harness.state().asked);
+    assert_eq!(asked, [set(Parameter::BridgeLaw, 1.0)]);
+}
+
+#[test]
+fn a_viscosity_typed_in_millipascal_seconds_is_set_in_pascal_seconds() {
+    let mut harness = Window::of(wet());
+    type_number(&mut harness, "viscosity", "250");
+    let asked = commands(&harness.state().asked);
+    assert_eq!(asked, [set(Parameter::Viscosity, 0.25)]);
+}
+
+#[test]
+fn dry_scenes_show_nothing_of_liquids() {
+    let dry = Window::of(prepared());
+    assert!(dry.query_by_label("glycerol").is_none());
+    assert!(dry.query_by_label("Beside the paper").is_none());
+    let wet = Window::of(wet());
+    assert!(wet.query_by_label("glycerol").is_some());
+    assert!(wet.query_by_label("Beside the paper").is_some());
 }
 
 #[test]
