@@ -209,7 +209,10 @@ fn dry_takes_the_liquid_away_and_a_liquid_brings_it_back() {
     harness.get_by_label("dry").click();
     harness.run_steps(2);
     let dried = set(Parameter::LiquidVolume, 0.0);
-    assert_eq!(commands(&harness.state().asked), [dried.clone()]);
+    assert_eq!(
+        commands(&harness.state().asked),
+        std::slice::from_ref(&dried)
+    );
     harness.state_mut().simulation.send(dried);
     harness.state_mut().asked.clear();
     harness.run_steps(2);
