@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A liquid and how much of it there is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneLiquid {
     /// Surface tension γ [N/m].
     pub surface_tension: f64,

@@ -3,30 +3,22 @@
 //!
 //! In: the samples since the last change of a parameter. Out: one point on each plot that moves as the run goes on.
 
+use super::averages::Averages;
 use super::theme::Palette;
 use super::{Panel, Request, number};
-use crate::measure::{Series, Summary, drop_ratio_law, dry_drum, galilei_number, summarise};
-use crate::simulation::{Command, Parameter, SMALLEST_DROP, Simulation};
+use crate::measure::{drop_ratio_law, dry_drum, galilei_number};
+use crate::simulation::{Command, Parameter, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
 use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, Points, VLine};
 
-/// Averages are taken anew whenever this many samples have been added, half a simulated second.
-const SAMPLES_BETWEEN_SUMMARIES: usize = 25;
 /// Height of a plot in points.
 const HEIGHT: f32 = 130.0;
 
 /// The panel.
 #[derive(Default)]
 pub struct BesidePaper {
-    averaged: Option<(Key, Summary)>,
-}
-
-/// What a summary was made of.
-#[derive(Clone, Copy, PartialEq)]
-struct Key {
-    samples: usize,
-    from: f64,
+    averages: Averages,
 }
 
 /// One plot: a law, a threshold, and where the run stands.
@@ -64,7 +56,7 @@ impl Panel for BesidePaper {
         };
         let radius = world.grains.radius.first().copied().unwrap_or(0.0);
         let from = last_change(simulation);
-        let summary = self.summary(simulation.series(), from);
+        let summary = self.averages.over(simulation.series(), from);
         let drop = summary.value("drop Δθ");
         let count = summary.value("avalanches").unwrap_or(0.0);
         let dry = dry_drum(radius).map(|drum| drum.drop);
@@ -109,20 +101,6 @@ impl Panel for BesidePaper {
             number::fixed(count, 0)
         );
         ui.label(RichText::new(averages).small().weak());
-    }
-}
-
-impl BesidePaper {
-    fn summary(&mut self, series: &Series, from: f64) -> &Summary {
-        let key = Key {
-            samples: series.len() / SAMPLES_BETWEEN_SUMMARIES,
-            from,
-        };
-        if self.averaged.as_ref().is_some_and(|(made, _)| *made != key) {
-            self.averaged = None;
-        }
-        let make = || (key, summarise(series, from, SMALLEST_DROP));
-        &self.averaged.get_or_insert_with(make).1
     }
 }
 

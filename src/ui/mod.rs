@@ -11,12 +11,14 @@
 //! | `shortcuts` | what each key does |
 //! | `menu`, `transport` | menu bar, bar under the picture |
 //! | `about_scene`, `parameters`, `picture`, `profile` | panels on the left |
-//! | `plots`, `results` | panels on the right |
+//! | `plots`, `beside_paper`, `results` | panels on the right |
+//! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
 //! | `theme` | every colour, size and font |
 //! | `number`, `symbol`, `table`, `decimate` | numbers and symbols in text, tables, fewer points for the same picture |
 
 mod about_scene;
+mod averages;
 mod beside_paper;
 mod carry_out;
 mod decimate;

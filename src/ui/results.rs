@@ -1,14 +1,12 @@
 //! Measured numbers of the latest sample, averages over the run, and the energy ledger.
 
+use super::averages::Averages;
 use super::table::{Row, table_ui};
 use super::{Panel, Request, number};
-use crate::measure::{Measure, Sample, Series, Summary, summarise};
-use crate::simulation::{SMALLEST_DROP, Simulation};
+use crate::measure::{Measure, Sample, Series};
+use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
-
-/// Averages are taken anew whenever this many samples have been added, half a simulated second.
-const SAMPLES_BETWEEN_SUMMARIES: usize = 25;
 
 /// What the latest sample shows, energies apart.
 const LATEST: [Measure; 11] = [
@@ -55,14 +53,7 @@ const ENERGIES: [(Measure, &str); 9] = [
 pub struct Results {
     /// Averages begin at this time [s].
     from: f64,
-    averaged: Option<(Key, Summary)>,
-}
-
-/// What a summary was made of.
-#[derive(Clone, Copy, PartialEq)]
-struct Key {
-    samples: usize,
-    from: f64,
+    averages: Averages,
 }
 
 impl Panel for Results {
@@ -103,7 +94,7 @@ impl Results {
                 "Only samples from this time on count. The paper leaves out the first 20 s.",
             );
         });
-        let summary = self.summary(series);
+        let summary = self.averages.over(series, self.from);
         table_ui(
             ui,
             AVERAGES.iter().map(|&(key, name)| {
@@ -119,19 +110,6 @@ impl Results {
                 }
             }),
         );
-    }
-
-    /// Averages over `series`, remade when enough has been added.
-    fn summary(&mut self, series: &Series) -> &Summary {
-        let key = Key {
-            samples: series.len() / SAMPLES_BETWEEN_SUMMARIES,
-            from: self.from,
-        };
-        if self.averaged.as_ref().is_some_and(|(made, _)| *made != key) {
-            self.averaged = None;
-        }
-        let make = || (key, summarise(series, self.from, SMALLEST_DROP));
-        &self.averaged.get_or_insert_with(make).1
     }
 }
 

@@ -5,8 +5,8 @@
 
 use super::mixture::{assign_species, random};
 use super::{
-    Clock, Container, Grains, Ledger, Liquid, Material, MaterialId, Materials, Motion,
-    PairProperties, Shape, Species, SpeciesId, Surface, Wall, World,
+    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
+    Shape, Species, SpeciesId, Surface, Wall, World,
 };
 use crate::scene::{
     Lattice, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
@@ -36,7 +36,7 @@ pub fn build(scene: &Scene, time_step: f64) -> World {
         materials: materials(scene),
         container: container(scene),
         gravity: scene.gravity,
-        liquid: scene.liquid.as_ref().map(Liquid::from),
+        liquid: scene.liquid,
         law: scene.law,
         contacts: Vec::new(),
         ledger: Ledger::default(),

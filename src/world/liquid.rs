@@ -1,24 +1,9 @@
 //! The liquid between the grains: films on them, bridges between them.
 
 use super::{Contact, World};
-use crate::scene::{BridgeLaw, SceneLiquid};
+use crate::scene::SceneLiquid as Liquid;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-
-/// The liquid of a world.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Liquid {
-    /// Surface tension γ [N/m].
-    pub surface_tension: f64,
-    /// Contact angle α on the grains [rad].
-    pub contact_angle: f64,
-    /// Viscosity η [Pa s].
-    pub viscosity: f64,
-    /// Volume of all of it [m³]; none leaves the grains dry.
-    pub volume: f64,
-    /// How a bridge acts.
-    pub law: BridgeLaw,
-}
 
 /// What a bridge remembers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,18 +19,6 @@ pub struct Bridge {
     pub viscous: f64,
     /// Viscous force on the grain across the normal then [N].
     pub drag: DVec3,
-}
-
-impl From<&SceneLiquid> for Liquid {
-    fn from(liquid: &SceneLiquid) -> Self {
-        Self {
-            surface_tension: liquid.surface_tension,
-            contact_angle: liquid.contact_angle,
-            viscosity: liquid.viscosity,
-            volume: liquid.volume,
-            law: liquid.law,
-        }
-    }
 }
 
 impl World {

@@ -14,13 +14,14 @@ mod liquid;
 mod material;
 mod mixture;
 
+pub use crate::scene::SceneLiquid as Liquid;
 pub use build::build;
 pub use contact::{Contact, Partner};
 pub use container::{Container, Motion, Shape, Surface, Wall};
 pub use grains::{Grains, Species, SpeciesId};
 pub use hash::StateHash;
 pub use ledger::Ledger;
-pub use liquid::{Bridge, Liquid};
+pub use liquid::Bridge;
 pub use material::{Material, MaterialId, Materials, PairProperties};
 pub use mixture::{label_order, set_share};
 

@@ -7,7 +7,6 @@ use grainfall::measure::{
     galilei_number, mean_velocity, sample, sample_and_surface, surface_line,
 };
 use grainfall::scene::LIQUID_CASES;
-use grainfall::world::Liquid;
 
 const RADIUS: f64 = 0.0605;
 const WIDTH: f64 = 0.022;
@@ -126,7 +125,7 @@ fn numbers_of_the_liquid_are_the_papers() {
     assert!(sample(&world).value(Measure::Bridges) == 0.0);
     let inverse_roots = [0.0029, 0.315, 0.633, 1.061, 1.511, 2.713, 4.075];
     for (case, expected) in LIQUID_CASES.iter().zip(inverse_roots) {
-        world.liquid = Some(Liquid::from(&case.liquid()));
+        world.liquid = Some(case.liquid());
         let found = galilei_number(&world).unwrap().powf(-0.5);
         assert_close(found, expected, 1e-3 * expected + 6e-5);
     }
