@@ -43,7 +43,7 @@ fn sphere_below(r: f64, height: f64) -> f64 {
 /// Volume of the container below the plane `normal · x = height` [m³]; NaN for a shape without an inside.
 fn container_below(shape: Shape, normal: DVec2, height: f64) -> f64 {
     match shape {
-        Shape::Planes => f64::NAN,
+        Shape::Planes | Shape::Column { .. } => f64::NAN,
         Shape::Drum { radius, width } => width * segment_area(radius, height),
         Shape::Box { min, max } => {
             let corners = [

@@ -178,7 +178,7 @@ impl Silhouette {
 fn first_guess(shape: Shape, grains: &Silhouette) -> Option<Guess> {
     let mean = grains.mean_position();
     match shape {
-        Shape::Planes => None,
+        Shape::Planes | Shape::Column { .. } => None,
         Shape::Box { .. } => Some(Guess::at_angle(0.0, mean.y)),
         Shape::Drum { .. } => Some(Guess::at_angle(f64::atan2(mean.x, -mean.y), -mean.length())),
     }
@@ -187,7 +187,7 @@ fn first_guess(shape: Shape, grains: &Silhouette) -> Option<Guess> {
 /// Between which `s` the line runs inside the container, seen along z.
 fn chord(shape: Shape, line: Guess) -> Option<(f64, f64)> {
     match shape {
-        Shape::Planes => None,
+        Shape::Planes | Shape::Column { .. } => None,
         Shape::Drum { radius, .. } => {
             let half_squared = radius * radius - line.height * line.height;
             (half_squared > 0.0).then(|| (-half_squared.sqrt(), half_squared.sqrt()))

@@ -432,6 +432,7 @@ fn check_law(law: ContactLaw) -> Checked {
         ContactLaw::Hooke {
             normal_stiffness,
             tangential_stiffness,
+            ..
         } => {
             STIFFNESS.check(normal_stiffness, || "law.normal_stiffness".to_owned())?;
             if tangential_stiffness == 0.0 {

@@ -82,7 +82,21 @@ pub enum ContactLaw {
         normal_stiffness: f64,
         /// `K_t` of a contact [N/m].
         tangential_stiffness: f64,
+        /// What the stiffnesses belong to where two polyhedra touch in several places.
+        #[serde(default)]
+        features: FeatureRule,
     },
+}
+
+/// What the stiffnesses and the dashpot of two polyhedra belong to. Two features (a vertex and a face, or two edges) that
+/// are closer than the sum of their rounding radii are in contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FeatureRule {
+    /// Each pair of features is a full contact, as in the program of Man et al. 2023.
+    #[default]
+    Full,
+    /// The features of two polyhedra share one contact's stiffness and dashpot, each by its part of their overlap.
+    Shared,
 }
 
 /// How the time step is chosen.

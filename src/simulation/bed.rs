@@ -13,7 +13,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds are then stale.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 const MAGIC: &[u8; 12] = b"grainfallbed";
 /// Bytes before the contents: magic, format, key, checksum.
 const HEADER: usize = MAGIC.len() + 4 + 2 * blake3::OUT_LEN;

@@ -174,6 +174,19 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
                     [x / rho, y / rho, N::splat(processor, 0.0)],
                 )
             }
+            Surface::Tube { radius, rim } => {
+                let zero = N::splat(processor, 0.0);
+                let rho = (x * x + z * z).sqrt();
+                let outward = (N::splat(processor, radius) - rho) / rho;
+                let below = N::splat(processor, rim) - y;
+                let below = N::choose(below.exceeds(zero), below, zero);
+                let nearest = [x * outward, below, z * outward];
+                let distance = dot(nearest, nearest).sqrt();
+                (
+                    distance,
+                    times(nearest, N::splat(processor, 1.0) / distance),
+                )
+            }
         };
         // A centre on or behind the surface is no contact any more: the check after the step reports it.
         let gap = N::choose(

@@ -470,8 +470,10 @@ fn share_of_groups(count: usize, member: usize, size: usize) -> std::ops::Range<
 /// Moves planes that have a velocity by one step.
 fn move_walls(walls: &mut [WallBody], dt: f64) {
     for wall in walls {
-        if let Surface::Plane { point, .. } = &mut wall.surface {
-            *point += wall.motion.velocity * dt;
+        match &mut wall.surface {
+            Surface::Plane { point, .. } => *point += wall.motion.velocity * dt,
+            Surface::Tube { rim, .. } => *rim += wall.motion.velocity.y * dt,
+            Surface::Cylinder { .. } => {}
         }
     }
 }
@@ -481,6 +483,7 @@ impl WallBody {
     pub fn speed(&self) -> f64 {
         match self.surface {
             Surface::Plane { normal, .. } => self.motion.velocity.dot(normal).abs(),
+            Surface::Tube { .. } => self.motion.velocity.y.abs(),
             Surface::Cylinder { .. } => 0.0,
         }
     }

@@ -62,6 +62,7 @@ pub fn advise(scene: &Scene) -> TimeStepAdvice {
         ContactLaw::Hooke {
             normal_stiffness,
             tangential_stiffness,
+            ..
         } => {
             let stiffness = normal_stiffness.max(tangential_stiffness);
             kinds

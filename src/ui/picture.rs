@@ -176,7 +176,7 @@ fn extent(world: &World, axis: Axis) -> RangeInclusive<f64> {
             (-half, half)
         }
         Shape::Box { min, max } => (min, max),
-        Shape::Planes => {
+        Shape::Planes | Shape::Column { .. } => {
             let grains = world.grains.position.iter().zip(&world.grains.radius);
             grains.fold(
                 (DVec3::INFINITY, DVec3::NEG_INFINITY),

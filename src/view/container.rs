@@ -55,9 +55,10 @@ pub fn outline(world: &World) -> Vec<Vec3> {
                 .collect()
         }
         Shape::Box { min, max } => corners(min.as_vec3(), max.as_vec3()).to_vec(),
-        Shape::Planes => surroundings(world).map_or_else(Vec::new, |(min, max)| {
-            corners(min.as_vec3(), max.as_vec3()).to_vec()
-        }),
+        Shape::Planes | Shape::Column { .. } => surroundings(world)
+            .map_or_else(Vec::new, |(min, max)| {
+                corners(min.as_vec3(), max.as_vec3()).to_vec()
+            }),
     }
 }
 
@@ -327,7 +328,7 @@ fn build(world: &World) -> Vec<(Piece, Paint, Mesh)> {
     match world.container.shape {
         Shape::Drum { radius, width } => drum(radius as f32, width as f32),
         Shape::Box { min, max } => box_panes(min.as_vec3(), max.as_vec3()),
-        Shape::Planes => planes(world),
+        Shape::Planes | Shape::Column { .. } => planes(world),
     }
 }
 

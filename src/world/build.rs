@@ -39,6 +39,7 @@ pub fn build(scene: &Scene, time_step: f64) -> World {
         liquid: scene.liquid,
         law: scene.law,
         contacts: Vec::new(),
+        polyhedra: None,
         ledger: Ledger::default(),
     };
     world.spread_liquid();

@@ -34,6 +34,14 @@ pub enum Shape {
         /// Inner width along z [m].
         width: f64,
     },
+    /// An unbounded floor at y = 0 on which a column about the y axis stands at the start. Its walls are the floor and, where
+    /// a tube holds the column, that tube.
+    Column {
+        /// Radius of the column at the start [m].
+        radius: f64,
+        /// Its height at the start [m].
+        height: f64,
+    },
 }
 
 /// One wall.
@@ -63,6 +71,13 @@ pub enum Surface {
     Cylinder {
         /// Inner radius [m].
         radius: f64,
+    },
+    /// A thin upright tube about the y axis, unbounded above; it acts inside, outside and at its rim.
+    Tube {
+        /// Radius [m].
+        radius: f64,
+        /// Height of its lower rim [m].
+        rim: f64,
     },
 }
 
@@ -110,6 +125,23 @@ impl Surface {
                     DVec3::X
                 };
                 (radius - rho, outward)
+            }
+            Self::Tube { radius, rim } => {
+                let rho = (x.x * x.x + x.z * x.z).sqrt();
+                let outward = if rho > 0.0 {
+                    DVec3::new(x.x / rho, 0.0, x.z / rho)
+                } else {
+                    DVec3::X
+                };
+                let below = (rim - x.y).max(0.0);
+                let nearest = (radius - rho) * outward + DVec3::new(0.0, below, 0.0);
+                let distance = nearest.length();
+                let direction = if distance > 0.0 {
+                    nearest / distance
+                } else {
+                    outward
+                };
+                (distance, direction)
             }
         }
     }

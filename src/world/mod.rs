@@ -13,6 +13,8 @@ mod ledger;
 mod liquid;
 mod material;
 mod mixture;
+mod polyhedra;
+mod polyhedron;
 
 pub use crate::scene::SceneLiquid as Liquid;
 pub use build::build;
@@ -24,6 +26,8 @@ pub use ledger::Ledger;
 pub use liquid::Bridge;
 pub use material::{Material, MaterialId, Materials, PairProperties};
 pub use mixture::{label_order, set_share};
+pub use polyhedra::{Feature, FeatureContact, Polyhedra};
+pub use polyhedron::Polyhedron;
 
 use crate::scene::ContactLaw;
 use glam::DVec3;
@@ -51,6 +55,8 @@ pub struct World {
     /// Every pair that touches or is held by a bridge, with its history, sorted by ([`Contact::grain`],
     /// [`Contact::partner`]).
     pub contacts: Vec<Contact>,
+    /// What grains that are no spheres need beside their columns; none where all are spheres.
+    pub polyhedra: Option<Box<Polyhedra>>,
     /// What the energy balance needs beside the grains' own columns.
     pub ledger: Ledger,
 }
@@ -128,9 +134,18 @@ impl World {
         (0..grains.len())
             .map(|i| {
                 0.5 * grains.mass[i] * grains.velocity[i].length_squared()
-                    + 0.5 * grains.inertia[i] * grains.spin[i].length_squared()
+                    + self.rotational_energy(i)
             })
             .sum()
+    }
+
+    /// Kinetic energy of the rotation of grain `i` [J].
+    pub fn rotational_energy(&self, i: usize) -> f64 {
+        let spin = self.grains.spin[i];
+        match &self.polyhedra {
+            Some(polyhedra) => 0.5 * polyhedra.angular_momentum[i].dot(spin),
+            None => 0.5 * self.grains.inertia[i] * spin.length_squared(),
+        }
     }
 
     /// Changes gravity [m/s²]; the energy ledger keeps the work done until now.

@@ -53,6 +53,7 @@ fn empty(shape: Shape, walls: Vec<Wall>) -> World {
         liquid: None,
         law: ContactLaw::HertzMindlin,
         contacts: Vec::new(),
+        polyhedra: None,
         ledger: Ledger::default(),
     }
 }

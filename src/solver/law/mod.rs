@@ -102,6 +102,7 @@ impl Pairing {
             ContactLaw::Hooke {
                 normal_stiffness,
                 tangential_stiffness,
+                ..
             } => Hooke::constants(
                 self,
                 normal_stiffness,

@@ -74,6 +74,7 @@ fn hooke_springs_store_half_their_stiffness_times_their_square() {
     world.law = ContactLaw::Hooke {
         normal_stiffness: 4000.0,
         tangential_stiffness: 2000.0,
+        features: grainfall::scene::FeatureRule::Full,
     };
     let expected = 0.5 * 4000.0 * delta * delta + 0.5 * 2000.0 * xi * xi;
     assert_close(elastic_energy(&world) / expected, 1.0, 1e-11);
