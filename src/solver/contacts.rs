@@ -9,6 +9,7 @@ use super::lanes::{
     Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
 };
 use super::law::{Law, PairConstants, rolling_gain};
+use super::spring::stretch;
 use crate::scene::CoulombBound;
 use crate::world::{Motion, Surface};
 use glam::DVec3;
@@ -280,52 +281,6 @@ fn own_constants<N: Lanes>(
     )
 }
 
-/// Tangential springs after a step.
-struct Springs<N: Lanes> {
-    /// The springs [m].
-    spring: [N; 3],
-    /// Where the contact slides.
-    slides: N::Mask,
-    /// Energy that the springs lost [J].
-    lost: N,
-}
-
-/// Stretches the springs by what has `slipped`, turns them into the tangent plane and lets those slide whose pull would
-/// exceed `bound`; `stiffness` is none where grains do not touch.
-#[inline(always)]
-fn stretch<N: Lanes>(
-    processor: N::Processor,
-    rows: &mut [Row],
-    slipped: [N; 3],
-    normal: [N; 3],
-    touching: N::Mask,
-    stiffness: N,
-    bound: N,
-) -> Springs<N> {
-    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
-    let old = side_by_side::<N, _>(|k| &rows[k]);
-    let [x, y, z, old_stiffness] = N::gather(processor, old);
-    let old_spring = [x, y, z];
-    let stretched = plus(old_spring, slipped);
-    let old_work = old_stiffness * dot(old_spring, stretched);
-    let stretched = minus(stretched, times(normal, dot(stretched, normal)));
-    let trial = stiffness * dot(stretched, stretched).sqrt();
-    let slides = trial.exceeds(bound);
-    let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
-    let spring = times(stretched, kept);
-    let new = N::rows([spring[0], spring[1], spring[2], stiffness]);
-    for (row, new) in rows.iter_mut().zip(new) {
-        *row = new.row();
-    }
-    // What the mean of the old and the new spring's pull does along the slip, less the change of what they store.
-    let new_work = stiffness * dot(spring, minus(slipped, spring));
-    Springs {
-        spring,
-        slides,
-        lost: N::splat(processor, 0.5) * (old_work + new_work),
-    }
-}
-
 /// Torque of rolling friction on the grains, at most `cap` [N m].
 #[inline(always)]
 fn roll<N: Lanes>(
@@ -414,13 +369,16 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let slipped = times(slip, dt);
     let stretched = stretch(
         processor,
-        springs,
+        side_by_side::<N, _>(|k| &springs[k]),
         slipped,
         normal,
         touching,
         stiffness,
         friction * bounding,
     );
+    for (row, new) in springs.iter_mut().zip(stretched.rows) {
+        *row = new.row();
+    }
     let unslid = N::choose(stretched.slides, zero, law.tangential_damping);
     let damping = N::choose(touching, unslid, zero);
     let mut tangential = minus(times(stretched.spring, -stiffness), times(slip, damping));

@@ -30,4 +30,15 @@ pub enum FaultKind {
     /// Its centre went through a wall.
     #[error("its centre is {0:.4e} m behind a wall")]
     BehindWall(f64),
+    /// A polyhedron moves further in one step than a quarter of its rounding radius.
+    #[error(
+        "a speed of {0:.4e} m/s at its surface moves it by more than a quarter of its rounding radius in one step"
+    )]
+    TooFastForRounding(f64),
+    /// Two rounded polyhedra are pressed so deep that their cores nearly touch.
+    #[error(
+        "it overlaps its partner by {} % of the sum of their rounding radii, so that their cores nearly touch; a stiffer \
+         contact or a larger rounding radius helps", (100.0 * .0).round()
+    )]
+    TooDeep(f64),
 }

@@ -13,12 +13,15 @@
 mod bridges;
 mod contacts;
 mod fault;
+mod grid;
 mod integrate;
 mod lanes;
 pub mod law;
 mod neighbours;
+mod polyhedra;
 mod profile;
 mod row;
+mod spring;
 mod state;
 mod team;
 mod time_step;
@@ -42,6 +45,7 @@ pub struct Solver {
     team: Team,
     processor: Processor,
     state: State,
+    polyhedra: polyhedra::State,
     profile: Profile,
 }
 
@@ -55,6 +59,7 @@ impl Solver {
             team: Team::new(threads),
             processor: Processor::detect(),
             state: State::default(),
+            polyhedra: polyhedra::State::default(),
             profile: Profile::default(),
         }
     }
@@ -77,26 +82,61 @@ impl Solver {
             world.clock.step += steps;
             return Ok(());
         }
-        let begin = Instant::now();
-        self.state.load(world);
-        self.profile.stages[Stage::Exchange as usize] += begin.elapsed();
-        let taken = match world.law {
-            // Later positions are finite as long as speeds are.
-            _ if !world.grains.position.iter().all(|x| x.is_finite()) => Err(0),
-            ContactLaw::HertzMindlin => self.march(HertzMindlin, world, steps),
-            ContactLaw::Hooke { .. } => self.march(Hooke, world, steps),
-        };
-        let result = taken.map_err(|steps| self.state.diagnose(world, steps));
-        if result.is_ok() {
-            let storing = Instant::now();
-            self.state.store(world, steps);
-            self.profile.stages[Stage::Exchange as usize] += storing.elapsed();
+        // Later positions are finite as long as speeds are.
+        if let Some(grain) = world.grains.position.iter().position(|x| !x.is_finite()) {
+            return Err(Fault {
+                grain,
+                kind: FaultKind::NotFinite("position"),
+                time: world.time(),
+                good_time: world.time(),
+            });
         }
+        let begin = Instant::now();
+        let result = if world.polyhedra.is_some() {
+            self.advance_polyhedra(world, steps)
+        } else {
+            self.advance_spheres(world, steps)
+        };
         self.profile.steps += steps;
         self.profile.grains = world.grains.len();
-        self.profile.listed = self.state.listed();
         self.profile.total += begin.elapsed();
         result
+    }
+
+    fn advance_spheres(&mut self, world: &mut World, steps: u64) -> Result<(), Fault> {
+        self.exchange(|solver| solver.state.load(world));
+        match world.law {
+            ContactLaw::HertzMindlin => self.march(HertzMindlin, world, steps),
+            ContactLaw::Hooke { .. } => self.march(Hooke, world, steps),
+        }
+        .map_err(|steps| self.state.diagnose(world, steps))?;
+        self.exchange(|solver| solver.state.store(world, steps));
+        self.profile.listed = self.state.listed();
+        Ok(())
+    }
+
+    fn advance_polyhedra(&mut self, world: &mut World, steps: u64) -> Result<(), Fault> {
+        self.exchange(|solver| solver.polyhedra.load(world));
+        let Self {
+            team,
+            processor,
+            polyhedra,
+            profile,
+            ..
+        } = self;
+        polyhedra
+            .march(team, *processor, profile, world, steps)
+            .map_err(|steps| polyhedra.diagnose(world, steps))?;
+        self.exchange(|solver| solver.polyhedra.store(world, steps));
+        self.profile.listed = self.polyhedra.listed();
+        Ok(())
+    }
+
+    /// Copies state in or out, on the clock.
+    fn exchange(&mut self, copy: impl FnOnce(&mut Self)) {
+        let begin = Instant::now();
+        copy(self);
+        self.profile.stages[Stage::Exchange as usize] += begin.elapsed();
     }
 
     /// Where the time went since the last call.

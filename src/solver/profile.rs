@@ -22,6 +22,8 @@ pub struct Profile {
     pub steps: u64,
     /// Neighbour lists built.
     pub rebuilds: u64,
+    /// Lists of the features of two polyhedra made.
+    pub relisted: u64,
     /// Wall time in all.
     pub total: Duration,
     /// Wall time of each stage.

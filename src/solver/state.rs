@@ -467,8 +467,8 @@ fn share_of_groups(count: usize, member: usize, size: usize) -> std::ops::Range<
     groups.start * GROUP..groups.end * GROUP
 }
 
-/// Moves planes that have a velocity by one step.
-fn move_walls(walls: &mut [WallBody], dt: f64) {
+/// Moves walls that have a velocity by one step.
+pub(super) fn move_walls(walls: &mut [WallBody], dt: f64) {
     for wall in walls {
         match &mut wall.surface {
             Surface::Plane { point, .. } => *point += wall.motion.velocity * dt,

@@ -1,0 +1,295 @@
+//! The bodies: what moves of each grain, and where its vertices and faces are.
+//!
+//! Vertices are turned anew from the body frame in every step, so that shapes never drift.
+
+use super::super::row::{Row, length_squared, row, vector};
+use super::nearest::Geometry;
+use crate::world::{Polyhedron, World};
+use glam::{DQuat, DVec3};
+
+/// What the pair loop reads of a body, and what moves it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct Body {
+    /// Centroid [m]; inverse mass [1/kg].
+    pub position: Row,
+    /// Velocity half a step ago [m/s]; largest speed of any of its points that is not absurd [m/s].
+    pub velocity: Row,
+    /// Spin that the angular momentum of half a step ago is at the present orientation [rad/s]; distance of the farthest
+    /// point of the surface from the centroid [m].
+    pub spin: Row,
+    /// Angular momentum half a step ago [kg m²/s]; rounding radius [m].
+    pub angular_momentum: Row,
+    /// Rotation from body axes to world axes: x, y, z, w of a unit quaternion.
+    pub orientation: Row,
+    /// Inverse principal moments of inertia [1/(kg m²)].
+    pub inverse_inertia: Row,
+}
+
+/// What acts on a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// Contact forces at the last evaluation [N]; number of touching partners.
+    pub force: Row,
+    /// Their torque [N m].
+    pub torque: Row,
+    /// Energy exchanged since the start [J].
+    pub exchanged: Row,
+}
+
+/// Where each body's features begin in the tables of [`Shapes`], after the last body the ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// First vertex.
+    pub vertex: u32,
+    /// First edge.
+    pub edge: u32,
+    /// First face.
+    pub face: u32,
+}
+
+/// The shapes of all bodies, feature by feature.
+#[derive(Default)]
+pub struct Shapes {
+    /// Where each body's features begin.
+    pub places: Vec<Place>,
+    /// Vertices along the body axes [m].
+    pub body_vertices: Vec<Row>,
+    /// Outward normals along the body axes; the face's first vertex.
+    pub body_normals: Vec<(DVec3, u32)>,
+    /// Ends of the edges: vertices.
+    pub edges: Vec<[u32; 2]>,
+    /// Where in `loops` each face's vertices begin.
+    pub loop_starts: Vec<u32>,
+    /// Vertices of the faces.
+    pub loops: Vec<u32>,
+}
+
+impl Shapes {
+    /// The shapes of all grains of `world`.
+    pub fn of(world: &World) -> Self {
+        let mut shapes = Self::default();
+        if let Some(polyhedra) = &world.polyhedra {
+            (0..world.grains.len()).for_each(|i| shapes.push(polyhedra.shape_of(i)));
+        }
+        shapes.places.push(shapes.end());
+        shapes.loop_starts.push(shapes.loops.len() as u32);
+        shapes
+    }
+
+    fn end(&self) -> Place {
+        Place {
+            vertex: self.body_vertices.len() as u32,
+            edge: self.edges.len() as u32,
+            face: self.body_normals.len() as u32,
+        }
+    }
+
+    fn push(&mut self, shape: &Polyhedron) {
+        let place = self.end();
+        self.places.push(place);
+        let absolute = |vertex: &u16| place.vertex + u32::from(*vertex);
+        self.body_vertices
+            .extend(shape.vertices.iter().map(|&v| row(v, 0.0)));
+        self.edges
+            .extend(shape.edges.iter().map(|[a, b]| [absolute(a), absolute(b)]));
+        for face in &shape.faces {
+            self.loop_starts.push(self.loops.len() as u32);
+            self.loops.extend(face.iter().map(absolute));
+            let first = face.first().map_or(place.vertex, absolute);
+            self.body_normals.push((outward_normal(shape, face), first));
+        }
+        if shape.vertices.len() == 1 {
+            // Two spheres meet as two edges of no length.
+            self.edges.push([place.vertex; 2]);
+        }
+    }
+
+    /// Puts the vertices and planes of body `i` where `body` is.
+    #[inline(always)]
+    pub fn place(&self, i: usize, body: &Body, vertices: &mut [Row], planes: &mut [Row]) {
+        let (from, to) = (self.places[i], self.places[i + 1]);
+        let [x, y, z] = axes(body.orientation);
+        let centre = body.position;
+        let turned = |v: [f64; 3]| {
+            [
+                x[0] * v[0] + y[0] * v[1] + z[0] * v[2],
+                x[1] * v[0] + y[1] * v[1] + z[1] * v[2],
+                x[2] * v[0] + y[2] * v[1] + z[2] * v[2],
+            ]
+        };
+        let own = &self.body_vertices[from.vertex as usize..to.vertex as usize];
+        for (vertex, own) in vertices.iter_mut().zip(own) {
+            let t = turned([own[0], own[1], own[2]]);
+            *vertex = [centre[0] + t[0], centre[1] + t[1], centre[2] + t[2], 0.0];
+        }
+        let own = &self.body_normals[from.face as usize..to.face as usize];
+        for (plane, (normal, corner)) in planes.iter_mut().zip(own) {
+            let n = turned(normal.to_array());
+            let v = vertices[(corner - from.vertex) as usize];
+            *plane = [n[0], n[1], n[2], n[0] * v[0] + n[1] * v[1] + n[2] * v[2]];
+        }
+    }
+
+    /// Features of all bodies at these places.
+    pub fn geometry<'a>(&'a self, vertices: &'a [Row], planes: &'a [Row]) -> Geometry<'a> {
+        Geometry {
+            vertices,
+            planes,
+            loop_starts: &self.loop_starts,
+            loops: &self.loops,
+        }
+    }
+}
+
+/// The unit normal of a loop of vertices, by Newell's sum: exact for any plane polygon.
+fn outward_normal(shape: &Polyhedron, face: &[u16]) -> DVec3 {
+    let corner = |k: usize| shape.vertices[usize::from(face[k % face.len()])];
+    let origin = corner(0);
+    let sum: DVec3 = (1..face.len())
+        .map(|k| (corner(k) - origin).cross(corner(k + 1) - origin))
+        .sum();
+    sum.normalize_or_zero()
+}
+
+/// The body axes in the world's frame.
+#[inline(always)]
+fn axes(orientation: Row) -> [[f64; 3]; 3] {
+    let [x, y, z, w] = orientation;
+    let (xx, yy, zz) = (2.0 * x * x, 2.0 * y * y, 2.0 * z * z);
+    let (xy, xz, yz) = (2.0 * x * y, 2.0 * x * z, 2.0 * y * z);
+    let (wx, wy, wz) = (2.0 * w * x, 2.0 * w * y, 2.0 * w * z);
+    [
+        [1.0 - yy - zz, xy + wz, xz - wy],
+        [xy - wz, 1.0 - xx - zz, yz + wx],
+        [xz + wy, yz - wx, 1.0 - xx - yy],
+    ]
+}
+
+#[inline(always)]
+fn into_body([x, y, z]: &[[f64; 3]; 3], v: Row) -> [f64; 3] {
+    let along = |axis: &[f64; 3]| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
+    [along(x), along(y), along(z)]
+}
+
+impl Body {
+    /// Grain `i` of `world`; steps are `dt` long [s].
+    pub fn of(world: &World, i: usize, dt: f64) -> Self {
+        let grains = &world.grains;
+        let Some(polyhedra) = &world.polyhedra else {
+            return Self::default();
+        };
+        let rounding = polyhedra.shape_of(i).rounding;
+        let inverse = polyhedra.inertia[i].recip();
+        Self {
+            position: row(grains.position[i], 1.0 / grains.mass[i]),
+            velocity: row(grains.velocity[i], LARGEST_MOVE * rounding / dt),
+            spin: row(grains.spin[i], grains.radius[i]),
+            angular_momentum: row(polyhedra.angular_momentum[i], rounding),
+            orientation: polyhedra.orientation[i].to_array(),
+            inverse_inertia: row(inverse, 0.0),
+        }
+    }
+
+    /// Half a step of velocity and angular momentum.
+    #[inline(always)]
+    pub fn kick(&mut self, load: &Load, half: f64, gravity: Row) {
+        let inverse_mass = self.position[3];
+        for axis in 0..3 {
+            self.velocity[axis] += (load.force[axis] * inverse_mass + gravity[axis]) * half;
+            self.angular_momentum[axis] += load.torque[axis] * half;
+        }
+    }
+
+    /// A full step of position and orientation; the spin follows.
+    #[inline(always)]
+    pub fn drift(&mut self, dt: f64) {
+        for axis in 0..3 {
+            self.position[axis] += self.velocity[axis] * dt;
+        }
+        self.turn(dt);
+        self.update_spin();
+    }
+
+    /// The spin that the angular momentum is at the present orientation.
+    #[inline(always)]
+    pub fn update_spin(&mut self) {
+        let axes = axes(self.orientation);
+        let momentum = into_body(&axes, self.angular_momentum);
+        let spin = [0, 1, 2].map(|k| momentum[k] * self.inverse_inertia[k]);
+        for axis in 0..3 {
+            self.spin[axis] =
+                axes[0][axis] * spin[0] + axes[1][axis] * spin[1] + axes[2][axis] * spin[2];
+        }
+    }
+
+    /// Turns the free body for `dt` [s]: its angular momentum stays, its orientation follows by rotations about one body
+    /// axis after the other, forwards and back (the symmetric splitting of Dullweber, Leimkuhler and McLachlan 1997).
+    /// Each is symplectic, so the energy of a free body does not drift.
+    #[inline(always)]
+    fn turn(&mut self, dt: f64) {
+        let mut momentum = into_body(&axes(self.orientation), self.angular_momentum);
+        let mut q = self.orientation;
+        let half = 0.5 * dt;
+        let inverse = self.inverse_inertia;
+        about::<0>(&mut momentum, &mut q, half * inverse[0]);
+        about::<1>(&mut momentum, &mut q, half * inverse[1]);
+        about::<2>(&mut momentum, &mut q, dt * inverse[2]);
+        about::<1>(&mut momentum, &mut q, half * inverse[1]);
+        about::<0>(&mut momentum, &mut q, half * inverse[0]);
+        let norm = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+        self.orientation = q.map(|x| x / norm);
+    }
+
+    /// Square of a speed that no point of the body exceeds [m²/s²], and whether that is sane. Written so that a NaN is not.
+    #[inline(always)]
+    pub fn is_sane(&self) -> bool {
+        self.fastest() <= self.velocity[3]
+    }
+
+    /// A speed that no point of the body exceeds [m/s].
+    #[inline(always)]
+    pub fn fastest(&self) -> f64 {
+        length_squared(self.velocity).sqrt() + length_squared(self.spin).sqrt() * self.spin[3]
+    }
+
+    /// Orientation as a quaternion.
+    pub fn quaternion(&self) -> DQuat {
+        DQuat::from_array(self.orientation)
+    }
+
+    /// Rounding radius [m].
+    #[inline(always)]
+    pub fn rounding(&self) -> f64 {
+        self.angular_momentum[3]
+    }
+
+    /// The centroid [m].
+    pub fn centre(&self) -> DVec3 {
+        vector(self.position)
+    }
+}
+
+/// A body no point of which may move in one step by more than this share of its rounding radius: features could pass
+/// through each other unseen.
+pub const LARGEST_MOVE: f64 = 0.25;
+
+/// A rotation about body axis `K` by the angle whose half has the tangent `momentum[K] rate / 2`: that of the axis' own
+/// free rotation to third order, and symplectic as any function of that momentum alone.
+#[inline(always)]
+fn about<const K: usize>(momentum: &mut [f64; 3], q: &mut Row, rate: f64) {
+    let (u, v) = ((K + 1) % 3, (K + 2) % 3);
+    let tangent = 0.5 * momentum[K] * rate;
+    let square = tangent * tangent;
+    let inverse = 1.0 / (1.0 + square);
+    let (cosine, sine) = ((1.0 - square) * inverse, 2.0 * tangent * inverse);
+    let (a, b) = (momentum[u], momentum[v]);
+    momentum[u] = cosine * a + sine * b;
+    momentum[v] = cosine * b - sine * a;
+    // q (1, tangent along axis K); the length is put right at the end of the step.
+    let old = *q;
+    q[3] = old[3] - tangent * old[K];
+    q[K] = old[K] + tangent * old[3];
+    q[u] = old[u] + tangent * old[v];
+    q[v] = old[v] - tangent * old[u];
+}

@@ -1,0 +1,272 @@
+//! Nearest points of two features: an edge and an edge, a vertex and a face.
+//!
+//! In: jobs that name vertices and faces by their indices in the world's tables. Out: for each the unit vector from the
+//! first body to the second, the distance, and the point in the middle. Each is computed in lanes, every lane for itself.
+
+use super::super::lanes::{Lanes, Quad, Row, cross, dot, minus, plus, side_by_side, times};
+
+/// Nearest points of two features.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nearest {
+    /// Unit vector from the point of the first body to that of the second; their distance [m], infinite for a vertex
+    /// behind a face.
+    pub normal: Row,
+    /// The point halfway [m]; a companion for the user: how far the vertex lies inside the face's outline [m] where that
+    /// was asked for.
+    pub middle: Row,
+}
+
+/// Two edges: where their ends are, first body's first.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeJob {
+    /// Vertices.
+    pub ends: [u32; 4],
+    /// Which result is theirs.
+    pub out: u32,
+}
+
+/// A vertex and a face.
+#[derive(Clone, Copy, Debug)]
+pub struct FaceJob {
+    /// The vertex.
+    pub vertex: u32,
+    /// The face.
+    pub face: u32,
+    /// 0 where the vertex is the first body's, 1 where it is the second's.
+    pub side: u32,
+    /// Which result is theirs.
+    pub out: u32,
+}
+
+/// Vertices and faces of all bodies where they are now.
+#[derive(Clone, Copy)]
+pub struct Geometry<'a> {
+    /// Vertices [m].
+    pub vertices: &'a [Row],
+    /// Outward unit normals of the faces; distances of their planes from the origin [m].
+    pub planes: &'a [Row],
+    /// Where in `loops` each face's vertices begin, and after the last face the end.
+    pub loop_starts: &'a [u32],
+    /// Vertices of each face, anticlockwise seen from outside.
+    pub loops: &'a [u32],
+}
+
+/// Sines squared below which two edges count as parallel: the middle of their overlap is taken then.
+const PARALLEL: f64 = 1e-10;
+
+#[inline(always)]
+fn clamp<N: Lanes>(x: N, zero: N, one: N) -> N {
+    let x = N::choose(x.exceeds(zero), x, zero);
+    N::choose(x.exceeds(one), one, x)
+}
+
+#[inline(always)]
+fn smaller<N: Lanes>(a: N, b: N) -> N {
+    N::choose(a.exceeds(b), b, a)
+}
+
+#[inline(always)]
+fn vector<N: Lanes>([x, y, z, _]: [N; 4]) -> [N; 3] {
+    [x, y, z]
+}
+
+/// Nearest points of pairs of edges.
+#[inline(always)]
+pub fn between_edges<N: Lanes>(
+    processor: N::Processor,
+    geometry: &Geometry<'_>,
+    jobs: &[EdgeJob],
+    results: &mut [Nearest],
+) {
+    for group in jobs.chunks(N::COUNT) {
+        let last = group.len() - 1;
+        let end = |e: usize| {
+            side_by_side::<N, _>(|k| &geometry.vertices[group[k.min(last)].ends[e] as usize])
+        };
+        let from = vector(N::gather(processor, end(0)));
+        let other = vector(N::gather(processor, end(2)));
+        let along = vector(N::gather_difference(processor, end(1), end(0)));
+        let across = vector(N::gather_difference(processor, end(3), end(2)));
+        let (s, t) = on_edges(processor, minus(from, other), along, across);
+        let (p, q) = (plus(from, times(along, s)), plus(other, times(across, t)));
+        let apart = minus(q, p);
+        let distance = dot(apart, apart).sqrt();
+        let normal = times(apart, N::splat(processor, 1.0) / distance);
+        let middle = times(plus(p, q), N::splat(processor, 0.5));
+        let normals = N::rows([normal[0], normal[1], normal[2], distance]);
+        let middles = N::rows([middle[0], middle[1], middle[2], distance]);
+        for (k, job) in group.iter().enumerate() {
+            results[job.out as usize] = Nearest {
+                normal: normals[k].row(),
+                middle: middles[k].row(),
+            };
+        }
+    }
+}
+
+/// Where on the edges `along` and `across`, the first beginning at `offset` from the second, the nearest points lie (0 at
+/// the beginning, 1 at the end).
+#[inline(always)]
+fn on_edges<N: Lanes>(
+    processor: N::Processor,
+    offset: [N; 3],
+    along: [N; 3],
+    across: [N; 3],
+) -> (N, N) {
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let (a, e, b) = (dot(along, along), dot(across, across), dot(along, across));
+    let (c, f) = (dot(along, offset), dot(across, offset));
+    let square = a * e;
+    let sine = square - b * b;
+    let skew = sine.exceeds(N::splat(processor, PARALLEL) * square);
+    let crossing = (b * f - c * e) / sine;
+    // What of the first edge lies beside the ends of the second.
+    let at_begin = clamp(-c / a, zero, one);
+    let at_end = clamp((b - c) / a, zero, one);
+    let beside = N::splat(processor, 0.5) * (at_begin + at_end);
+    let s = N::choose(skew, clamp(crossing, zero, one), beside);
+    let free = (b * s + f) / e;
+    let t = clamp(free, zero, one);
+    // Beyond an end of the second edge that end is nearest.
+    let s = N::choose(zero.exceeds(free), at_begin, s);
+    let s = N::choose(free.exceeds(one), at_end, s);
+    (s, t)
+}
+
+/// Signs of the vector and its companion that turn "from the vertex to the face" into "from the first to the second".
+const TURN: [Row; 2] = [[1.0, 1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, 1.0]];
+
+/// Nearest points of vertices and faces on which they stand: those whose foot is known to lie inside the outline.
+#[inline(always)]
+pub fn above_faces<N: Lanes>(
+    processor: N::Processor,
+    geometry: &Geometry<'_>,
+    jobs: &[FaceJob],
+    results: &mut [Nearest],
+) {
+    for group in jobs.chunks(N::COUNT) {
+        let last = group.len() - 1;
+        let vertex =
+            side_by_side::<N, _>(|k| &geometry.vertices[group[k.min(last)].vertex as usize]);
+        let plane = side_by_side::<N, _>(|k| &geometry.planes[group[k.min(last)].face as usize]);
+        let point = vector(N::gather(processor, vertex));
+        let [nx, ny, nz, offset] = N::gather(processor, plane);
+        let outward = [nx, ny, nz];
+        let height = dot(outward, point) - offset;
+        let (normal, distance, middle) = on_plane(processor, point, outward, height);
+        let normals = N::rows([normal[0], normal[1], normal[2], distance]);
+        let middles = N::rows([middle[0], middle[1], middle[2], distance]);
+        for (k, job) in group.iter().enumerate() {
+            let turn = N::Quad::load(processor, &TURN[job.side as usize]);
+            results[job.out as usize] = Nearest {
+                normal: (normals[k] * turn).row(),
+                middle: middles[k].row(),
+            };
+        }
+    }
+}
+
+/// A point at a signed `height` above a face, over its inside: behind it nothing is near.
+#[inline(always)]
+fn on_plane<N: Lanes>(
+    processor: N::Processor,
+    point: [N; 3],
+    outward: [N; 3],
+    height: N,
+) -> ([N; 3], N, [N; 3]) {
+    let above = height.exceeds(N::splat(processor, 0.0));
+    let distance = N::choose(above, height, N::splat(processor, f64::INFINITY));
+    let half = N::splat(processor, 0.5) * height;
+    (
+        [-outward[0], -outward[1], -outward[2]],
+        distance,
+        minus(point, times(outward, half)),
+    )
+}
+
+/// Nearest points of vertices and faces, wherever the vertices are. With `MARGIN` the companion of the middle tells how far
+/// inside the outline the foot of the vertex lies [m], negative outside.
+#[inline(always)]
+pub fn at_faces<N: Lanes, const MARGIN: bool>(
+    processor: N::Processor,
+    geometry: &Geometry<'_>,
+    jobs: &[FaceJob],
+    results: &mut [Nearest],
+) {
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    for group in jobs.chunks(N::COUNT) {
+        let last = group.len() - 1;
+        let vertex =
+            side_by_side::<N, _>(|k| &geometry.vertices[group[k.min(last)].vertex as usize]);
+        let plane = side_by_side::<N, _>(|k| &geometry.planes[group[k.min(last)].face as usize]);
+        let outline = side_by_side::<N, _>(|k| geometry.outline(group[k.min(last)].face));
+        let point = vector(N::gather(processor, vertex));
+        let [nx, ny, nz, offset] = N::gather(processor, plane);
+        let outward = [nx, ny, nz];
+        let height = dot(outward, point) - offset;
+
+        let mut nearest = [zero; 3];
+        let mut square = N::splat(processor, f64::INFINITY);
+        let mut inside = N::splat(processor, f64::INFINITY);
+        let corners = group.iter().map(|job| geometry.outline(job.face).len());
+        for corner in 0..corners.max().unwrap_or(0) {
+            let begin = side_by_side::<N, _>(|k| {
+                let outline = outline[k];
+                &geometry.vertices[outline[corner.min(outline.len() - 1)] as usize]
+            });
+            let end = side_by_side::<N, _>(|k| {
+                let outline = outline[k];
+                let next = corner.min(outline.len() - 1) + 1;
+                &geometry.vertices[outline[if next == outline.len() { 0 } else { next }] as usize]
+            });
+            let edge = vector(N::gather_difference(processor, end, begin));
+            let begin = vector(N::gather(processor, begin));
+            let away = minus(point, begin);
+            let length = dot(edge, edge);
+            let foot = clamp(dot(away, edge) / length, zero, one);
+            let to_edge = minus(times(edge, foot), away);
+            let to_edge_square = dot(to_edge, to_edge);
+            let closer = square.exceeds(to_edge_square);
+            for axis in 0..3 {
+                nearest[axis] = N::choose(closer, to_edge[axis], nearest[axis]);
+            }
+            square = N::choose(closer, to_edge_square, square);
+            let mut within = dot(cross(outward, edge), away);
+            if MARGIN {
+                within = within / length.sqrt();
+            }
+            inside = smaller(inside, within);
+        }
+
+        let (below, at_height, foot_middle) = on_plane(processor, point, outward, height);
+        let distance = square.sqrt();
+        let over = inside.exceeds(zero);
+        let inverse = one / distance;
+        let half = N::splat(processor, 0.5);
+        let mut normal = [zero; 3];
+        let mut middle = [zero; 3];
+        for axis in 0..3 {
+            normal[axis] = N::choose(over, below[axis], nearest[axis] * inverse);
+            middle[axis] = N::choose(over, foot_middle[axis], point[axis] + half * nearest[axis]);
+        }
+        let distance = N::choose(over, at_height, distance);
+        let normals = N::rows([normal[0], normal[1], normal[2], distance]);
+        let middles = N::rows([middle[0], middle[1], middle[2], inside]);
+        for (k, job) in group.iter().enumerate() {
+            let turn = N::Quad::load(processor, &TURN[job.side as usize]);
+            results[job.out as usize] = Nearest {
+                normal: (normals[k] * turn).row(),
+                middle: middles[k].row(),
+            };
+        }
+    }
+}
+
+impl<'a> Geometry<'a> {
+    /// Vertices of a face.
+    #[inline(always)]
+    pub fn outline(&self, face: u32) -> &'a [u32] {
+        let face = face as usize;
+        &self.loops[self.loop_starts[face] as usize..self.loop_starts[face + 1] as usize]
+    }
+}
