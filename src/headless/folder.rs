@@ -46,9 +46,9 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Name of the grains' file number `index`, relative to the folder.
-    pub fn grains_name(index: usize) -> String {
-        format!("{GRAINS}/grains_{index:06}.vtp")
+    /// Name of the grains' file number `index` with this extension, relative to the folder.
+    pub fn grains_name(index: usize, extension: &str) -> String {
+        format!("{GRAINS}/grains_{index:06}.{extension}")
     }
 
     /// Writes the file called `name` with what `fill` writes, whole or not at all.
@@ -79,7 +79,9 @@ impl OutputFolder {
             let name = entry.file_name();
             let own = name.to_str().is_some_and(|name| {
                 name.starts_with("grains_")
-                    && Path::new(name).extension().is_some_and(|e| e == "vtp")
+                    && Path::new(name)
+                        .extension()
+                        .is_some_and(|e| e == "vtp" || e == "vtu")
             });
             if own {
                 fs::remove_file(entry.path())?;

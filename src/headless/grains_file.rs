@@ -1,9 +1,10 @@
-//! The grains as VTK files: one `.vtp` per output time and a `.pvd` that lists them.
+//! The grains as VTK files: one per output time and a `.pvd` that lists them. Spheres are points (`.vtp`), polyhedra are cells
+//! (`.vtu`, see `polyhedra_file`).
 //!
-//! `ParaView` opens `grains.pvd` as a series in time; *Glyph* with spheres scaled by `radius` (scale factor 2), or *Point
+//! `ParaView` opens `grains.pvd` as a series in time; of points, *Glyph* with spheres scaled by `radius` (scale factor 2), or *Point
 //! Gaussian* with `radius` as its scale array, shows the grains at their size. Values are in SI units, in 64 bits.
 
-use super::folder::OutputFolder;
+use super::polyhedra_file::write_polyhedra;
 use crate::world::World;
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -16,12 +17,29 @@ use vtkio::model::{
 /// Name of the list of the grains' files.
 pub const COLLECTION: &str = "grains.pvd";
 
-/// Writes the grains of `world` to `file` as VTK poly data: one vertex per grain with `radius` [m], `velocity` [m/s],
-/// `spin` [rad/s] and `species`.
+/// Extension of the files of the grains of `world`.
+pub fn extension(world: &World) -> &'static str {
+    if world.polyhedra.is_some() {
+        "vtu"
+    } else {
+        "vtp"
+    }
+}
+
+/// Writes the grains of `world` to `file`: one point or cell per grain with `radius` [m], `velocity` [m/s], `spin` [rad/s] and
+/// `species`.
 ///
 /// # Errors
 /// When the file cannot be written.
 pub fn write_grains(world: &World, file: &mut dyn Write) -> io::Result<()> {
+    match &world.polyhedra {
+        Some(polyhedra) => write_polyhedra(world, polyhedra, file),
+        None => write_spheres(world, file),
+    }
+}
+
+/// Writes spheres as VTK poly data, one vertex per grain.
+fn write_spheres(world: &World, file: &mut dyn Write) -> io::Result<()> {
     let grains = &world.grains;
     let count = grains.len() as u64;
     let species: Vec<u32> = grains.species.iter().map(|s| u32::from(s.0)).collect();
@@ -57,16 +75,15 @@ fn components(vectors: &[DVec3]) -> IOBuffer {
     flat.into()
 }
 
-/// Writes the list of grains' files, one per entry of `times` [s] in order, to `file`.
+/// Writes the list of grains' files, each with its time [s], to `file`.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_collection(times: &[f64], file: &mut dyn Write) -> io::Result<()> {
+pub fn write_collection(frames: &[(f64, String)], file: &mut dyn Write) -> io::Result<()> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n",
     );
-    for (index, time) in times.iter().enumerate() {
-        let name = OutputFolder::grains_name(index);
+    for (time, name) in frames {
         writeln!(
             text,
             "    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{name}\"/>"

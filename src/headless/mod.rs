@@ -1,14 +1,15 @@
 //! The windowless runner: progress, output files, exit codes.
 //!
-//! In: a [`Job`]: a scene, where its files go, what to change. Out: the files (`series.csv`, `grains.pvd` with one
-//! `.vtp` per output time, `summary.json`) and an [`Ending`]. The run is moved by the same system as in the window, inline
+//! In: a [`Job`]: a scene, where its files go, what to change. Out: the files (`series.csv`, `grains.pvd` with one `.vtp` or
+//! `.vtu` per output time, `summary.json`) and an [`Ending`]. The run is moved by the same system as in the window, inline
 //! and as fast as the machine can.
 
 mod commands_file;
 mod error;
-mod flow_file;
 mod folder;
 mod grains_file;
+mod polyhedra_file;
+mod profile_files;
 mod progress;
 mod recorder;
 mod report;
@@ -18,8 +19,9 @@ mod summary_file;
 
 pub use commands_file::read_commands;
 pub use error::HeadlessError;
-pub(crate) use flow_file::{FLOW, write_flow};
 pub(crate) use folder::SUMMARY;
+pub use grains_file::write_grains;
+pub(crate) use profile_files::{FLOW, PROFILE, write_flow, write_profile};
 pub(crate) use progress::{Progress, spoken};
 pub(crate) use series_file::{SERIES, write_series};
 pub use setting::apply_setting;

@@ -3,13 +3,13 @@
 //! In: a [`Simulation`] that holds at each output time. Out: the files of the folder, each whole; whatever happens after a
 //! file was written, it stays.
 
-use super::flow_file::{FLOW, write_flow};
 use super::folder::{OutputFolder, SUMMARY};
-use super::grains_file::{COLLECTION, write_collection, write_grains};
+use super::grains_file::{COLLECTION, extension, write_collection, write_grains};
+use super::profile_files::{FLOW, PROFILE, write_flow, write_profile};
 use super::series_file::{SERIES, write_series};
 use super::summary_file::SummaryFile;
 use super::{Ending, HeadlessError, Job};
-use crate::measure::{Summary, summarise};
+use crate::measure::{Deposit, Measure, Summary, results, summarise};
 use crate::simulation::{SMALLEST_DROP, Simulation};
 use crate::world::{Clock, World};
 use std::time::{Duration, Instant};
@@ -24,8 +24,8 @@ const LISTING_TIME: Duration = Duration::from_secs(10);
 pub struct Recorder<'a> {
     job: &'a Job,
     folder: OutputFolder,
-    /// Times of the grains' files written [s].
-    times: Vec<f64>,
+    /// The grains' files written, each with its time [s].
+    frames: Vec<(f64, String)>,
     /// Outputs that are done or past.
     outputs: u64,
     started: Instant,
@@ -42,7 +42,7 @@ impl<'a> Recorder<'a> {
         let recorder = Self {
             job,
             folder: OutputFolder::open(&job.out)?,
-            times: Vec::new(),
+            frames: Vec::new(),
             outputs: 0,
             started: Instant::now(),
             listed: Instant::now(),
@@ -92,18 +92,20 @@ impl<'a> Recorder<'a> {
         ending: &Ending,
     ) -> Result<Summary, HeadlessError> {
         if let Some(world) = simulation.world()
-            && self.times.last() != Some(&world.time())
+            && self.frames.last().map(|(time, _)| *time) != Some(world.time())
         {
             self.write_grains(world)?;
         }
         self.write_lists(simulation)?;
         let end = simulation.world().map_or(0.0, |world| world.time());
         let from = LEFT_OUT * end;
-        let mut results = summarise(simulation.series(), from, SMALLEST_DROP);
-        if let Some(world) = simulation.world() {
-            results.add_case(world);
-        }
+        let series = simulation.series();
+        let results = match simulation.world() {
+            Some(world) => results(series, world, from, SMALLEST_DROP),
+            None => summarise(series, from, SMALLEST_DROP),
+        };
         self.write_flow(simulation, from)?;
+        self.write_profile(simulation)?;
         self.write_summary(simulation, ending.name(), Some((ending, &results)))?;
         Ok(results)
     }
@@ -119,9 +121,9 @@ impl<'a> Recorder<'a> {
     }
 
     fn write_grains(&mut self, world: &World) -> Result<(), HeadlessError> {
-        let name = OutputFolder::grains_name(self.times.len());
+        let name = OutputFolder::grains_name(self.frames.len(), extension(world));
         self.folder.write(&name, |file| write_grains(world, file))?;
-        self.times.push(world.time());
+        self.frames.push((world.time(), name));
         Ok(())
     }
 
@@ -133,11 +135,24 @@ impl<'a> Recorder<'a> {
         self.folder.write(FLOW, |file| write_flow(&profile, file))
     }
 
+    fn write_profile(&self, simulation: &Simulation) -> Result<(), HeadlessError> {
+        let Some(deposit) = simulation.world().and_then(|world| Deposit::of(world)) else {
+            return Ok(());
+        };
+        self.folder.write(PROFILE, |file| {
+            write_profile(&deposit.height_profile(), file)
+        })
+    }
+
     fn write_lists(&self, simulation: &Simulation) -> Result<(), HeadlessError> {
+        let measures = simulation
+            .world()
+            .map_or_else(Vec::new, |world| Measure::of(world));
+        self.folder.write(SERIES, |file| {
+            write_series(simulation.series(), &measures, file)
+        })?;
         self.folder
-            .write(SERIES, |file| write_series(simulation.series(), file))?;
-        self.folder
-            .write(COLLECTION, |file| write_collection(&self.times, file))
+            .write(COLLECTION, |file| write_collection(&self.frames, file))
     }
 
     fn write_summary(

@@ -1,4 +1,4 @@
-//! `series.csv`: one row per sample, one column per quantity, headed `name [unit]`, in SI units.
+//! `series.csv`: one row per sample, one column per quantity that has a meaning in the scene, headed `name [unit]`, in SI units.
 
 use crate::measure::{Measure, Series};
 use std::io::{self, Write};
@@ -6,26 +6,24 @@ use std::io::{self, Write};
 /// The file's name.
 pub const SERIES: &str = "series.csv";
 
-/// Writes all of `series` to `file`.
+/// Writes the `measures` of `series` to `file`.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_series(series: &Series, file: &mut dyn Write) -> io::Result<()> {
+pub fn write_series(series: &Series, measures: &[Measure], file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    let heads = Measure::ALL.map(|measure| {
+    let head = |measure: &Measure| {
         let quantity = measure.quantity();
         format!("{} [{}]", quantity.name, quantity.unit)
-    });
-    writer.write_record(
-        ["step [1]", "time [s]"]
-            .into_iter()
-            .chain(heads.iter().map(String::as_str)),
-    )?;
+    };
+    let first = ["step [1]", "time [s]"].map(str::to_owned);
+    writer.write_record(first.into_iter().chain(measures.iter().map(head)))?;
     for sample in (0..series.len()).filter_map(|index| series.get(index)) {
         writer.write_field(sample.step.to_string())?;
         writer.write_field(format!("{:?}", sample.time))?;
         // The shortest text that reads back as the same bits.
-        writer.write_record(sample.values.map(|value| format!("{value:?}")))?;
+        let value = |measure: &Measure| format!("{:?}", sample.value(*measure));
+        writer.write_record(measures.iter().map(value))?;
     }
     writer.flush()
 }

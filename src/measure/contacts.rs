@@ -1,6 +1,6 @@
-//! Measures of the contact network: coordination number and largest overlap.
+//! Measures of the contact network: coordination number, shares of the pairs of species, largest overlap.
 
-use crate::world::{Contact, Partner, World};
+use crate::world::{Contact, FeatureContact, Partner, Polyhedra, World};
 
 /// Mean number of other grains that a grain touches, `2 N_c / N` over all grains (rattlers and flying grains too); walls
 /// do not count. NaN without grains.
@@ -13,8 +13,37 @@ pub fn coordination_number(world: &World) -> f64 {
     2.0 * between_grains as f64 / world.grains.len() as f64
 }
 
-/// Largest overlap of all contacts, walls too, relative to the smaller grain's radius; zero where nothing touches.
+/// Shares of the touching pairs of grains in which both are of the first species, one of either, both of the second:
+/// `P11, P12, P22`. Walls do not count, and a pair counts once however many of its features touch. NaN where nothing
+/// touches or there are more than two species.
+pub fn contact_shares(world: &World) -> [f64; 3] {
+    let species = &world.grains.species;
+    let mut counts = [0.0; 3];
+    for contact in &world.contacts {
+        if let Partner::Grain(other) = contact.partner
+            && contact.touching
+        {
+            let seconds = species[contact.grain as usize].0 + species[other as usize].0;
+            counts[usize::from(seconds.min(2))] += 1.0;
+        }
+    }
+    let all = if world.species.len() > 2 {
+        f64::NAN
+    } else {
+        counts.iter().sum()
+    };
+    counts.map(|count| count / all)
+}
+
+/// Largest overlap of all contacts, walls too, relative to the smaller grain's radius, of polyhedra to the smaller rounding
+/// radius; zero where nothing touches.
 pub fn largest_overlap(world: &World) -> f64 {
+    if let Some(polyhedra) = &world.polyhedra {
+        let overlaps = polyhedra.features.iter();
+        return overlaps
+            .map(|feature| feature.overlap / smaller_rounding(polyhedra, feature))
+            .fold(0.0, f64::max);
+    }
     world
         .contacts
         .iter()
@@ -46,5 +75,13 @@ fn smaller_radius(world: &World, contact: &Contact) -> f64 {
     match contact.partner {
         Partner::Grain(j) => own.min(radius[j as usize]),
         Partner::Wall(_) => own,
+    }
+}
+
+fn smaller_rounding(polyhedra: &Polyhedra, contact: &FeatureContact) -> f64 {
+    let rounding = |i: u32| polyhedra.shape_of(i as usize).rounding;
+    match contact.partner {
+        Partner::Grain(j) => rounding(contact.grain).min(rounding(j)),
+        Partner::Wall(_) => rounding(contact.grain),
     }
 }

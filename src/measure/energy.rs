@@ -4,8 +4,9 @@
 //! ([`crate::world::Ledger`], [`crate::world::Grains::exchanged`]), which the solver and the commands keep.
 
 use super::contacts::overlap;
+use crate::scene::{ContactLaw, FeatureRule};
 use crate::solver::law::Pairing;
-use crate::world::{Contact, World};
+use crate::world::{Contact, FeatureContact, World};
 use serde::Serialize;
 
 /// All terms of `kinetic + elastic − initial = gravity + walls + commands − dashpots − sliding − rolling −
@@ -95,8 +96,12 @@ impl EnergyLedger {
     }
 }
 
-/// Energy stored in the normal and tangential springs of all contacts [J]; one that has opened stores none.
+/// Energy stored in the normal and tangential springs of all contacts [J], of polyhedra in those of all features that touch;
+/// a contact that has opened stores none.
 pub fn elastic_energy(world: &World) -> f64 {
+    if let Some(polyhedra) = &world.polyhedra {
+        return feature_energy(&polyhedra.features, world.law);
+    }
     let stored = |contact: &Contact| {
         Pairing::of(world, contact.grain as usize, contact.partner).elastic_energy(
             world.law,
@@ -111,6 +116,35 @@ pub fn elastic_energy(world: &World) -> f64 {
         .filter(|contact| overlap(world, contact) > 0.0)
         .map(stored)
         .sum()
+}
+
+/// Energy stored in the springs of polyhedra [J]: `½ K_n δ² + ½ k_t ξ²` of every pair of features. Where the features of two
+/// bodies share one contact, each has the part `Σδ²/(Σδ)²` of `K_n`; their `k_t` is kept with them.
+fn feature_energy(features: &[FeatureContact], law: ContactLaw) -> f64 {
+    let ContactLaw::Hooke {
+        normal_stiffness,
+        features: rule,
+        ..
+    } = law
+    else {
+        return f64::NAN;
+    };
+    let of_pair = |pair: &[FeatureContact]| {
+        let (mut sum, mut squares, mut tangential) = (0.0, 0.0, 0.0);
+        for feature in pair.iter().filter(|feature| feature.overlap > 0.0) {
+            sum += feature.overlap;
+            squares += feature.overlap * feature.overlap;
+            tangential += feature.stiffness * feature.spring.length_squared();
+        }
+        let part = match rule {
+            FeatureRule::Shared if sum > 0.0 => squares / (sum * sum),
+            FeatureRule::Full | FeatureRule::Shared => 1.0,
+        };
+        0.5 * (part * normal_stiffness * squares + tangential)
+    };
+    let of_one_pair =
+        |a: &FeatureContact, b: &FeatureContact| (a.grain, a.partner) == (b.grain, b.partner);
+    features.chunk_by(of_one_pair).map(of_pair).sum()
 }
 
 /// Sums over the grains of each of their energies [J].

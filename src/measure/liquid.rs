@@ -36,9 +36,10 @@ pub fn drop_ratio_law(viscosity: f64) -> f64 {
 }
 
 /// Torque about its axis that turns a drum against its grains [N m]: that of the contact forces, without rolling friction.
-/// NaN where there is no drum.
+/// NaN where there is no drum, or polyhedra, whose points of contact are not kept.
 pub fn drum_torque(world: &World) -> f64 {
-    if !matches!(world.container.shape, Shape::Drum { .. }) {
+    let is_drum = matches!(world.container.shape, Shape::Drum { .. });
+    if !is_drum || world.polyhedra.is_some() {
         return f64::NAN;
     }
     let of_contact = |contact: &Contact| {

@@ -2,11 +2,12 @@
 //!
 //! The bed is cut by a plane parallel to the surface line, two mean radii below it, and φ is the volume of the grains
 //! below the plane over the volume of the container below the plane. Grains that the plane cuts count with the exact
-//! volume of their cap, so φ is smooth in time; the loose layer at the surface stays outside. The layers at the walls,
+//! volume of their cap (a polyhedron with that of the sphere of its volume), so φ is smooth in time; the loose layer at the surface stays outside. The layers at the walls,
 //! where grains pack less densely, are included: in narrow drums φ falls as the grains grow. Volumes shared by
 //! overlapping grains count twice (a relative error of about 1e-5 in a bed at rest).
 
 use super::SurfaceLine;
+use super::column::volume;
 use super::surface::mean_radius;
 use crate::world::{Shape, World};
 use glam::DVec2;
@@ -28,10 +29,18 @@ pub fn packing_fraction(world: &World, surface: &SurfaceLine) -> f64 {
     let filled: f64 = grains
         .position
         .iter()
-        .zip(&grains.radius)
-        .map(|(x, r)| sphere_below(*r, height - x.truncate().dot(normal)))
+        .enumerate()
+        .map(|(i, x)| sphere_below(radius(world, i), height - x.truncate().dot(normal)))
         .sum();
     filled / space
+}
+
+/// Radius of grain `i`, of a polyhedron that of the sphere of its volume [m].
+fn radius(world: &World, i: usize) -> f64 {
+    match world.polyhedra {
+        Some(_) => (0.75 / PI * volume(world, i)).cbrt(),
+        None => world.grains.radius[i],
+    }
 }
 
 /// Volume of the part of a sphere of radius `r` that lies below a plane `height` above its centre [m³].

@@ -1,5 +1,7 @@
 //! What a sample holds: one [`Measure`] per column and what people need to know of it.
 
+use crate::world::{Shape, World};
+
 /// What one number is: its key in files, its name and symbol for people, its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quantity {
@@ -13,7 +15,7 @@ pub struct Quantity {
     pub description: &'static str,
 }
 
-/// A number that every sample holds; `as usize` gives its column.
+/// A number that every sample holds, NaN where it has no meaning; `as usize` gives its column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Measure {
     /// Slope of the free surface [rad].
@@ -28,7 +30,7 @@ pub enum Measure {
     CoordinationNumber,
     /// Kinetic energy [J].
     KineticEnergy,
-    /// Largest overlap relative to the smaller radius.
+    /// Largest overlap relative to the smaller radius, of polyhedra to the rounding radius.
     LargestOverlap,
     /// What the energy ledger leaves unexplained [J].
     EnergyResidual,
@@ -60,11 +62,35 @@ pub enum Measure {
     ViscousLoss,
     /// Energy taken by capillary forces since the start [J].
     CapillaryLoss,
+    /// Radius of the front [m].
+    FrontRadius,
+    /// Radius within which the centres of 99 % of the grains lie [m].
+    FrontRadius99,
+    /// Radius within which the centres of 95 % of the grains lie [m].
+    FrontRadius95,
+    /// Radius of the front of the largest cluster [m].
+    ClusterRadius,
+    /// Height of the highest grain near the axis [m].
+    DepositHeight,
+    /// Apex of the mean profile of height [m].
+    ApexHeight,
+    /// Volume of the cone of front and height over that of the column.
+    ConeVolumeRatio,
+    /// Mean kinetic energy of translation of a grain [J].
+    TranslationalEnergy,
+    /// Mean kinetic energy of rotation of a grain [J].
+    RotationalEnergy,
+    /// Share of the touching pairs in which both grains are of the first species.
+    FirstPairs,
+    /// Share of the touching pairs of one grain of either species.
+    MixedPairs,
+    /// Share of the touching pairs in which both grains are of the second species.
+    SecondPairs,
 }
 
 impl Measure {
     /// Number of measures in a sample.
-    pub const COUNT: usize = 22;
+    pub const COUNT: usize = 34;
 
     /// Every measure in the order of its column.
     pub const ALL: [Self; Self::COUNT] = [
@@ -90,7 +116,56 @@ impl Measure {
         Self::DrumTorque,
         Self::ViscousLoss,
         Self::CapillaryLoss,
+        Self::FrontRadius,
+        Self::FrontRadius99,
+        Self::FrontRadius95,
+        Self::ClusterRadius,
+        Self::DepositHeight,
+        Self::ApexHeight,
+        Self::ConeVolumeRatio,
+        Self::TranslationalEnergy,
+        Self::RotationalEnergy,
+        Self::FirstPairs,
+        Self::MixedPairs,
+        Self::SecondPairs,
     ];
+
+    /// Whether it has a meaning in `world`: the surface of a bed has none where a column collapses, its front none elsewhere,
+    /// and a column without liquid has no bridges.
+    pub fn concerns(self, world: &World) -> bool {
+        let is_column = matches!(world.container.shape, Shape::Column { .. });
+        match self {
+            Self::SurfaceAngle
+            | Self::GranularTemperature
+            | Self::CorotatingTemperature
+            | Self::PackingFraction
+            | Self::SurfaceRoughness
+            | Self::SurfaceCurvature
+            | Self::DrumTorque => !is_column,
+            Self::Bridges | Self::Ruptures | Self::ViscousLoss | Self::CapillaryLoss => {
+                !is_column || world.liquid.is_some()
+            }
+            Self::FrontRadius
+            | Self::FrontRadius99
+            | Self::FrontRadius95
+            | Self::ClusterRadius
+            | Self::DepositHeight
+            | Self::ApexHeight
+            | Self::ConeVolumeRatio
+            | Self::TranslationalEnergy
+            | Self::RotationalEnergy
+            | Self::FirstPairs
+            | Self::MixedPairs
+            | Self::SecondPairs => is_column,
+            _ => true,
+        }
+    }
+
+    /// The measures that have a meaning in `world`, in the order of their columns.
+    pub fn of(world: &World) -> Vec<Self> {
+        let concerns = |measure: &Self| measure.concerns(world);
+        Self::ALL.into_iter().filter(concerns).collect()
+    }
 
     /// Name, symbol, unit and method.
     pub fn quantity(self) -> &'static Quantity {
@@ -143,7 +218,8 @@ pub const QUANTITIES: &[Quantity] = &[
         name: "largest overlap",
         symbol: "δ_max/r",
         unit: "1",
-        description: "Largest overlap of all contacts relative to the smaller grain's radius.",
+        description: "Largest overlap of all contacts relative to the smaller grain's radius, of polyhedra to their rounding \
+                      radius.",
     },
     Quantity {
         name: "energy residual",
@@ -236,5 +312,77 @@ pub const QUANTITIES: &[Quantity] = &[
         unit: "J",
         description: "Energy taken by capillary forces since the start: the cost of broken bridges, and what those that \
                       hold would give back.",
+    },
+    Quantity {
+        name: "front radius",
+        symbol: "R",
+        unit: "m",
+        description: "Distance of the farthest point of a grain from the column's axis in each of 72 sectors, their mean over the sectors that hold a grain.",
+    },
+    Quantity {
+        name: "99 % radius",
+        symbol: "R_99",
+        unit: "m",
+        description: "Radius about the column's axis within which the centres of 99 % of the grains lie.",
+    },
+    Quantity {
+        name: "95 % radius",
+        symbol: "R_95",
+        unit: "m",
+        description: "Radius about the column's axis within which the centres of 95 % of the grains lie.",
+    },
+    Quantity {
+        name: "cluster radius",
+        symbol: "R_c",
+        unit: "m",
+        description: "The front radius of those grains alone that belong to the largest cluster of touching grains.",
+    },
+    Quantity {
+        name: "deposit height",
+        symbol: "H",
+        unit: "m",
+        description: "Highest point of the grains whose centres lie within half of the column's initial radius of its axis.",
+    },
+    Quantity {
+        name: "apex height",
+        symbol: "H_a",
+        unit: "m",
+        description: "Largest height of the profile over the radius, averaged over the azimuth in rings two grain sizes wide.",
+    },
+    Quantity {
+        name: "cone volume ratio",
+        symbol: "V_cone/V_init",
+        unit: "1",
+        description: "Volume of the cone with the front radius and the deposit height over that of the column (Eq. 4.3 of Man et al. 2023).",
+    },
+    Quantity {
+        name: "translational energy per grain",
+        symbol: "e_t",
+        unit: "J",
+        description: "Kinetic energy of translation, mean over the grains.",
+    },
+    Quantity {
+        name: "rotational energy per grain",
+        symbol: "e_r",
+        unit: "J",
+        description: "Kinetic energy of rotation, mean over the grains.",
+    },
+    Quantity {
+        name: "pairs of first species",
+        symbol: "P11",
+        unit: "1",
+        description: "Share of the touching pairs of grains in which both are of the first species; the floor does not count.",
+    },
+    Quantity {
+        name: "mixed pairs",
+        symbol: "P12",
+        unit: "1",
+        description: "Share of the touching pairs of grains in which one is of either species; the floor does not count.",
+    },
+    Quantity {
+        name: "pairs of second species",
+        symbol: "P22",
+        unit: "1",
+        description: "Share of the touching pairs of grains in which both are of the second species; the floor does not count.",
     },
 ];

@@ -19,14 +19,30 @@ impl Sample {
     pub fn value(&self, measure: Measure) -> f64 {
         self.values[measure as usize]
     }
+
+    /// Gives one measure its value.
+    pub(super) fn set(&mut self, measure: Measure, value: f64) {
+        self.values[measure as usize] = value;
+    }
 }
 
 /// Samples in order of time, column by column.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     steps: Vec<u64>,
     time: Vec<f64>,
+    #[serde(with = "columns")]
     columns: [Vec<f64>; Measure::COUNT],
+}
+
+impl Default for Series {
+    fn default() -> Self {
+        Self {
+            steps: Vec::new(),
+            time: Vec::new(),
+            columns: std::array::from_fn(|_| Vec::new()),
+        }
+    }
 }
 
 impl Series {
@@ -90,5 +106,24 @@ impl Series {
         for column in &mut self.columns {
             column.truncate(len);
         }
+    }
+}
+
+/// The columns in a file: a list that has one entry per measure.
+mod columns {
+    use super::Measure;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    type Columns = [Vec<f64>; Measure::COUNT];
+
+    pub fn serialize<S: Serializer>(columns: &Columns, serializer: S) -> Result<S::Ok, S::Error> {
+        columns.as_slice().serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Columns, D::Error> {
+        let columns: Vec<Vec<f64>> = Vec::deserialize(deserializer)?;
+        let count = columns.len();
+        let expected = format!("{} columns", Measure::COUNT);
+        (columns.try_into()).map_err(|_| D::Error::invalid_length(count, &expected.as_str()))
     }
 }

@@ -1,9 +1,10 @@
-//! Averages over the last part of a run, as the paper quotes them.
+//! Results of a run, as the papers quote them: of a bed, averages over the last part of it; of a column, what it did and left.
 //!
 //! In: a [`Series`] and the time from which it counts. Out: named values, each with its unit and how it was taken.
 
 use super::{
-    Avalanche, Measure, SMOOTHING_TIME, Series, avalanches, capillary_number, galilei_number,
+    Avalanche, Collapse, Column, Measure, SMOOTHING_TIME, Series, avalanches, capillary_number,
+    galilei_number,
 };
 use crate::world::World;
 use serde::Serialize;
@@ -18,6 +19,18 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Time over which the slope of a rise is taken [s].
 const SLOPE_TIME: f64 = 0.2;
+
+/// What the results of a column take from its last sample.
+const COLUMN_AT_END: [Measure; 8] = [
+    Measure::FrontRadius99,
+    Measure::FrontRadius95,
+    Measure::ClusterRadius,
+    Measure::ApexHeight,
+    Measure::FirstPairs,
+    Measure::MixedPairs,
+    Measure::SecondPairs,
+    Measure::CoordinationNumber,
+];
 
 /// One result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -54,7 +67,13 @@ impl Summary {
             .and_then(|entry| entry.value)
     }
 
-    fn add(&mut self, name: impl Into<String>, unit: &'static str, value: f64, note: &str) {
+    pub(super) fn add(
+        &mut self,
+        name: impl Into<String>,
+        unit: &'static str,
+        value: f64,
+        note: &str,
+    ) {
         self.entries.push(SummaryEntry {
             name: name.into(),
             unit,
@@ -66,7 +85,7 @@ impl Summary {
 
 impl Summary {
     /// Adds what depends on the drum and its liquid alone, and the regime that the results show.
-    pub fn add_case(&mut self, world: &World) {
+    fn add_case(&mut self, world: &World) {
         self.add(
             "capillary number Ca",
             "1",
@@ -115,15 +134,28 @@ pub enum Regime {
     Continuous,
 }
 
+/// Results of a run of which `series` holds the samples and `world` the last state. A column's begin at its release; a bed's
+/// count from `from_time` [s] on, with avalanches of at least `smallest_drop` [rad].
+pub fn results(series: &Series, world: &World, from_time: f64, smallest_drop: f64) -> Summary {
+    let column = Column::of(world).zip(Collapse::of(series));
+    let Some((column, collapse)) = column else {
+        let mut summary = summarise(series, from_time, smallest_drop);
+        summary.add_case(world);
+        return summary;
+    };
+    let window = Window::of(series, 0.0);
+    let mut summary = window.summary(0.0);
+    summary.add_collapse(world, &column, &collapse);
+    add_last(&mut summary, &window, &COLUMN_AT_END);
+    add_overlap(&mut summary, &window);
+    add_energies(&mut summary, &window);
+    summary
+}
+
 /// Results of the part of `series` from `from_time` [s] on, with avalanches of at least `smallest_drop` [rad].
 pub fn summarise(series: &Series, from_time: f64, smallest_drop: f64) -> Summary {
     let window = Window::of(series, from_time);
-    let mut summary = Summary {
-        from: window.time.first().copied().unwrap_or(from_time),
-        to: window.time.last().copied().unwrap_or(from_time),
-        samples: window.time.len(),
-        entries: Vec::new(),
-    };
+    let mut summary = window.summary(from_time);
     let found = window.avalanches(smallest_drop);
     add_means(&mut summary, &window);
     add_flow(&mut summary, &window, &found);
@@ -151,6 +183,20 @@ impl<'a> Window<'a> {
             first,
             time: &series.time()[first..],
         }
+    }
+
+    /// A summary of these samples without entries.
+    fn summary(&self, from_time: f64) -> Summary {
+        Summary {
+            from: self.time.first().copied().unwrap_or(from_time),
+            to: self.time.last().copied().unwrap_or(from_time),
+            samples: self.time.len(),
+            entries: Vec::new(),
+        }
+    }
+
+    fn at_end(&self, measure: Measure) -> f64 {
+        self.column(measure).last().copied().unwrap_or(f64::NAN)
     }
 
     fn column(&self, measure: Measure) -> &'a [f64] {
@@ -240,6 +286,10 @@ fn add_means(summary: &mut Summary, window: &Window) {
         window.rate(Measure::WallWork),
         "work of the moving walls over the window, per second",
     );
+    add_overlap(summary, window);
+}
+
+fn add_overlap(summary: &mut Summary, window: &Window) {
     let overlap = window.column(Measure::LargestOverlap);
     summary.add(
         Measure::LargestOverlap.quantity().name,
@@ -247,6 +297,15 @@ fn add_means(summary: &mut Summary, window: &Window) {
         largest(overlap),
         "largest of the samples of the window",
     );
+}
+
+/// What the last sample holds.
+fn add_last(summary: &mut Summary, window: &Window, measures: &[Measure]) {
+    for measure in measures {
+        let quantity = measure.quantity();
+        let note = format!("at the end. {}", quantity.description);
+        summary.add(quantity.name, quantity.unit, window.at_end(*measure), &note);
+    }
 }
 
 fn add_flow(summary: &mut Summary, window: &Window, found: &[Avalanche]) {
@@ -312,7 +371,6 @@ fn add_energies(summary: &mut Summary, window: &Window) {
         Measure::SlidingLoss,
         Measure::RollingLoss,
     ];
-    let at_end = |measure: Measure| window.column(measure).last().copied().unwrap_or(f64::NAN);
     for measure in terms.into_iter().chain([
         Measure::ViscousLoss,
         Measure::CapillaryLoss,
@@ -320,13 +378,13 @@ fn add_energies(summary: &mut Summary, window: &Window) {
     ]) {
         let quantity = measure.quantity();
         let note = "at the end, since the start of the run";
-        summary.add(quantity.name, quantity.unit, at_end(measure), note);
+        summary.add(quantity.name, quantity.unit, window.at_end(measure), note);
     }
-    let turnover = largest(&terms.map(|term| at_end(term).abs()));
+    let turnover = largest(&terms.map(|term| window.at_end(term).abs()));
     summary.add(
         "relative energy residual",
         "1",
-        at_end(Measure::EnergyResidual) / turnover,
+        window.at_end(Measure::EnergyResidual) / turnover,
         "energy residual at the end relative to the largest term of the balance",
     );
 }

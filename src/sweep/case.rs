@@ -4,9 +4,10 @@ use super::checkpoint::{self, CaseKey};
 use super::{Case, Sweep};
 use crate::files::write_whole;
 use crate::headless::{
-    FLOW, HeadlessError, SERIES, SUMMARY, SummaryFile, write_flow, write_series,
+    FLOW, HeadlessError, PROFILE, SERIES, SUMMARY, SummaryFile, write_flow, write_profile,
+    write_series,
 };
-use crate::measure::{FlowProfile, Series, Summary, summarise};
+use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, results};
 use crate::simulation::{Preparation, Prepared, Run, SMALLEST_DROP, Script};
 use crate::solver::{Fault, advise};
 use std::io::{self, Write};
@@ -66,6 +67,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Whether a column collapsed.
+    pub fn is_column(&self) -> bool {
+        self.result("aspect ratio α").is_some()
+    }
+
     /// The result called `name`; `√(1/Ga)` beside those of the summary.
     pub fn result(&self, name: &str) -> Option<f64> {
         if name == "√(1/Ga)" {
@@ -174,8 +180,7 @@ fn advance(
 
 fn outcome(case: &Case, run: &Run, ending: CaseEnding) -> Outcome {
     let from = LEFT_OUT * run.world().time();
-    let mut results = summarise(run.series(), from, SMALLEST_DROP);
-    results.add_case(run.world());
+    let results = results(run.series(), run.world(), from, SMALLEST_DROP);
     Outcome {
         case: case.clone(),
         ending,
@@ -221,9 +226,14 @@ fn write_files(
     };
     write(&folder.join(SUMMARY), |file| summary.write(file))?;
     write(&folder.join(SERIES), |file| {
-        write_series(run.series(), file)
+        write_series(run.series(), &Measure::of(world), file)
     })?;
-    write(&folder.join(FLOW), |file| write_flow(&outcome.flow, file))
+    match Deposit::of(world) {
+        Some(deposit) => write(&folder.join(PROFILE), |file| {
+            write_profile(&deposit.height_profile(), file)
+        }),
+        None => write(&folder.join(FLOW), |file| write_flow(&outcome.flow, file)),
+    }
 }
 
 /// Writes a file of a sweep, whole or not at all.

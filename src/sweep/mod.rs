@@ -1,11 +1,14 @@
 //! Variations of a scene, run side by side, and their results set beside each other.
 //!
-//! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`, `series.csv`, `flow.csv`),
+//! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`, `series.csv`, and `flow.csv` or a
+//! column's `profile.csv`),
 //! a table of all results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one core. A
 //! sweep that was stopped goes on when it is called again: finished cases are kept, others go on from their checkpoints.
 
 mod case;
+mod chart;
 mod checkpoint;
+mod column_plots;
 mod plan;
 mod plots;
 mod table;

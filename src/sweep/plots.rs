@@ -1,91 +1,39 @@
-//! The plots of a sweep as SVG: results over viscosity for each radius, as in Figs. 2 and 5 to 8 of Kasper et al. 2021, with
-//! its laws and thresholds drawn in; θ(t) and Tg(t) of each case (Fig. 3); velocity profiles (Fig. 4e). A sweep that varies
-//! no liquid has its results over what it does vary.
+//! The plots of a sweep: of columns those in `column_plots`, of drums results over viscosity for each radius, as in Figs. 2 and 5
+//! to 8 of Kasper et al. 2021, with its laws and thresholds drawn in; θ(t) and Tg(t) of each case (Fig. 3); velocity profiles
+//! (Fig. 4e). A sweep that varies no liquid has its results over what it does vary.
 
 use super::Sweep;
 use super::case::{Outcome, write};
+use super::chart::{Axis, Line, Plot};
+use super::column_plots::column_plots;
 use crate::headless::HeadlessError;
 use crate::measure::{Measure, NON_RIGID_TEMPERATURE, Series, drop_ratio_law};
 use crate::scene::SceneGrains;
-use plotters::prelude::*;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-/// Size of a plot in pixels.
-const SIZE: (u32, u32) = (760, 520);
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-
-/// A set of points or a curve with its name.
-struct Line {
-    name: String,
-    points: Vec<(f64, f64)>,
-    /// A law or threshold: drawn as a grey curve without marks.
-    is_law: bool,
-}
-
-/// A plot: what it shows over what.
-struct Plot {
-    file: String,
-    title: String,
-    x: Axis,
-    y: Axis,
-    lines: Vec<Line>,
-}
-
-#[derive(Clone)]
-struct Axis {
-    label: String,
-    logarithmic: bool,
-}
-
-impl Axis {
-    fn linear(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            logarithmic: false,
-        }
-    }
-
-    fn logarithmic(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            logarithmic: true,
-        }
-    }
-
-    /// Where a value lies on it.
-    fn place(&self, value: f64) -> f64 {
-        if self.logarithmic {
-            value.log10()
-        } else {
-            value
-        }
-    }
-
-    /// The text at a place.
-    fn text(&self, place: f64) -> String {
-        // Whole decades alone are labelled.
-        if self.logarithmic && (place - place.round()).abs() > 1e-6 {
-            return String::new();
-        }
-        let value = if self.logarithmic {
-            10_f64.powf(place)
-        } else {
-            place
-        };
-        match value.abs() {
-            0.0 => "0".to_owned(),
-            0.01..1e4 => format!("{}", (value * 1e4).round() / 1e4),
-            _ => format!("{value:.1e}"),
-        }
-    }
-}
 
 /// Writes every plot that the outcomes have points for.
 ///
 /// # Errors
 /// When a file cannot be written.
 pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
+    let plots = if outcomes.iter().any(Outcome::is_column) {
+        column_plots(sweep, outcomes)
+    } else {
+        drum_plots(sweep, outcomes)
+    };
+    for plot in plots.iter().filter(|plot| plot.has_points()) {
+        let text = plot.draw().map_err(|reason| {
+            HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
+        })?;
+        let path = sweep.out.join("plots").join(&plot.file);
+        write(&path, |file| file.write_all(text.as_bytes()))?;
+    }
+    Ok(())
+}
+
+fn drum_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
     let over = Over::of(sweep, outcomes);
     let mut plots: Vec<Plot> = RESULTS
         .iter()
@@ -95,14 +43,7 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessEr
     plots.extend(over_galilei(outcomes));
     plots.extend(profiles(outcomes));
     plots.extend(outcomes.iter().flat_map(courses));
-    for plot in plots.iter().filter(|plot| plot.has_points()) {
-        let text = plot.draw().map_err(|reason| {
-            HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
-        })?;
-        let path = sweep.out.join("plots").join(&plot.file);
-        write(&path, |file| file.write_all(text.as_bytes()))?;
-    }
-    Ok(())
+    plots
 }
 
 /// A result to show: its file, its name among the results, factor to the shown unit, axis label.
@@ -267,7 +208,7 @@ fn drop_ratios(outcomes: &[Outcome]) -> Option<Plot> {
             outcome.result("drop Δθ")? / dry(outcome)?,
         ))
     });
-    lines.push(law(
+    lines.push(Line::law(
         "0.4 + 0.47 exp(−η/295 mPa s), Eq. 23",
         0.5,
         2000.0,
@@ -281,15 +222,6 @@ fn drop_ratios(outcomes: &[Outcome]) -> Option<Plot> {
         lines,
     };
     plot.has_points().then_some(plot)
-}
-
-fn law(name: &str, from: f64, to: f64, value: impl Fn(f64) -> f64) -> Line {
-    let at = |k: i32| from * (to / from).powf(f64::from(k) / 100.0);
-    Line {
-        name: name.to_owned(),
-        points: (0..=100).map(|k| (at(k), value(at(k)))).collect(),
-        is_law: true,
-    }
 }
 
 /// Non-rigid share and drop over √(1/Ga) (Fig. 7).
@@ -397,86 +329,4 @@ fn courses(outcome: &Outcome) -> [Plot; 2] {
             lines: vec![curve(temperature), threshold],
         },
     ]
-}
-
-impl Plot {
-    fn has_points(&self) -> bool {
-        self.lines
-            .iter()
-            .any(|line| !line.is_law && !line.points.is_empty())
-    }
-
-    /// Its range along one axis, with a margin.
-    fn range(&self, place: impl Fn(&(f64, f64)) -> f64) -> Range<f64> {
-        let places = self.lines.iter().flat_map(|line| &line.points).map(place);
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
-            (low.min(p), high.max(p))
-        });
-        let margin = (0.05 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
-        low - margin..high + margin
-    }
-
-    /// As the text of an SVG file.
-    fn draw(&self) -> Result<String, Box<dyn std::error::Error>> {
-        let mut text = String::new();
-        {
-            let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-            area.fill(&WHITE)?;
-            let x = self.range(|(x, _)| self.x.place(*x));
-            let y = self.range(|(_, y)| self.y.place(*y));
-            let mut chart = ChartBuilder::on(&area)
-                .caption(&self.title, ("sans-serif", 20))
-                .margin(14)
-                .x_label_area_size(44)
-                .y_label_area_size(72)
-                .build_cartesian_2d(x, y)?;
-            chart
-                .configure_mesh()
-                .x_desc(&self.x.label)
-                .y_desc(&self.y.label)
-                .x_label_formatter(&|place| self.x.text(*place))
-                .y_label_formatter(&|place| self.y.text(*place))
-                .label_style(("sans-serif", 14))
-                .light_line_style(RGBColor(244, 244, 244))
-                .bold_line_style(RGBColor(224, 224, 224))
-                .draw()?;
-            for (index, line) in self.lines.iter().enumerate() {
-                let colour = colour(index, line.is_law);
-                let place = |(x, y): &(f64, f64)| (self.x.place(*x), self.y.place(*y));
-                let points: Vec<(f64, f64)> = line.points.iter().map(place).collect();
-                chart
-                    .draw_series(LineSeries::new(points.clone(), colour.stroke_width(2)))?
-                    .label(&line.name)
-                    .legend(move |(x, y)| {
-                        PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2))
-                    });
-                // Marks on results, none on curves.
-                if !line.is_law && points.len() <= 16 {
-                    chart.draw_series(
-                        points
-                            .iter()
-                            .map(|point| Circle::new(*point, 4, colour.filled())),
-                    )?;
-                }
-            }
-            chart
-                .configure_series_labels()
-                .label_font(("sans-serif", 14))
-                .background_style(WHITE.mix(0.85))
-                .border_style(RGBColor(200, 200, 200))
-                .position(SeriesLabelPosition::UpperRight)
-                .draw()?;
-            area.present()?;
-        }
-        Ok(text)
-    }
-}
-
-fn colour(index: usize, is_law: bool) -> RGBColor {
-    if is_law {
-        return RGBColor(120, 120, 120);
-    }
-    let palette = colorous::TABLEAU10;
-    let colorous::Color { r, g, b } = palette[index % palette.len()];
-    RGBColor(r, g, b)
 }

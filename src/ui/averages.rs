@@ -1,9 +1,11 @@
-//! Averages over a run that goes on, taken anew now and then.
+//! Results of a run that goes on, taken anew now and then.
 
-use crate::measure::{Series, Summary, summarise};
-use crate::simulation::SMALLEST_DROP;
+use super::is_column;
+use crate::measure::{Summary, results, summarise};
+use crate::simulation::{SMALLEST_DROP, Simulation};
 
-/// Averages are taken anew whenever this many samples have been added, half a simulated second.
+/// Averages are taken anew whenever this many samples have been added, half a simulated second; results of a column with
+/// every sample.
 const SAMPLES_BETWEEN_SUMMARIES: usize = 25;
 
 /// The last averages and what they were made of.
@@ -20,16 +22,25 @@ struct Key {
 }
 
 impl Averages {
-    /// Averages over `series` from a time [s] on, remade when enough has been added.
-    pub fn over(&mut self, series: &Series, from: f64) -> &Summary {
+    /// Averages over `simulation` from a time [s] on, or the results of its column, remade when enough has been added.
+    pub fn over(&mut self, simulation: &Simulation, from: f64) -> &Summary {
+        let series = simulation.series();
+        let between = if is_column(simulation) {
+            1
+        } else {
+            SAMPLES_BETWEEN_SUMMARIES
+        };
         let key = Key {
-            samples: series.len() / SAMPLES_BETWEEN_SUMMARIES,
+            samples: series.len() / between,
             from,
         };
         if self.made.as_ref().is_some_and(|(made, _)| *made != key) {
             self.made = None;
         }
-        let make = || (key, summarise(series, from, SMALLEST_DROP));
+        let make = || match simulation.world() {
+            Some(world) => (key, results(series, world, from, SMALLEST_DROP)),
+            None => (key, summarise(series, from, SMALLEST_DROP)),
+        };
         &self.made.get_or_insert_with(make).1
     }
 }

@@ -21,16 +21,24 @@ pub struct BesidePaper {
     averages: Averages,
 }
 
-/// One plot: a law, a threshold, and where the run stands.
-struct Comparison {
-    id: &'static str,
-    title: &'static str,
-    law: Vec<[f64; 2]>,
-    law_name: &'static str,
-    threshold: Option<f64>,
-    point: Option<[f64; 2]>,
-    x: std::ops::RangeInclusive<f64>,
-    y: std::ops::RangeInclusive<f64>,
+/// One plot: a law, a threshold, and where the run stands. The horizontal axis is one of powers of ten.
+pub(super) struct Comparison {
+    /// What tells it from the others.
+    pub id: &'static str,
+    /// What stands over it.
+    pub title: &'static str,
+    /// The law's line; empty where there is none.
+    pub law: Vec<[f64; 2]>,
+    /// What the law is called.
+    pub law_name: &'static str,
+    /// Where a threshold stands.
+    pub threshold: Option<f64>,
+    /// Where the run stands.
+    pub point: Option<[f64; 2]>,
+    /// What is in view across.
+    pub x: std::ops::RangeInclusive<f64>,
+    /// What is in view upright.
+    pub y: std::ops::RangeInclusive<f64>,
 }
 
 impl Panel for BesidePaper {
@@ -56,7 +64,7 @@ impl Panel for BesidePaper {
         };
         let radius = world.grains.radius.first().copied().unwrap_or(0.0);
         let from = last_change(simulation);
-        let summary = self.averages.over(simulation.series(), from);
+        let summary = self.averages.over(simulation, from);
         let drop = summary.value("drop Δθ");
         let count = summary.value("avalanches").unwrap_or(0.0);
         let dry = dry_drum(radius).map(|drum| drum.drop);
@@ -69,7 +77,7 @@ impl Panel for BesidePaper {
             Comparison {
                 id: "drop ratio",
                 title: "Wet over dry drop, over viscosity η [mPa s]",
-                law: law(),
+                law: law_over(-0.5..=3.4, |viscosity| drop_ratio_law(1e-3 * viscosity)),
                 law_name: "0.4 + 0.47 exp(−η/295 mPa s)",
                 threshold: None,
                 point: ratio.map(|ratio| [millipascals.max(0.1).log10(), ratio]),
@@ -111,14 +119,19 @@ fn last_change(simulation: &Simulation) -> f64 {
     change.map_or(0.0, |stamped| stamped.time)
 }
 
-/// Eq. 23 on the axis of powers of ten.
-fn law() -> Vec<[f64; 2]> {
-    let at = |k: i32| -0.5 + 3.9 * f64::from(k) / 80.0;
-    let point = |place: f64| [place, drop_ratio_law(1e-3 * 10_f64.powf(place))];
+/// The points of a law on an axis of powers of ten.
+pub(super) fn law_over(
+    powers: std::ops::RangeInclusive<f64>,
+    law: impl Fn(f64) -> f64,
+) -> Vec<[f64; 2]> {
+    let (from, to) = powers.into_inner();
+    let at = |k: i32| from + (to - from) * f64::from(k) / 80.0;
+    let point = |place: f64| [place, law(10_f64.powf(place))];
     (0..=80).map(at).map(point).collect()
 }
 
-fn comparison_ui(ui: &mut egui::Ui, shown: Comparison) {
+/// Draws one comparison.
+pub(super) fn comparison_ui(ui: &mut egui::Ui, shown: Comparison) {
     let palette = Palette::of(ui.visuals());
     ui.label(RichText::new(shown.title).strong());
     Plot::new(shown.id)

@@ -4,6 +4,8 @@
 
 use super::about_scene::AboutScene;
 use super::beside_paper::BesidePaper;
+use super::collapse_plots::CollapsePlots;
+use super::column_beside_paper::ColumnBesidePaper;
 use super::menu::{Shown, menu_ui};
 use super::parameters::Parameters;
 use super::path_dialog::PathDialog;
@@ -65,7 +67,9 @@ fn left() -> Vec<Section> {
 fn right() -> Vec<Section> {
     vec![
         section(Plots::default(), true),
+        section(CollapsePlots::default(), true),
         section(BesidePaper::default(), true),
+        section(ColumnBesidePaper, true),
         section(Results::default(), true),
     ]
 }

@@ -11,7 +11,7 @@
 //! | `shortcuts` | what each key does |
 //! | `menu`, `transport` | menu bar, bar under the picture |
 //! | `about_scene`, `parameters`, `picture`, `profile` | panels on the left |
-//! | `plots`, `beside_paper`, `results` | panels on the right |
+//! | `plots`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
 //! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
 //! | `theme` | every colour, size and font |
@@ -21,6 +21,8 @@ mod about_scene;
 mod averages;
 mod beside_paper;
 mod carry_out;
+mod collapse_plots;
+mod column_beside_paper;
 mod decimate;
 mod desk;
 mod menu;
@@ -40,6 +42,8 @@ pub mod theme;
 mod transport;
 
 pub use about_scene::AboutScene;
+pub use collapse_plots::CollapsePlots;
+pub use column_beside_paper::ColumnBesidePaper;
 pub use desk::Desk;
 pub use parameters::{Parameters, parameter_ui};
 pub use path_dialog::{PathDialog, Purpose};
@@ -53,6 +57,7 @@ pub use transport::{Transport, status_ui};
 
 use crate::simulation::{Options, Simulation};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
+use crate::world::{Shape, World};
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
@@ -75,6 +80,12 @@ pub trait Panel: Send + Sync + 'static {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     );
+}
+
+/// Whether a column collapses in this simulation.
+fn is_column(simulation: &Simulation) -> bool {
+    let column = |world: &World| matches!(world.container.shape, Shape::Column { .. });
+    simulation.world().is_some_and(|world| column(world))
 }
 
 /// Draws the panels and fulfils what they ask for. Needs Bevy's default plugins, `EguiPlugin` and the view's plugin.

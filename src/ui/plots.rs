@@ -5,7 +5,7 @@
 
 use super::decimate::decimate;
 use super::theme::Palette;
-use super::{Panel, Request, number};
+use super::{Panel, Request, is_column, number};
 use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE};
 use crate::simulation::{Command, Simulation};
 use crate::view::ViewSettings;
@@ -49,7 +49,7 @@ pub struct Plots {
 
 /// Which part of the run is in view.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Span {
+pub(super) enum Span {
     /// The last [`RECENT`] seconds.
     Recent,
     /// All of it.
@@ -72,17 +72,24 @@ pub struct Curves<'a> {
     pub changes: &'a [f64],
 }
 
-/// One of the two plots.
-struct Curve {
-    id: &'static str,
-    title: &'static str,
-    latest: String,
-    colour: Color32,
-    points: Vec<[f64; 2]>,
-    height: RangeInclusive<f64>,
-    decades: bool,
+/// One plot over time.
+pub(super) struct Curve {
+    /// What tells it from the others.
+    pub id: &'static str,
+    /// What stands over it.
+    pub title: &'static str,
+    /// Its latest value.
+    pub latest: String,
+    /// Its line's colour.
+    pub colour: Color32,
+    /// Its line.
+    pub points: Vec<[f64; 2]>,
+    /// The range of the vertical axis.
+    pub height: RangeInclusive<f64>,
+    /// Whether its numbers are powers of ten.
+    pub decades: bool,
     /// The unit behind a number of the vertical axis.
-    unit: &'static str,
+    pub unit: &'static str,
 }
 
 /// What is marked in the part in view.
@@ -108,6 +115,10 @@ impl Panel for Plots {
         "Plots"
     }
 
+    fn concerns(&self, simulation: &Simulation) -> bool {
+        !is_column(simulation)
+    }
+
     fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -116,11 +127,7 @@ impl Panel for Plots {
         _out: &mut Vec<Request>,
     ) {
         let series = simulation.series();
-        let is_change = |command: &Command| matches!(command, Command::Set { .. });
-        let changes: Vec<f64> = (simulation.commands().iter())
-            .filter(|stamped| is_change(&stamped.command))
-            .map(|stamped| stamped.time)
-            .collect();
+        let changes = changes(simulation);
         self.curves_ui(
             ui,
             &Curves {
@@ -134,14 +141,27 @@ impl Panel for Plots {
     }
 }
 
+/// When parameters were changed [s], ascending.
+pub(super) fn changes(simulation: &Simulation) -> Vec<f64> {
+    let commands = simulation.commands().iter();
+    let changes = commands.filter(|stamped| matches!(stamped.command, Command::Set { .. }));
+    changes.map(|stamped| stamped.time).collect()
+}
+
+/// Height of a plot and number of its columns of pixels in `ui`.
+pub(super) fn size_of_plots(ui: &egui::Ui) -> (f32, usize) {
+    let height = (0.215 * ui.ctx().content_rect().height()).clamp(110.0, 300.0);
+    let columns = (ui.available_width().max(100.0) * ui.ctx().pixels_per_point()) as usize;
+    (height, columns)
+}
+
 impl Plots {
     /// Draws `curves` and the choice of what part of them is in view.
     pub fn curves_ui(&mut self, ui: &mut egui::Ui, curves: &Curves) {
         self.choice_ui(ui);
-        let height = (0.215 * ui.ctx().content_rect().height()).clamp(110.0, 300.0);
-        let columns = (ui.available_width().max(100.0) * ui.ctx().pixels_per_point()) as usize;
+        let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
-        let window = self.window(curves.time);
+        let window = self.span.window(curves.time);
         let marks = Marks::within(curves, &window, columns, palette);
         let angle = angle_curve(curves, &window, columns, palette);
         let first = curve_ui(ui, angle, &window, height, |plot| marks.angle_ui(plot));
@@ -151,53 +171,60 @@ impl Plots {
             marks.temperature_ui(plot, decades);
         });
         for response in [first, second] {
-            self.follow_pointer(&response, &window);
+            self.span.follow_pointer(&response, &window);
         }
     }
 
     fn choice_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.selectable_value(&mut self.span, Span::Recent, "Last 20 s")
-                .on_hover_text("Follow the run");
-            ui.selectable_value(&mut self.span, Span::All, "All")
-                .on_hover_text("From the start on");
-            if matches!(self.span, Span::Chosen(..)) {
-                ui.weak("double click to follow");
-            }
+            self.span.choice_ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.checkbox(&mut self.logarithmic, "log Tg")
                     .on_hover_text("Powers of ten for the granular temperature");
             });
         });
     }
+}
+
+impl Span {
+    /// The buttons that choose it.
+    pub fn choice_ui(&mut self, ui: &mut egui::Ui) {
+        ui.selectable_value(self, Self::Recent, "Last 20 s")
+            .on_hover_text("Follow the run");
+        ui.selectable_value(self, Self::All, "All")
+            .on_hover_text("From the start on");
+        if matches!(self, Self::Chosen(..)) {
+            ui.weak("double click to follow");
+        }
+    }
 
     /// The part of the run in view [s].
-    fn window(&self, time: &[f64]) -> RangeInclusive<f64> {
+    pub fn window(self, time: &[f64]) -> RangeInclusive<f64> {
         let start = time.first().copied().unwrap_or(0.0);
         let end = time.last().copied().unwrap_or(0.0);
-        match self.span {
-            Span::Recent => (end - RECENT).max(start)..=end.max(start + RECENT),
-            Span::All => start..=end.max(start + 1.0),
-            Span::Chosen(from, to) => from..=to,
+        match self {
+            Self::Recent => (end - RECENT).max(start)..=end.max(start + RECENT),
+            Self::All => start..=end.max(start + 1.0),
+            Self::Chosen(from, to) => from..=to,
         }
     }
 
     /// Lets the pointer move what is in view: drag to shift, Ctrl and scroll or pinch to zoom, double click to follow
     /// the run again.
-    fn follow_pointer(&mut self, response: &egui::Response, window: &RangeInclusive<f64>) {
+    pub fn follow_pointer(&mut self, response: &egui::Response, window: &RangeInclusive<f64>) {
         let (from, to) = (*window.start(), *window.end());
         let per_point = (to - from) / f64::from(response.rect.width().max(1.0));
         if response.double_clicked() {
-            self.span = Span::Recent;
+            *self = Self::Recent;
         } else if response.dragged() && response.drag_delta().x != 0.0 {
             let shift = -f64::from(response.drag_delta().x) * per_point;
-            self.span = Span::Chosen(from + shift, to + shift);
+            *self = Self::Chosen(from + shift, to + shift);
         }
         let zoom = f64::from(response.ctx.input(egui::InputState::zoom_delta));
         if let Some(pointer) = response.hover_pos().filter(|_| zoom != 1.0) {
             let at = from + f64::from(pointer.x - response.rect.left()) * per_point;
             let zoom = zoom.min((to - from) / SHORTEST);
-            self.span = Span::Chosen(at - (at - from) / zoom, at + (to - at) / zoom);
+            *self = Self::Chosen(at - (at - from) / zoom, at + (to - at) / zoom);
         }
     }
 }
@@ -267,7 +294,7 @@ fn on_axis(temperature: f64, decades: bool) -> f64 {
 }
 
 /// The range that shows all `points` with a little room, at least `smallest` high.
-fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
+pub(super) fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
     let values = || points.iter().map(|point| point[1]);
     let (low, high) = (
         values().fold(f64::INFINITY, f64::min),
@@ -281,7 +308,8 @@ fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
     middle - (0.5 + BELOW) * span..=middle + (0.5 + ABOVE) * span
 }
 
-fn curve_ui<'a>(
+/// Draws one plot with `marks` over its line; what the pointer does on it is in the answer.
+pub(super) fn curve_ui<'a>(
     ui: &mut egui::Ui,
     curve: Curve,
     window: &RangeInclusive<f64>,
@@ -486,9 +514,8 @@ mod tests {
 
     #[test]
     fn the_recent_window_follows_the_run_and_starts_with_full_length() {
-        let plots = Plots::default();
-        assert_eq!(plots.window(&[0.0, 3.0]), 0.0..=20.0);
-        assert_eq!(plots.window(&[0.0, 50.0]), 30.0..=50.0);
+        assert_eq!(Span::Recent.window(&[0.0, 3.0]), 0.0..=20.0);
+        assert_eq!(Span::Recent.window(&[0.0, 50.0]), 30.0..=50.0);
     }
 
     #[test]

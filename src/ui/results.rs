@@ -2,14 +2,14 @@
 
 use super::averages::Averages;
 use super::table::{Row, table_ui};
-use super::{Panel, Request, number};
-use crate::measure::{Measure, Sample, Series};
+use super::{Panel, Request, is_column, number};
+use crate::measure::{Measure, Sample, Summary};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
 
-/// What the latest sample shows, energies apart.
-const LATEST: [Measure; 11] = [
+/// What the latest sample shows where it has a meaning, energies of all grains apart.
+const LATEST: [Measure; 22] = [
     Measure::SurfaceAngle,
     Measure::GranularTemperature,
     Measure::CorotatingTemperature,
@@ -21,6 +21,17 @@ const LATEST: [Measure; 11] = [
     Measure::SurfaceCurvature,
     Measure::Bridges,
     Measure::DrumTorque,
+    Measure::FrontRadius,
+    Measure::FrontRadius99,
+    Measure::FrontRadius95,
+    Measure::ClusterRadius,
+    Measure::DepositHeight,
+    Measure::ApexHeight,
+    Measure::TranslationalEnergy,
+    Measure::RotationalEnergy,
+    Measure::FirstPairs,
+    Measure::MixedPairs,
+    Measure::SecondPairs,
 ];
 
 /// What the averages show, by the summary's names, and what they are called here.
@@ -33,6 +44,25 @@ const AVERAGES: [(&str, &str); 8] = [
     ("rise rate", "Rise rate"),
     ("granular temperature", "Temperature ⟨Tg⟩"),
     ("non-rigid share ta/ts", "Flowing share ta/ts"),
+];
+
+/// What stands in their place of a column.
+const COLLAPSE: [(&str, &str); 12] = [
+    (
+        "effective aspect ratio α_eff",
+        "Effective aspect ratio α_eff",
+    ),
+    ("particle friction μ_p", "Particle friction μ_p"),
+    ("solid fraction φ_i", "Solid fraction φ_i"),
+    ("run-out ℛ", "Run-out ℛ"),
+    ("H_∞/R_i", "Height H_∞/R_i"),
+    ("V_cone/V_init", "Cone volume V_cone/V_init"),
+    ("peak energy", "Peak energy per grain"),
+    ("peak time t_max", "Peak time t_max"),
+    ("rest time t_f", "Rest time t_f"),
+    ("T_max", "T_max"),
+    ("T_f", "T_f"),
+    ("flat radius", "Flat radius of the top"),
 ];
 
 /// Terms of the energy balance, and whether each is put in, kept or lost.
@@ -73,16 +103,25 @@ impl Panel for Results {
             ui.weak("Numbers appear with the first sample.");
             return;
         };
-        latest_ui(ui, &sample);
+        let concerns = |measure: Measure| {
+            let world = simulation.world();
+            world.is_none_or(|world| measure.concerns(world))
+        };
+        latest_ui(ui, &sample, concerns);
         ui.add_space(6.0);
-        self.averages_ui(ui, series);
+        if is_column(simulation) {
+            ui.label(RichText::new("The collapse so far").strong());
+            summary_ui(ui, self.averages.over(simulation, 0.0), &COLLAPSE);
+        } else {
+            self.averages_ui(ui, simulation);
+        }
         ui.add_space(6.0);
-        energy_ui(ui, &sample);
+        energy_ui(ui, &sample, concerns);
     }
 }
 
 impl Results {
-    fn averages_ui(&mut self, ui: &mut egui::Ui, series: &Series) {
+    fn averages_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
         ui.horizontal(|ui| {
             let label = ui.label(RichText::new("Averages from").strong());
             let field = egui::DragValue::new(&mut self.from)
@@ -94,47 +133,55 @@ impl Results {
                 "Only samples from this time on count. The paper leaves out the first 20 s.",
             );
         });
-        let summary = self.averages.over(series, self.from);
-        table_ui(
-            ui,
-            AVERAGES.iter().map(|&(key, name)| {
-                let entry = summary.entries.iter().find(|entry| entry.name == key);
-                let value = entry.and_then(|entry| entry.value).unwrap_or(f64::NAN);
-                Row {
-                    name: name.into(),
-                    value: match key {
-                        "avalanches" => number::fixed(value, 0),
-                        _ => number::with_unit(value, entry.map_or("1", |entry| entry.unit)),
-                    },
-                    hint: entry.map_or_else(String::new, |entry| entry.note.clone()),
-                }
-            }),
-        );
+        summary_ui(ui, self.averages.over(simulation, self.from), &AVERAGES);
     }
 }
 
-fn latest_ui(ui: &mut egui::Ui, sample: &Sample) {
-    ui.label(RichText::new(format!("At {:.2} s", sample.time)).strong());
+/// The entries of `summary` that `shown` lists, under the names it gives them.
+fn summary_ui(ui: &mut egui::Ui, summary: &Summary, shown: &[(&str, &str)]) {
     table_ui(
         ui,
-        LATEST.iter().map(|&measure| Row {
-            name: number::title(measure),
-            value: number::with_unit(sample.value(measure), measure.quantity().unit),
-            hint: measure.quantity().description.into(),
+        shown.iter().map(|&(key, name)| {
+            let entry = summary.entries.iter().find(|entry| entry.name == key);
+            let value = entry.and_then(|entry| entry.value).unwrap_or(f64::NAN);
+            Row {
+                name: name.into(),
+                value: match key {
+                    "avalanches" => number::fixed(value, 0),
+                    _ => number::with_unit(value, entry.map_or("1", |entry| entry.unit)),
+                },
+                hint: entry.map_or_else(String::new, |entry| entry.note.clone()),
+            }
         }),
     );
 }
 
+fn latest_ui(ui: &mut egui::Ui, sample: &Sample, concerns: impl Fn(Measure) -> bool) {
+    ui.label(RichText::new(format!("At {:.2} s", sample.time)).strong());
+    table_ui(
+        ui,
+        LATEST
+            .into_iter()
+            .filter(|m| concerns(*m))
+            .map(|measure| Row {
+                name: number::title(measure),
+                value: number::with_unit(sample.value(measure), measure.quantity().unit),
+                hint: measure.quantity().description.into(),
+            }),
+    );
+}
+
 /// The energy ledger with one prefix for all terms, so that they compare.
-fn energy_ui(ui: &mut egui::Ui, sample: &Sample) {
-    let largest = ENERGIES
-        .iter()
+fn energy_ui(ui: &mut egui::Ui, sample: &Sample, concerns: impl Fn(Measure) -> bool) {
+    let energies = ENERGIES.iter().filter(|(measure, _)| concerns(*measure));
+    let largest = energies
+        .clone()
         .map(|(measure, _)| sample.value(*measure).abs())
         .fold(0.0, f64::max);
     let (prefix, factor) = number::prefix_for(largest);
     ui.label(RichText::new(format!("Energy since the start [{prefix}J]")).strong());
     let in_prefix = |measure| number::fixed(sample.value(measure) * factor, 3);
-    let terms = ENERGIES.iter().map(|&(measure, role)| Row {
+    let terms = energies.map(|&(measure, role)| Row {
         name: format!("{} ({role})", number::title(measure)),
         value: in_prefix(measure),
         hint: measure.quantity().description.into(),

@@ -6,3 +6,4 @@ mod run;
 mod scene;
 mod solver;
 mod sweep;
+mod vtk;

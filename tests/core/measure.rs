@@ -1,6 +1,9 @@
 //! Measures, each on data of known answer, and the small worlds built by hand that they are tried on.
 
+mod collapse;
+mod column;
 mod contacts;
+mod deposit;
 mod energy;
 mod flow;
 mod packing;
@@ -9,11 +12,12 @@ mod series;
 mod surface;
 mod temperature;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use grainfall::scene::ContactLaw;
 use grainfall::world::{
-    Clock, Contact, Container, Grains, Ledger, Material, MaterialId, Materials, Motion,
-    PairProperties, Partner, Shape, Species, SpeciesId, Surface, Wall, World,
+    Clock, Contact, Container, Feature, FeatureContact, Grains, Ledger, Material, MaterialId,
+    Materials, Motion, PairProperties, Partner, Polyhedra, Polyhedron, Shape, Species, SpeciesId,
+    Surface, Wall, World,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -94,6 +98,47 @@ fn on_floor() -> World {
     empty(Shape::Planes, vec![floor])
 }
 
+/// A floor on which a column of this radius and height stood; the species `first` and `second` of materials of those names
+/// have the frictions `mu11`, `mu22` and 0.4 on the floor, mixed pairs the harmonic mean.
+fn column(radius: f64, height: f64, [mu11, mu22]: [f64; 2]) -> World {
+    let material = |name: &str| Material {
+        name: name.into(),
+        youngs_modulus: 1e8,
+        poisson_ratio: 0.2,
+        density: 2650.0,
+    };
+    let friction = |a: MaterialId, b: MaterialId| match (a.0, b.0) {
+        (0, 0) => mu11,
+        (1, 1) => mu22,
+        (0, 1) | (1, 0) => 2.0 * mu11 * mu22 / (mu11 + mu22),
+        _ => 0.4,
+    };
+    let list = ["first", "second", "floor"].map(material).to_vec();
+    let mut world = on_floor();
+    world.materials = Materials::new(list, |a, b| PairProperties {
+        restitution: 0.1,
+        friction: friction(a, b),
+        wet_friction: friction(a, b),
+        rolling_friction: 0.0,
+    });
+    world.container.walls[0].material = MaterialId(2);
+    world.container.shape = Shape::Column { radius, height };
+    world.species = [0, 1]
+        .map(|index| Species {
+            name: ["first", "second"][index].into(),
+            material: MaterialId(index as u16),
+        })
+        .to_vec();
+    world
+}
+
+/// Adds a sphere of the species `kind` to a column.
+fn put(world: &mut World, position: DVec3, radius: f64, kind: u16) {
+    world
+        .grains
+        .push_sphere(position, radius, 2650.0, SpeciesId(kind));
+}
+
 /// Adds a grain that touches something, as grains in a bed do.
 fn push(world: &mut World, position: DVec3, radius: f64) {
     world
@@ -117,6 +162,36 @@ fn touch(world: &mut World, grain: u32, partner: Partner, spring: DVec3) {
     });
 }
 
+/// Two bodies on the floor of a column, rounded by 0.2 and by 0.1 mm, without contacts.
+fn two_rounded_bodies() -> World {
+    let mut world = column(0.025, 0.05, [0.1, 0.4]);
+    let shapes = [2e-4, 1e-4].map(Polyhedron::sphere);
+    for (i, shape) in shapes.iter().enumerate() {
+        put(&mut world, DVec3::X * 0.01 * i as f64, shape.rounding, 0);
+    }
+    world.polyhedra = Some(Box::new(Polyhedra {
+        shapes: shapes.to_vec().into(),
+        shape: vec![0, 1],
+        orientation: vec![DQuat::IDENTITY; 2],
+        angular_momentum: vec![DVec3::ZERO; 2],
+        inertia: vec![DVec3::ONE; 2],
+        features: Vec::new(),
+    }));
+    world
+}
+
+/// The contact of corner `corner` of `grain` with face 0 of `partner`.
+fn feature(grain: u32, partner: Partner, corner: u16, overlap: f64) -> FeatureContact {
+    FeatureContact {
+        grain,
+        partner,
+        feature: Feature::VertexFace(corner, 0),
+        overlap,
+        spring: DVec3::ZERO,
+        stiffness: 2000.0,
+    }
+}
+
 /// The points of a cubic lattice in a frame turned by `angle` about z, filling a drum of `radius` and `width` up to `top`
 /// above its middle.
 fn lattice_in_drum(
@@ -126,7 +201,7 @@ fn lattice_in_drum(
     angle: f64,
     top: f64,
 ) -> impl Iterator<Item = DVec3> {
-    let turn = glam::DQuat::from_rotation_z(angle);
+    let turn = DQuat::from_rotation_z(angle);
     let across = (radius / spacing).ceil() as i32;
     let layers = (width / spacing).floor() as i32;
     (-across..=across)

@@ -1,7 +1,7 @@
 //! Coordination number and largest overlap of contacts placed by hand.
 
 use super::*;
-use grainfall::measure::{coordination_number, largest_overlap};
+use grainfall::measure::{contact_shares, coordination_number, largest_overlap};
 
 #[test]
 fn chain_of_four_touches_one_and_a_half_on_average() {
@@ -43,4 +43,45 @@ fn largest_overlap_counts_walls() {
 #[test]
 fn coordination_of_no_grains_is_undefined() {
     assert!(coordination_number(&on_floor()).is_nan());
+}
+
+#[test]
+fn pairs_of_two_species_are_counted_by_kind() {
+    let mut world = column(0.025, 0.05, [0.1, 0.4]);
+    for (i, kind) in [0, 0, 0, 1, 1].into_iter().enumerate() {
+        put(&mut world, DVec3::X * 0.002 * i as f64, 1e-3, kind);
+    }
+    // 11 three times, 12 four times, 22 once; one pair is open and the floor does not count.
+    for (a, b) in [
+        (0, 1),
+        (0, 2),
+        (1, 2),
+        (0, 3),
+        (1, 3),
+        (2, 3),
+        (2, 4),
+        (3, 4),
+        (0, 4),
+    ] {
+        touch(&mut world, a, Partner::Grain(b), DVec3::ZERO);
+    }
+    world.contacts[8].touching = false;
+    touch(&mut world, 4, Partner::Wall(0), DVec3::ZERO);
+    assert_eq!(contact_shares(&world), [0.375, 0.5, 0.125]);
+    world.species.push(world.species[0].clone());
+    assert!(contact_shares(&world).iter().all(|share| share.is_nan()));
+}
+
+#[test]
+fn overlap_of_polyhedra_is_relative_to_the_smaller_rounding() {
+    let mut world = two_rounded_bodies();
+    assert_eq!(largest_overlap(&world), 0.0);
+    let polyhedra = world.polyhedra.as_mut().unwrap();
+    polyhedra.features = vec![
+        feature(0, Partner::Grain(1), 0, 2e-6),
+        feature(0, Partner::Wall(0), 0, 3e-6),
+        feature(1, Partner::Wall(0), 0, 1.5e-6),
+    ];
+    // 2e-6 of 1e-4, 3e-6 of 2e-4, 1.5e-6 of 1e-4
+    assert_close(largest_overlap(&world), 0.02, 1e-16);
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use grainfall::measure::{EnergyLedger, elastic_energy};
+use grainfall::scene::FeatureRule;
 use grainfall::solver::Solver;
 
 /// Two grains of radii `r` and `2 r` that overlap by `overlap`, with tangential spring `xi`.
@@ -74,10 +75,59 @@ fn hooke_springs_store_half_their_stiffness_times_their_square() {
     world.law = ContactLaw::Hooke {
         normal_stiffness: 4000.0,
         tangential_stiffness: 2000.0,
-        features: grainfall::scene::FeatureRule::Full,
+        features: FeatureRule::Full,
     };
     let expected = 0.5 * 4000.0 * delta * delta + 0.5 * 2000.0 * xi * xi;
     assert_close(elastic_energy(&world) / expected, 1.0, 1e-11);
+}
+
+/// Bodies that touch in several places, under linear springs of 4000 and 2000 N/m.
+fn touching_in_places(rule: FeatureRule, features: Vec<FeatureContact>) -> World {
+    let mut world = two_rounded_bodies();
+    world.law = ContactLaw::Hooke {
+        normal_stiffness: 4000.0,
+        tangential_stiffness: 2000.0,
+        features: rule,
+    };
+    world.polyhedra.as_mut().unwrap().features = features;
+    world
+}
+
+#[test]
+fn features_of_polyhedra_store_each_its_own_energy() {
+    let mut first = feature(0, Partner::Grain(1), 0, 1e-5);
+    first.spring = DVec3::new(0.0, 3e-6, 4e-6);
+    let features = vec![
+        first,
+        feature(0, Partner::Grain(1), 1, 2e-5),
+        feature(0, Partner::Wall(0), 0, 3e-5),
+        feature(1, Partner::Wall(0), 0, -1e-5),
+    ];
+    let expected = 0.5 * 4000.0 * (1.0 + 4.0 + 9.0) * 1e-10 + 0.5 * 2000.0 * 25e-12;
+    let stored = elastic_energy(&touching_in_places(FeatureRule::Full, features));
+    assert_close(stored / expected, 1.0, 1e-14);
+}
+
+#[test]
+fn features_that_share_a_contact_store_one_contacts_energy() {
+    // Four equal ones press like one; their springs have a quarter of its stiffness each.
+    let equal = |corner| {
+        let mut contact = feature(0, Partner::Grain(1), corner, 1e-5);
+        (contact.spring, contact.stiffness) = (DVec3::Z * 5e-6, 500.0);
+        contact
+    };
+    let world = touching_in_places(FeatureRule::Shared, (0..4).map(equal).collect());
+    let expected = 0.5 * 4000.0 * 1e-10 + 0.5 * 2000.0 * 25e-12;
+    assert_close(elastic_energy(&world) / expected, 1.0, 1e-14);
+    // Overlaps of 1 and 3: Σδ²/(Σδ)² = 10/16 of the stiffness for each; another pair shares nothing with them.
+    let features = vec![
+        feature(0, Partner::Grain(1), 0, 1e-5),
+        feature(0, Partner::Grain(1), 1, 3e-5),
+        feature(0, Partner::Wall(0), 0, 2e-5),
+    ];
+    let expected = 0.5 * 4000.0 * (10.0 / 16.0 * 10.0 + 4.0) * 1e-10;
+    let stored = elastic_energy(&touching_in_places(FeatureRule::Shared, features));
+    assert_close(stored / expected, 1.0, 1e-14);
 }
 
 #[test]

@@ -1,0 +1,40 @@
+//! Profiles: `flow.csv`, that of the flowing layer over depth, averaged over the part of the run that results count, and
+//! `profile.csv`, that of a heap's height over the radius at the end.
+
+use crate::measure::{FlowProfile, HeightProfile};
+use std::io::{self, Write};
+
+/// The files' names.
+pub const FLOW: &str = "flow.csv";
+pub const PROFILE: &str = "profile.csv";
+
+/// Writes `profile` to `file`: depth below the middle of the surface, velocity along it there, samples averaged.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_flow(profile: &FlowProfile, file: &mut dyn Write) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(file);
+    writer.write_record(["depth [m]", "velocity [m/s]", "samples [1]"])?;
+    let rows = profile.depth.iter().zip(profile.velocity());
+    for ((depth, velocity), samples) in rows.zip(&profile.samples) {
+        writer.write_record([
+            format!("{depth:?}"),
+            format!("{velocity:?}"),
+            samples.to_string(),
+        ])?;
+    }
+    writer.flush()
+}
+
+/// Writes `profile` to `file`: distance from the column's axis, mean height over the azimuth there.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_profile(profile: &HeightProfile, file: &mut dyn Write) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(file);
+    writer.write_record(["radius [m]", "height [m]"])?;
+    for (radius, height) in profile.radius.iter().zip(&profile.height) {
+        writer.write_record([format!("{radius:?}"), format!("{height:?}")])?;
+    }
+    writer.flush()
+}

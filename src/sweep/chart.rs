@@ -1,0 +1,223 @@
+//! A plot as SVG: points and laws over two axes, each linear or logarithmic.
+
+use plotters::prelude::*;
+use std::ops::Range;
+
+/// Size of a plot in pixels.
+const SIZE: (u32, u32) = (760, 520);
+/// A logarithmic axis of fewer decades has labels between them.
+const FEW_DECADES: f64 = 2.5;
+
+/// A set of points or a curve with its name.
+pub struct Line {
+    /// Name in the legend.
+    pub name: String,
+    /// Its points, in the units of the axes.
+    pub points: Vec<(f64, f64)>,
+    /// A law or threshold: drawn as a grey curve without marks.
+    pub is_law: bool,
+}
+
+/// A plot: what it shows over what.
+pub struct Plot {
+    /// Its file below the folder of plots.
+    pub file: String,
+    /// What stands over it.
+    pub title: String,
+    /// Across.
+    pub x: Axis,
+    /// Upright.
+    pub y: Axis,
+    /// What is drawn.
+    pub lines: Vec<Line>,
+}
+
+/// An axis of a plot.
+#[derive(Clone)]
+pub struct Axis {
+    label: String,
+    logarithmic: bool,
+}
+
+impl Axis {
+    /// Values at their places.
+    pub fn linear(label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            logarithmic: false,
+        }
+    }
+
+    /// Values at the places of their powers of ten.
+    pub fn logarithmic(label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            logarithmic: true,
+        }
+    }
+
+    /// Where a value lies on it.
+    fn place(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            value.log10()
+        } else {
+            value
+        }
+    }
+
+    /// The text at a place of an axis that spans `span`.
+    fn text(&self, place: f64, span: f64) -> String {
+        if !self.logarithmic {
+            return text(place);
+        }
+        // Of many decades only whole ones are labelled.
+        if span > FEW_DECADES && (place - place.round()).abs() > 1e-6 {
+            return String::new();
+        }
+        let leading = 10_f64.powf(place.floor() - 1.0);
+        text((10_f64.powf(place) / leading).round() * leading)
+    }
+}
+
+fn text(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        0.01..1e4 => format!("{}", (value * 1e4).round() / 1e4),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+impl Line {
+    /// Results: marks, joined in the order of x; points that are not finite are left out.
+    pub fn results(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
+        let mut points: Vec<(f64, f64)> = points.into_iter().filter(finite).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self {
+            name: name.into(),
+            points,
+            is_law: false,
+        }
+    }
+
+    /// The law `value` between two places of a logarithmic axis.
+    pub fn law(name: &str, from: f64, to: f64, value: impl Fn(f64) -> f64) -> Self {
+        let at = |k: i32| from * (to / from).powf(f64::from(k) / 100.0);
+        Self {
+            name: name.to_owned(),
+            points: (0..=100).map(|k| (at(k), value(at(k)))).collect(),
+            is_law: true,
+        }
+    }
+}
+
+impl Plot {
+    /// Whether it has more to show than laws.
+    pub fn has_points(&self) -> bool {
+        self.lines
+            .iter()
+            .any(|line| !line.is_law && !line.points.is_empty())
+    }
+
+    /// Its range along one axis, with a margin.
+    fn range(&self, place: impl Fn(&(f64, f64)) -> f64) -> Range<f64> {
+        let places = self.lines.iter().flat_map(|line| &line.points).map(place);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+        let margin = (0.05 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
+        low - margin..high + margin
+    }
+
+    /// The corner with the fewest points, for the legend.
+    fn emptiest_corner(&self) -> SeriesLabelPosition {
+        let (x, y) = (
+            self.range(|(x, _)| self.x.place(*x)),
+            self.range(|(_, y)| self.y.place(*y)),
+        );
+        let across = |point: &(f64, f64)| (self.x.place(point.0) - x.start) / (x.end - x.start);
+        let upright = |point: &(f64, f64)| (self.y.place(point.1) - y.start) / (y.end - y.start);
+        let within = |right: bool, upper: bool| {
+            let points = self.lines.iter().flat_map(|line| &line.points);
+            let inside =
+                |p: &&(f64, f64)| (across(p) > 0.5) == right && (upright(p) > 0.6) == upper;
+            points.filter(inside).count()
+        };
+        let corners = [
+            (within(true, true), SeriesLabelPosition::UpperRight),
+            (within(false, true), SeriesLabelPosition::UpperLeft),
+            (within(true, false), SeriesLabelPosition::LowerRight),
+            (within(false, false), SeriesLabelPosition::LowerLeft),
+        ];
+        let emptiest = corners.into_iter().min_by_key(|(count, _)| *count);
+        emptiest.map_or(SeriesLabelPosition::UpperRight, |(_, corner)| corner)
+    }
+
+    /// As the text of an SVG file.
+    ///
+    /// # Errors
+    /// When it cannot be drawn.
+    pub fn draw(&self) -> Result<String, Box<dyn std::error::Error>> {
+        let mut text = String::new();
+        {
+            let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+            area.fill(&WHITE)?;
+            let x = self.range(|(x, _)| self.x.place(*x));
+            let y = self.range(|(_, y)| self.y.place(*y));
+            let mut chart = ChartBuilder::on(&area)
+                .caption(&self.title, ("sans-serif", 20))
+                .margin(14)
+                .x_label_area_size(44)
+                .y_label_area_size(72)
+                .build_cartesian_2d(x.clone(), y.clone())?;
+            chart
+                .configure_mesh()
+                .x_desc(&self.x.label)
+                .y_desc(&self.y.label)
+                .x_label_formatter(&|place| self.x.text(*place, x.end - x.start))
+                .y_label_formatter(&|place| self.y.text(*place, y.end - y.start))
+                .label_style(("sans-serif", 14))
+                .light_line_style(RGBColor(244, 244, 244))
+                .bold_line_style(RGBColor(224, 224, 224))
+                .draw()?;
+            for (index, line) in self.lines.iter().enumerate() {
+                let colour = colour(index, line.is_law);
+                let place = |(x, y): &(f64, f64)| (self.x.place(*x), self.y.place(*y));
+                let points: Vec<(f64, f64)> = line.points.iter().map(place).collect();
+                let curve = LineSeries::new(points.clone(), colour.stroke_width(2));
+                let drawn = chart.draw_series(curve)?;
+                if !line.name.is_empty() {
+                    drawn.label(&line.name).legend(move |(x, y)| {
+                        PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2))
+                    });
+                }
+                // Marks on results, none on curves.
+                if !line.is_law && points.len() <= 16 {
+                    chart.draw_series(
+                        points
+                            .iter()
+                            .map(|point| Circle::new(*point, 4, colour.filled())),
+                    )?;
+                }
+            }
+            chart
+                .configure_series_labels()
+                .label_font(("sans-serif", 14))
+                .background_style(WHITE.mix(0.85))
+                .border_style(RGBColor(200, 200, 200))
+                .position(self.emptiest_corner())
+                .draw()?;
+            area.present()?;
+        }
+        Ok(text)
+    }
+}
+
+fn colour(index: usize, is_law: bool) -> RGBColor {
+    if is_law {
+        return RGBColor(120, 120, 120);
+    }
+    let palette = colorous::TABLEAU10;
+    let colorous::Color { r, g, b } = palette[index % palette.len()];
+    RGBColor(r, g, b)
+}

@@ -1,0 +1,452 @@
+//! The plots of a sweep of columns: Figs. 5 to 14 and 16 of Man et al. 2023, with its laws drawn in.
+//!
+//! Cases that differ in height alone share a colour. Where the mixing ratio is varied, plots over the aspect ratio have one
+//! panel, a file of its own, for each ratio, as in the paper.
+
+use super::Sweep;
+use super::case::Outcome;
+use super::chart::{Axis, Line, Plot};
+use crate::measure::{
+    CRITICAL_ASPECT_RATIO, Measure, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
+    TALL_REST_TIME_LAW, cone_volume_law, contact_shares_law, run_out_law,
+};
+
+/// The varied key that makes the points of a curve.
+const HEIGHT: &str = "height";
+/// The varied key that makes the panels of a figure.
+const MIX: &str = "mix";
+/// 1 g cm²/s², the paper's unit of energy [J].
+const PAPERS_ENERGY: f64 = 1e-7;
+/// Part of the axis of effective aspect ratios in which the laws are drawn.
+const LAWS_FROM: f64 = 0.4;
+const LAWS_TO: f64 = 25.0;
+
+const ASPECT: &str = "aspect ratio α";
+const EFFECTIVE: &str = "effective aspect ratio α_eff";
+const PACKED: &str = "φ_i^0.5 α_eff";
+const RUN_OUT: &str = "run-out ℛ";
+
+/// Every plot of these outcomes.
+pub fn column_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
+    let figures = Figures { sweep, outcomes };
+    let mut plots = figures.courses();
+    plots.extend(figures.panels("run-out-aspect", RUN_OUT, run_out_slopes));
+    plots.extend(figures.panels("height-aspect", "H_∞/R_i", height_slopes));
+    plots.extend(figures.over_effective());
+    plots.extend(outcomes.iter().map(shares));
+    plots
+}
+
+struct Figures<'a> {
+    sweep: &'a Sweep,
+    outcomes: &'a [Outcome],
+}
+
+impl Figures<'_> {
+    /// The values of a case but those of the keys `without`, as `mix=0.1 mu22=0.4`.
+    fn label(&self, outcome: &Outcome, without: &[&str]) -> String {
+        let varied = self.sweep.variations.iter().zip(&outcome.case.values);
+        let kept = varied.filter(|(variation, _)| !without.contains(&variation.key.as_str()));
+        let texts: Vec<String> = kept
+            .map(|(v, value)| format!("{}={value}", v.key))
+            .collect();
+        texts.join(" ")
+    }
+
+    fn varies(&self, key: &str) -> bool {
+        self.sweep.variations.iter().any(|v| v.key == key)
+    }
+
+    /// The outcomes by their labels without these keys, in the order in which the labels first occur.
+    fn groups<'b>(
+        &self,
+        outcomes: &[&'b Outcome],
+        without: &[&str],
+    ) -> Vec<(String, Vec<&'b Outcome>)> {
+        let mut groups: Vec<(String, Vec<&Outcome>)> = Vec::new();
+        for &outcome in outcomes {
+            let label = self.label(outcome, without);
+            match groups.iter_mut().find(|(known, _)| *known == label) {
+                Some((_, members)) => members.push(outcome),
+                None => groups.push((label, vec![outcome])),
+            }
+        }
+        groups
+    }
+
+    /// A line of the result `y` over the result `x` for each group of cases that differ in height alone.
+    fn lines(&self, outcomes: &[&Outcome], hidden: &[&str], x: &str, y: &str) -> Vec<Line> {
+        let without: Vec<&str> = hidden.iter().copied().chain([HEIGHT]).collect();
+        let line = |(label, members): (String, Vec<&Outcome>)| {
+            let points = members
+                .iter()
+                .filter_map(|outcome| outcome.result(x).zip(outcome.result(y)));
+            let positive = points.filter(|(x, y)| *x > 0.0 && *y > 0.0);
+            Line::results(or(label, "cases"), positive)
+        };
+        let groups = self.groups(outcomes, &without).into_iter();
+        groups.map(line).collect()
+    }
+
+    /// The result `y` over the aspect ratio (Figs. 8, 9 and 12), one panel for each mixing ratio.
+    fn panels(&self, file: &str, y: &str, laws: fn(&[Line]) -> Vec<Line>) -> Vec<Plot> {
+        let all: Vec<&Outcome> = self.outcomes.iter().collect();
+        let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
+        let others: Vec<&str> = keys.filter(|key| *key != MIX).collect();
+        let panel = |(label, members): (String, Vec<&Outcome>)| {
+            let mut lines = self.lines(&members, &[MIX], ASPECT, y);
+            lines.extend(laws(&lines));
+            Plot {
+                file: format!("{}.svg", named(file, &label)),
+                title: format!("{y} over α {label}"),
+                x: Axis::logarithmic("aspect ratio α"),
+                y: Axis::logarithmic(y),
+                lines,
+            }
+        };
+        let groups = self.groups(&all, &others).into_iter();
+        groups.map(panel).collect()
+    }
+
+    /// Run-out, volume of the cone and times over the effective aspect ratio (Figs. 11, 13, 14, 16).
+    fn over_effective(&self) -> Vec<Plot> {
+        let all: Vec<&Outcome> = self.outcomes.iter().collect();
+        let plot = |file: &str, x: &str, y: &str, laws: Vec<Line>| {
+            let mut lines = self.lines(&all, &[], x, y);
+            lines.extend(laws);
+            Plot {
+                file: format!("{file}.svg"),
+                title: format!("{y} over {x}"),
+                x: Axis::logarithmic(x),
+                y: Axis::logarithmic(y),
+                lines,
+            }
+        };
+        let run_out = || {
+            let name = "α_eff^1.35, α_eff^0.5 above 3.5";
+            Line::law(name, LAWS_FROM, LAWS_TO, run_out_law)
+        };
+        let cone = Line::law(
+            "1.2 α_eff^0.9, 7.5 α_eff^−0.6 above 3.5 (Eq. 4.4)",
+            LAWS_FROM,
+            LAWS_TO,
+            cone_volume_law,
+        );
+        let root =
+            |name, factor, from, to| Line::law(name, from, to, move |x| factor * f64::sqrt(x));
+        let (break_at, tall) = (CRITICAL_ASPECT_RATIO, TALL_ASPECT_RATIO);
+        let peak = root("0.92 √α_eff", PEAK_TIME_LAW, LAWS_FROM, LAWS_TO);
+        let short = root("4.5 √α_eff below 3.5", REST_TIME_LAW, LAWS_FROM, break_at);
+        let high = root("3.0 √α_eff above 13", TALL_REST_TIME_LAW, tall, LAWS_TO);
+        vec![
+            plot("run-out", EFFECTIVE, RUN_OUT, vec![run_out()]),
+            plot("run-out-packed", PACKED, RUN_OUT, Vec::new()),
+            plot("cone-volume", EFFECTIVE, "V_cone", Vec::new()),
+            plot("cone-volume-ratio", EFFECTIVE, "V_cone/V_init", vec![cone]),
+            plot("peak-time", EFFECTIVE, "T_max", vec![peak]),
+            plot("rest-time", EFFECTIVE, "T_f", vec![short, high]),
+        ]
+    }
+
+    /// Front and energy over time (Figs. 5 to 7): a plot of all heights for each group, or of all cases where the height is
+    /// not varied.
+    fn courses(&self) -> Vec<Plot> {
+        let all: Vec<&Outcome> = self.outcomes.iter().collect();
+        let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
+        let others: Vec<&str> = keys.filter(|key| *key != HEIGHT).collect();
+        let (together, hidden) = if self.varies(HEIGHT) {
+            (self.groups(&all, &[HEIGHT]), others)
+        } else {
+            (vec![(String::new(), all)], Vec::new())
+        };
+        let plot =
+            |(label, members): &(String, Vec<&Outcome>), file: &str, y: &str, value: Value| {
+                let line = |outcome: &&Outcome| {
+                    let name = or(self.label(outcome, &hidden), "case");
+                    Line::results(name, over_time(outcome, value))
+                };
+                Plot {
+                    file: format!("courses/{}.svg", named(file, label)),
+                    title: format!("{y} {label}"),
+                    x: Axis::linear("time [s]"),
+                    y: Axis::linear(y),
+                    lines: members.iter().map(line).collect(),
+                }
+            };
+        let both = |group| {
+            [
+                plot(group, "front", "front radius R [mm]", front),
+                plot(
+                    group,
+                    "energy",
+                    "kinetic energy per grain [g cm²/s²]",
+                    energy,
+                ),
+            ]
+        };
+        together.iter().flat_map(both).collect()
+    }
+}
+
+/// A number that each sample of a case gives, by the sample's index.
+type Value = fn(&Outcome, usize) -> f64;
+
+fn front(outcome: &Outcome, sample: usize) -> f64 {
+    1e3 * outcome.series.column(Measure::FrontRadius)[sample]
+}
+
+fn energy(outcome: &Outcome, sample: usize) -> f64 {
+    let of = |measure: Measure| outcome.series.column(measure)[sample];
+    (of(Measure::TranslationalEnergy) + of(Measure::RotationalEnergy)) / PAPERS_ENERGY
+}
+
+fn over_time(outcome: &Outcome, value: Value) -> Vec<(f64, f64)> {
+    let times = outcome.series.time().iter().enumerate();
+    times.map(|(k, time)| (*time, value(outcome, k))).collect()
+}
+
+/// Shares of the pairs of species over time, with those that chance gives (Fig. 10).
+fn shares(outcome: &Outcome) -> Plot {
+    let name = &outcome.case.name;
+    let end = outcome.series.time().last().copied().unwrap_or(0.0);
+    let chance = contact_shares_law(outcome.result("second share P_2").unwrap_or(0.0));
+    let kinds: [(&str, Value); 3] = [
+        ("P11", |o, k| o.series.column(Measure::FirstPairs)[k]),
+        ("P12", |o, k| o.series.column(Measure::MixedPairs)[k]),
+        ("P22", |o, k| o.series.column(Measure::SecondPairs)[k]),
+    ];
+    let mut lines: Vec<Line> = kinds
+        .iter()
+        .map(|(kind, value)| Line::results(*kind, over_time(outcome, *value)))
+        .collect();
+    // One entry in the legend names all three.
+    let names = ["by chance (Eq. 4.1)", "", ""];
+    lines.extend(chance.into_iter().zip(names).map(|(share, name)| Line {
+        name: name.into(),
+        points: vec![(0.0, share), (end, share)],
+        is_law: true,
+    }));
+    Plot {
+        file: format!("courses/{name}-contacts.svg"),
+        title: format!("contact shares, {name}"),
+        x: Axis::linear("time [s]"),
+        y: Axis::linear("share of the touching pairs"),
+        lines,
+    }
+}
+
+/// ℛ ∝ α and ∝ α^0.5 (Fig. 8).
+fn run_out_slopes(lines: &[Line]) -> Vec<Line> {
+    slopes(lines, [("∝ α", 1.0), ("∝ α^0.5", 0.5)])
+}
+
+/// `H_∞ ∝ α` and `∝ α^−0.25` (Fig. 12).
+fn height_slopes(lines: &[Line]) -> Vec<Line> {
+    slopes(lines, [("∝ α", 1.0), ("∝ α^−0.25", -0.25)])
+}
+
+/// A power law through the lowest column's point and one through the highest one's, each over a third of the range between.
+fn slopes(lines: &[Line], [low, high]: [(&str, f64); 2]) -> Vec<Line> {
+    let points = || lines.iter().flat_map(|line| &line.points);
+    let first = points().min_by(|a, b| a.0.total_cmp(&b.0));
+    let last = points().max_by(|a, b| a.0.total_cmp(&b.0));
+    let (Some(&first), Some(&last)) = (first, last) else {
+        return Vec::new();
+    };
+    if last.0 <= first.0 {
+        return Vec::new();
+    }
+    let third = (last.0 / first.0).cbrt();
+    let through = |(name, exponent): (&str, f64), point: (f64, f64), from: f64, to: f64| {
+        Line::law(name, from, to, move |x| {
+            point.1 * (x / point.0).powf(exponent)
+        })
+    };
+    vec![
+        through(low, first, first.0, first.0 * third),
+        through(high, last, last.0 / third, last.0),
+    ]
+}
+
+/// A file's name with what tells it from the others of its kind.
+fn named(file: &str, label: &str) -> String {
+    let label = label.replace(['/', '\\'], "-").replace(' ', "_");
+    if label.is_empty() {
+        file.to_owned()
+    } else {
+        format!("{file}-{label}")
+    }
+}
+
+fn or(label: String, otherwise: &str) -> String {
+    if label.is_empty() {
+        otherwise.to_owned()
+    } else {
+        label
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::CaseEnding;
+    use super::super::{Case, Variation};
+    use super::*;
+    use crate::measure::{FlowProfile, Sample, Series, Summary, SummaryEntry};
+    use crate::scene::Scene;
+    use crate::simulation::BedStore;
+
+    const SCENE: &str = r#"(title: "Any", materials: {"a": ()}, container: Nothing, grains: List([
+        (position: (0, 0, 0), radius: 1, material: "a")]))"#;
+
+    fn variation(text: &str) -> Variation {
+        Variation::parse(text).unwrap()
+    }
+
+    fn sweep(variations: &[&str]) -> Sweep {
+        Sweep {
+            name: "column".into(),
+            scene: Scene::parse("any", SCENE).unwrap(),
+            settings: Vec::new(),
+            variations: variations.iter().map(|text| variation(text)).collect(),
+            out: "nowhere".into(),
+            jobs: 1,
+            beds: BedStore::none(),
+        }
+    }
+
+    /// A case of these varied values that follows the laws: `alpha` high, of the effective aspect ratio 1.2 times that.
+    fn outcome(values: &[&str], alpha: f64) -> Outcome {
+        let effective = 1.2 * alpha;
+        let entries = [
+            (ASPECT, alpha),
+            (EFFECTIVE, effective),
+            (PACKED, 0.8_f64.sqrt() * effective),
+            (RUN_OUT, run_out_law(effective)),
+            ("H_∞/R_i", alpha.min(0.8)),
+            ("V_cone", 1e-5 * alpha),
+            ("V_cone/V_init", cone_volume_law(effective)),
+            ("T_max", PEAK_TIME_LAW * effective.sqrt()),
+            ("T_f", REST_TIME_LAW * effective.sqrt()),
+            ("second share P_2", 0.3),
+        ];
+        let mut series = Series::default();
+        for step in 0..30 {
+            let time = step as f64 * 0.02;
+            let mut sample = [f64::NAN; Measure::COUNT];
+            sample[Measure::FrontRadius as usize] = 0.025 + 0.1 * time;
+            sample[Measure::TranslationalEnergy as usize] = 1e-6 * time;
+            sample[Measure::RotationalEnergy as usize] = 1e-7 * time;
+            sample[Measure::FirstPairs as usize] = 0.48;
+            sample[Measure::MixedPairs as usize] = 0.43;
+            sample[Measure::SecondPairs as usize] = 0.09;
+            series.push(Sample {
+                step,
+                time,
+                values: sample,
+            });
+        }
+        let entry = |(name, value): (&str, f64)| SummaryEntry {
+            name: name.into(),
+            unit: "1",
+            value: Some(value),
+            note: String::new(),
+        };
+        Outcome {
+            case: Case {
+                name: values.join("_"),
+                values: values.iter().map(|&value| value.to_owned()).collect(),
+                scene: Scene::parse("any", SCENE).unwrap(),
+                script: Vec::new(),
+                time_step: 1e-6,
+            },
+            ending: CaseEnding::Done,
+            results: Summary {
+                from: 0.0,
+                to: 0.58,
+                samples: 30,
+                entries: entries.into_iter().map(entry).collect(),
+            },
+            series,
+            flow: FlowProfile::default(),
+            hash: "0".repeat(32),
+        }
+    }
+
+    fn of<'a>(plots: &'a [Plot], file: &str) -> &'a Plot {
+        let files = || {
+            plots
+                .iter()
+                .map(|plot| plot.file.as_str())
+                .collect::<Vec<_>>()
+        };
+        let mut plots = plots.iter();
+        let found = plots.find(|plot| plot.file == file);
+        found.unwrap_or_else(|| panic!("no {file} among {:?}", files()))
+    }
+
+    fn names(plot: &Plot) -> Vec<&str> {
+        plot.lines.iter().map(|line| line.name.as_str()).collect()
+    }
+
+    #[test]
+    fn figures_have_a_line_per_mixture_and_a_point_per_height() {
+        let sweep = sweep(&["mix=0.1,0.3", "mu22=0.2,0.4", "height=1cm,5cm,30cm"]);
+        let mut outcomes = Vec::new();
+        for mix in ["0.1", "0.3"] {
+            for friction in ["0.2", "0.4"] {
+                for (height, alpha) in [("1cm", 0.4), ("5cm", 2.0), ("30cm", 12.0)] {
+                    outcomes.push(outcome(&[mix, friction, height], alpha));
+                }
+            }
+        }
+        let plots = column_plots(&sweep, &outcomes);
+        let run_out = of(&plots, "run-out.svg");
+        assert_eq!(run_out.lines.len(), 4 + 1);
+        assert_eq!(names(run_out)[0], "mix=0.1 mu22=0.2");
+        // Over α_eff every point lies on the law.
+        for (x, y) in &run_out.lines[0].points {
+            assert!((y / run_out_law(*x) - 1.0).abs() < 1e-14);
+        }
+        let panel = of(&plots, "run-out-aspect-mix=0.3.svg");
+        assert_eq!(names(panel)[..2], ["mu22=0.2", "mu22=0.4"]);
+        assert_eq!(panel.lines[1].points.len(), 3);
+        let courses = of(&plots, "courses/energy-mix=0.1_mu22=0.4.svg");
+        assert_eq!(names(courses), ["height=1cm", "height=5cm", "height=30cm"]);
+        let last = courses.lines[0].points[29];
+        assert!((last.1 - 11.0 * 0.58).abs() < 1e-12, "in g cm²/s²");
+        let contacts = of(&plots, "courses/0.1_0.2_1cm-contacts.svg");
+        assert_eq!(contacts.lines.len(), 6);
+        assert!((contacts.lines[4].points[0].1 - 0.42).abs() < 1e-15);
+        for plot in &plots {
+            assert!(plot.has_points(), "{}", plot.file);
+            let text = plot.draw().unwrap();
+            assert!(
+                text.starts_with("<svg") && !text.contains("NaN"),
+                "{}",
+                plot.file
+            );
+        }
+        let files: std::collections::HashSet<_> = plots.iter().map(|plot| &plot.file).collect();
+        assert_eq!(files.len(), plots.len());
+    }
+
+    #[test]
+    fn heights_that_are_not_varied_leave_one_panel_and_one_course_of_all() {
+        let sweep = sweep(&["mu11=0.1,0.4"]);
+        let outcomes = [outcome(&["0.1"], 2.0), outcome(&["0.4"], 2.0)];
+        let plots = column_plots(&sweep, &outcomes);
+        let front = of(&plots, "courses/front.svg");
+        assert_eq!(names(front), ["mu11=0.1", "mu11=0.4"]);
+        // All at one aspect ratio: no slope can be drawn.
+        assert_eq!(of(&plots, "run-out-aspect.svg").lines.len(), 2);
+    }
+
+    #[test]
+    fn a_single_case_is_drawn_and_what_did_not_rest_has_no_time() {
+        let mut moving = outcome(&["5cm"], 2.0);
+        moving.results.entries.retain(|entry| entry.name != "T_f");
+        let plots = column_plots(&sweep(&["height=5cm"]), &[moving]);
+        assert!(!of(&plots, "rest-time.svg").has_points());
+        assert_eq!(names(of(&plots, "run-out.svg"))[0], "cases");
+    }
+}
