@@ -18,11 +18,12 @@
 //!     + SimulationPlugin        + the same SimulationPlugin
 //! ```
 //!
-//! A module names only modules above it. `scene`, `world`, `solver` and `measure` know nothing of Bevy; `view` and `ui`
+//! A module names only modules above it. `geometry`, `scene`, `world`, `solver` and `measure` know nothing of Bevy; `view` and `ui`
 //! stand behind the Cargo feature `desktop`, on by default.
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`geometry`] | convex solids: cutting, integrals, hulls |
 //! | [`scene`] | what was asked for: scene files, defaults, validation |
 //! | [`world`] | state at one instant, in columns; snapshot, restore, hash |
 //! | [`solver`] | how the state advances: time step, neighbours, force laws, integration, faults |
@@ -42,6 +43,7 @@
 //! State and forces are `f64`; `f32` only on the way to the screen.
 
 pub mod files;
+pub mod geometry;
 pub mod headless;
 pub mod measure;
 pub mod scene;

@@ -7,8 +7,9 @@ use super::error::Problem;
 use super::lattice::Lattice;
 use super::mixture::size_classes;
 use super::{
-    ContactLaw, PairOverride, Scene, SceneContainer, SceneGrain, SceneGrains, SceneLiquid,
-    SceneMaterial, ScenePlane, SceneSpecies, SmallestGap, TimeStep,
+    ContactLaw, PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain,
+    SceneGrains, SceneLiquid, SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube,
+    SmallestGap, TimeStep,
 };
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -18,10 +19,20 @@ type Checked = Result<(), Problem>;
 
 /// Grains a scene may have: about 2 kB each in memory.
 const MOST_GRAINS: usize = 1_000_000;
+/// Polyhedra a scene may have: up to 20 kB each in memory.
+const MOST_POLYHEDRA: usize = 200_000;
+/// Voronoi cells that are made to choose the grains from, in numbers of [`MOST_POLYHEDRA`].
+const CELLS_PER_GRAIN: usize = 2;
+/// Points of which a grain may be the hull.
+pub(super) const MOST_POINTS: usize = 60;
+/// Sides that a prism may have.
+pub(super) const MOST_SIDES: u32 = 30;
 /// Materials, species, planes or pairs a scene may have.
 const MOST_KINDS: usize = 200;
 /// States a run may write.
 const MOST_OUTPUTS: f64 = 1e6;
+/// Overlap of a listed polyhedron with a wall that is still a contact, in rounding radii.
+const DEEPEST_ROUNDING: f64 = 0.5;
 /// Overlap of two listed grains, or of one with a wall, that is still a contact, in radii of the smaller grain.
 const LARGEST_OVERLAP: f64 = 0.1;
 
@@ -62,6 +73,18 @@ const RESTITUTION: Rule = Rule {
 const FRICTION: Rule = Rule {
     accepts: |x| (0.0..=10.0).contains(&x),
     expected: "a number between 0 and 10",
+};
+const TUBE_SPEED: Rule = Rule {
+    accepts: |x| (0.0..=100.0).contains(&x),
+    expected: "a speed upwards between 0 and 100 m/s",
+};
+const CELL: Rule = Rule {
+    accepts: |x| (1e-5..=10.0).contains(&x),
+    expected: "the size of a lattice cell between 1e-5 m and 10 m",
+};
+const ROUNDING: Rule = Rule {
+    accepts: |x| (1e-7..=1.0).contains(&x),
+    expected: "a rounding radius between 1e-7 m and 1 m",
 };
 const FRACTION: Rule = Rule {
     accepts: |x| x > 0.0 && x <= 1.0,
@@ -124,7 +147,11 @@ impl Scene {
         self.check_container_materials()?;
         match &self.grains {
             SceneGrains::Fill { count, species, .. } => self.check_filling(*count, species)?,
+            SceneGrains::Voronoi(cells) => self.check_cells(cells)?,
             SceneGrains::List(grains) => self.check_list(grains)?,
+        }
+        if self.is_polyhedral() {
+            self.check_suits_polyhedra()?;
         }
         self.liquid.as_ref().map_or(Ok(()), check_liquid)?;
         vector(self.gravity, 1000.0, "m/s²", || "gravity".to_owned())?;
@@ -137,6 +164,12 @@ impl Scene {
             SceneContainer::Nothing => Ok(()),
             SceneContainer::Drum { material, .. } | SceneContainer::Box { material, .. } => {
                 self.check_material(material, || "container.material".to_owned())
+            }
+            SceneContainer::Column { material, tube, .. } => {
+                self.check_material(material, || "container.material".to_owned())?;
+                tube.as_ref().map_or(Ok(()), |tube| {
+                    self.check_material(&tube.material, || "container.tube.material".to_owned())
+                })
             }
             SceneContainer::Planes(planes) => {
                 planes.iter().enumerate().try_for_each(|(index, plane)| {
@@ -155,22 +188,116 @@ impl Scene {
     }
 
     fn check_filling(&self, count: usize, species: &[SceneSpecies]) -> Checked {
-        check_number("grains.species", "species", species.len())?;
+        self.check_species()?;
         for (index, kind) in species.iter().enumerate() {
-            let path = |key: &str| format!("grains.species[{index}].{key}");
-            check_name(&kind.name, || path("name"))?;
-            let twin = species[..index].iter().any(|other| other.name == kind.name);
-            if twin {
-                return Err(twice(path("name"), "a species", &kind.name)
-                    .advise("Species of one material need a `name` each"));
-            }
-            RADIUS.check(kind.radius, || path("radius"))?;
-            SHARE.check(kind.share, || path("share"))?;
-            self.check_material(&kind.material, || path("material"))?;
+            RADIUS.check(kind.radius, || format!("grains.species[{index}].radius"))?;
         }
-        check_shares(species)?;
         check_count(count)?;
         self.check_room(count, species)
+    }
+
+    /// Names, materials and shares of the species of a filling.
+    fn check_species(&self) -> Checked {
+        let species = self.species();
+        check_number("grains.species", "species", species.len())?;
+        for (index, (name, material)) in species.iter().enumerate() {
+            let path = |key: &str| format!("grains.species[{index}].{key}");
+            check_name(name, || path("name"))?;
+            if species[..index].iter().any(|other| other.0 == *name) {
+                return Err(twice(path("name"), "a species", name)
+                    .advise("Species of one material need a `name` each"));
+            }
+            SHARE.check(self.share(index), || path("share"))?;
+            self.check_material(material, || path("material"))?;
+        }
+        let sum = (0..species.len()).map(|index| self.share(index)).sum();
+        check_shares(sum)
+    }
+
+    fn check_cells(&self, cells: &SceneCells) -> Checked {
+        self.check_species()?;
+        CELL.check(cells.cell, || "grains.cell".to_owned())?;
+        ROUNDING.check(cells.rounding, || "grains.rounding".to_owned())?;
+        if !(1e-3..=0.2).contains(&(cells.rounding / cells.cell)) {
+            return Err(Problem::value(
+                "grains.rounding",
+                format!("{} m", cells.rounding),
+                format!(
+                    "between a thousandth and a fifth of the cell of {} m",
+                    cells.cell
+                ),
+            ));
+        }
+        fraction("grains.solid_fraction", cells.solid_fraction)?;
+        fraction("grains.bulk_fraction", cells.bulk_fraction)?;
+        self.check_bed(cells)
+    }
+
+    fn check_bed(&self, cells: &SceneCells) -> Checked {
+        let column = matches!(self.container, SceneContainer::Column { .. });
+        if column && cells.bulk_fraction < 1.0 {
+            return Err(Problem::new(
+                "grains.bulk_fraction",
+                "is given for a column, which is as high as its `height` says",
+                "the `height` of the container alone",
+            ));
+        }
+        if !column && volume(&self.container).is_err() {
+            return Err(Problem::new(
+                "grains",
+                "are Voronoi cells, but the container is open",
+                "a `Column`, a `Box` or a `Drum` to fill, or the grains as a `List`",
+            ));
+        }
+        let (all, grains) = (
+            cells.cell_count(&self.container),
+            cells.grain_count(&self.container),
+        );
+        if grains >= 1 && grains <= MOST_POLYHEDRA && all <= CELLS_PER_GRAIN * MOST_POLYHEDRA {
+            return Ok(());
+        }
+        Err(Problem::new(
+            "grains",
+            format!("are {grains} of {all} Voronoi cells"),
+            format!(
+                "between 1 and {MOST_POLYHEDRA} polyhedra, up to 20 kB of memory each, of {} cells at most",
+                CELLS_PER_GRAIN * MOST_POLYHEDRA
+            ),
+        )
+        .advise("Take larger cells or a smaller container"))
+    }
+
+    /// What only spheres can have.
+    fn check_suits_polyhedra(&self) -> Checked {
+        if self.law == ContactLaw::HertzMindlin {
+            return Err(Problem::new(
+                "law",
+                "is the one of spheres, but the scene has polyhedra",
+                "`Hooke(normal_stiffness: …, tangential_stiffness: …)`, or no `law` for the springs of Man et al. 2023",
+            ));
+        }
+        if self.liquid.is_some() {
+            return Err(Problem::new(
+                "liquid",
+                "makes bridges between spheres, but the scene has polyhedra",
+                "no `liquid`",
+            ));
+        }
+        for material in &self.materials {
+            if material.rolling_friction != 0.0 {
+                let path = format!("materials.{}.rolling_friction", material.name);
+                return Err(no_rolling(path, material.rolling_friction));
+            }
+        }
+        for (index, pair) in self.pairs.iter().enumerate() {
+            if let Some(value) = pair.rolling_friction.filter(|&value| value != 0.0) {
+                return Err(no_rolling(
+                    format!("pairs[{index}].rolling_friction"),
+                    value,
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn check_room(&self, count: usize, species: &[SceneSpecies]) -> Checked {
@@ -207,8 +334,10 @@ impl Scene {
 
     fn check_list(&self, grains: &[SceneGrain]) -> Checked {
         check_count(grains.len())?;
+        let mut bodies = Vec::with_capacity(grains.len());
         for (index, grain) in grains.iter().enumerate() {
             let path = |key: &str| format!("grains[{index}].{key}");
+            check_shape(&grain.shape, path)?;
             RADIUS.check(grain.radius, || path("radius"))?;
             vector(grain.position, 1e5, "m", || path("position"))?;
             vector(grain.velocity, 1e5, "m/s", || path("velocity"))?;
@@ -217,9 +346,11 @@ impl Scene {
                 LIQUID_VOLUME.check(film, || path("film"))?;
             }
             self.check_material(&grain.material, || path("material"))?;
-            check_inside(&self.container, grain, || path("position"))?;
+            let body = grain.body().ok_or_else(|| too_thin(grain, path("shape")))?;
+            check_inside(&self.container, grain, &body, || path("position"))?;
+            bodies.push(body);
         }
-        check_overlaps(grains)
+        check_overlaps(grains, &bodies)
     }
 
     fn check_times(&self) -> Checked {
@@ -255,11 +386,13 @@ pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
     match container {
         SceneContainer::Drum { radius, width, .. } => Ok(PI * radius * radius * width),
         SceneContainer::Box { min, max, .. } => Ok((*max - *min).element_product()),
-        SceneContainer::Nothing | SceneContainer::Planes(_) => Err(Problem::new(
-            "grains",
-            "is a `Fill`, but the container is open",
-            "a `Drum` or a `Box` to fill, or the grains as a `List`",
-        )),
+        SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
+            Err(Problem::new(
+                "grains",
+                "is a `Fill`, but the container is open",
+                "a `Drum` or a `Box` to fill, or the grains as a `List`",
+            ))
+        }
     }
 }
 
@@ -296,8 +429,93 @@ pub(super) fn check_container(container: &SceneContainer) -> Checked {
                 ),
             ))
         }
+        SceneContainer::Column {
+            radius,
+            height,
+            tube,
+            ..
+        } => {
+            LENGTH.check(*radius, || "container.radius".to_owned())?;
+            LENGTH.check(*height, || "container.height".to_owned())?;
+            tube.as_ref().map_or(Ok(()), check_tube)
+        }
         SceneContainer::Planes(planes) => check_planes(planes),
     }
+}
+
+fn check_tube(tube: &SceneTube) -> Checked {
+    TUBE_SPEED.check(tube.speed, || "container.tube.speed".to_owned())
+}
+
+fn no_rolling(path: String, value: f64) -> Problem {
+    Problem::value(
+        path,
+        value,
+        "0, or nothing: polyhedra do not roll as spheres do and have no rolling friction",
+    )
+}
+
+fn check_shape(shape: &SceneShape, path: impl Fn(&str) -> String) -> Checked {
+    if let Some(rounding) = shape.rounding() {
+        ROUNDING.check(rounding, || path("rounding"))?;
+    }
+    match shape {
+        SceneShape::Sphere => Ok(()),
+        SceneShape::Box { size, .. } => size
+            .to_array()
+            .into_iter()
+            .try_for_each(|edge| LENGTH.check(edge, || path("shape.size"))),
+        SceneShape::Tetrahedron { edge, .. } => LENGTH.check(*edge, || path("shape.edge")),
+        SceneShape::Prism {
+            sides,
+            edge,
+            height,
+            ..
+        } => {
+            LENGTH.check(*edge, || path("shape.edge"))?;
+            LENGTH.check(*height, || path("shape.height"))?;
+            if (3..=MOST_SIDES).contains(sides) {
+                return Ok(());
+            }
+            Err(Problem::value(
+                path("shape.sides"),
+                sides,
+                format!("a number of sides between 3 and {MOST_SIDES}"),
+            ))
+        }
+        SceneShape::Hull { points, .. } => {
+            if !(4..=MOST_POINTS).contains(&points.len()) {
+                return Err(Problem::new(
+                    path("shape.points"),
+                    format!("are {} in number", points.len()),
+                    format!("4 to {MOST_POINTS} points"),
+                ));
+            }
+            points
+                .iter()
+                .try_for_each(|point| vector(*point, 1e3, "m", || path("shape.points")))?;
+            if shape.solid().is_some() {
+                return Ok(());
+            }
+            Err(Problem::new(
+                path("shape.points"),
+                "lie in one plane",
+                "points round a body",
+            ))
+        }
+    }
+}
+
+fn too_thin(grain: &SceneGrain, path: String) -> Problem {
+    let rounding = grain.shape.rounding().unwrap_or(0.0);
+    Problem::new(
+        path,
+        format!(
+            "leaves nothing when its faces are moved inwards by the rounding radius of {rounding} m"
+        ),
+        "a convex body that is more than two rounding radii thick",
+    )
+    .advise("Its edges are rounded within its own size: give a smaller `rounding`")
 }
 
 fn check_planes(planes: &[ScenePlane]) -> Checked {
@@ -445,8 +663,7 @@ fn check_law(law: ContactLaw) -> Checked {
     }
 }
 
-fn check_shares(species: &[SceneSpecies]) -> Checked {
-    let sum: f64 = species.iter().map(|kind| kind.share).sum();
+fn check_shares(sum: f64) -> Checked {
     if (sum - 1.0).abs() <= 1e-6 {
         return Ok(());
     }
@@ -521,7 +738,9 @@ fn narrowest(container: &SceneContainer) -> f64 {
     match container {
         SceneContainer::Drum { radius, width, .. } => width.min(2.0 * radius),
         SceneContainer::Box { min, max, .. } => (*max - *min).min_element(),
-        SceneContainer::Nothing | SceneContainer::Planes(_) => f64::INFINITY,
+        SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
+            f64::INFINITY
+        }
     }
 }
 
@@ -529,12 +748,36 @@ fn narrowest(container: &SceneContainer) -> f64 {
 fn check_inside(
     container: &SceneContainer,
     grain: &SceneGrain,
+    body: &SceneBody,
     path: impl FnOnce() -> String,
 ) -> Checked {
-    let room = clearance(container, grain.position);
-    let least = (1.0 - LARGEST_OVERLAP) * grain.radius;
+    let (room, least) = match body {
+        SceneBody::Sphere => (
+            clearance(container, grain.position),
+            (1.0 - LARGEST_OVERLAP) * grain.radius,
+        ),
+        SceneBody::Polyhedron { core, rounding } => {
+            let corners = core.vertices.iter().map(|x| clearance(container, *x));
+            let room = corners.fold(f64::INFINITY, f64::min);
+            (room, (1.0 - DEEPEST_ROUNDING) * rounding)
+        }
+    };
     if room >= least {
         return Ok(());
+    }
+    if !grain.shape.is_sphere() {
+        return Err(Problem::value(
+            path(),
+            shown(grain.position),
+            format!(
+                "a place inside of the container (a touch may be {:.0} % of the rounding radius deep)",
+                100.0 * DEEPEST_ROUNDING
+            ),
+        )
+        .advise(format!(
+            "One of its corners reaches {} m too far",
+            least - room
+        )));
     }
     Err(Problem::value(
         path(),
@@ -556,6 +799,10 @@ fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
             (radius - x.truncate().length()).min(0.5 * width - x.z.abs())
         }
         SceneContainer::Box { min, max, .. } => (x - *min).min(*max - x).min_element(),
+        SceneContainer::Column { radius, tube, .. } => {
+            let inside = radius - (x.x * x.x + x.z * x.z).sqrt();
+            tube.as_ref().map_or(x.y, |_| x.y.min(inside))
+        }
         SceneContainer::Planes(planes) => planes
             .iter()
             .map(|plane| (x - plane.point).dot(plane.normal))
@@ -567,7 +814,7 @@ fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
 ///
 /// Grains lie in grids of cells, one grid for each power of two of the diameter, so that a few large grains among many
 /// small ones cost no more than equal ones.
-fn check_overlaps(grains: &[SceneGrain]) -> Checked {
+fn check_overlaps(grains: &[SceneGrain], bodies: &[SceneBody]) -> Checked {
     let mut grids: BTreeMap<i32, HashMap<[i64; 3], Vec<usize>>> = BTreeMap::new();
     for (index, grain) in grains.iter().enumerate() {
         let level = level_of(grain.radius);
@@ -581,16 +828,45 @@ fn check_overlaps(grains: &[SceneGrain]) -> Checked {
                 .filter_map(|cell| grid.get(&cell))
                 .flatten();
             for &other in near.filter(|&&other| other != index) {
-                check_pair_overlap(grains, index.min(other), index.max(other))?;
+                check_pair_overlap(grains, bodies, index.min(other), index.max(other))?;
             }
         }
     }
     Ok(())
 }
 
-fn check_pair_overlap(grains: &[SceneGrain], first: usize, second: usize) -> Checked {
+fn check_pair_overlap(
+    grains: &[SceneGrain],
+    bodies: &[SceneBody],
+    first: usize,
+    second: usize,
+) -> Checked {
     let (a, b) = (&grains[first], &grains[second]);
     let overlap = a.radius + b.radius - a.position.distance(b.position);
+    if overlap <= 0.0 {
+        return Ok(());
+    }
+    let cores_meet = match (&bodies[first], &bodies[second]) {
+        (SceneBody::Sphere, SceneBody::Sphere) => None,
+        (SceneBody::Polyhedron { core, .. }, SceneBody::Sphere) => Some(core.holds(b.position)),
+        (SceneBody::Sphere, SceneBody::Polyhedron { core, .. }) => Some(core.holds(a.position)),
+        (SceneBody::Polyhedron { core: a, .. }, SceneBody::Polyhedron { core: b, .. }) => {
+            Some(!a.common_part(b).faces.is_empty())
+        }
+    };
+    if let Some(meet) = cores_meet {
+        return if meet {
+            Err(Problem::new(
+                format!("grains[{second}].position"),
+                format!(
+                    "makes it overlap the grain `grains[{first}]` with more than its rounded edges"
+                ),
+                "a place of its own: only roundings may overlap",
+            ))
+        } else {
+            Ok(())
+        };
+    }
     let most = LARGEST_OVERLAP * a.radius.min(b.radius);
     if overlap <= most {
         return Ok(());

@@ -7,11 +7,13 @@
 
 use super::check::{check_container, fraction, volume};
 use super::error::Problem;
+use super::shape::rotation;
 use super::{
-    BridgeLaw, ContactLaw, LiquidCase, PAPER_VOLUME, PairOverride, Scene, SceneContainer,
-    SceneGrain, SceneGrains, SceneLiquid, SceneMaterial, ScenePlane, SceneSpecies, TimeStep,
+    BridgeLaw, ContactLaw, FeatureRule, LiquidCase, PAPER_VOLUME, PairOverride, Scene,
+    SceneCellSpecies, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneLiquid,
+    SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, TimeStep,
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::f64::consts::PI;
@@ -35,8 +37,7 @@ pub(super) struct SceneFile {
     liquid: Option<LiquidFile>,
     #[serde(default = "earth_gravity")]
     gravity: DVec3,
-    #[serde(default)]
-    law: ContactLaw,
+    law: Option<ContactLaw>,
     #[serde(default)]
     time_step: TimeStep,
     #[serde(default = "paper_duration")]
@@ -63,32 +64,48 @@ fn first_seed() -> u64 {
     1
 }
 
-/// A material, by default the paper's dry glass.
+/// A material. What it leaves out is the spheres' dry glass of Kasper et al. 2021, or the polyhedra of Man et al. 2023.
 #[derive(Deserialize)]
 #[serde(rename = "Material", default, deny_unknown_fields)]
+#[derive(Default)]
 struct MaterialFile {
-    youngs_modulus: f64,
-    poisson_ratio: f64,
+    youngs_modulus: Option<f64>,
+    poisson_ratio: Option<f64>,
+    density: Option<f64>,
+    restitution: Option<f64>,
+    friction: Option<f64>,
+    wet_friction: Option<f64>,
+    rolling_friction: Option<f64>,
+}
+
+/// What materials leave out.
+struct MaterialDefaults {
     density: f64,
     restitution: f64,
     friction: f64,
-    wet_friction: Option<f64>,
     rolling_friction: f64,
 }
 
-impl Default for MaterialFile {
-    fn default() -> Self {
-        Self {
-            youngs_modulus: 63e6,
-            poisson_ratio: 0.21,
-            density: 2500.0,
-            restitution: 0.95,
-            friction: 0.40,
-            wet_friction: None,
-            rolling_friction: 0.01,
-        }
-    }
-}
+const GLASS: MaterialDefaults = MaterialDefaults {
+    density: 2500.0,
+    restitution: 0.95,
+    friction: 0.40,
+    rolling_friction: 0.01,
+};
+const POLYHEDRA: MaterialDefaults = MaterialDefaults {
+    density: 2650.0,
+    restitution: 0.1,
+    friction: 0.40,
+    rolling_friction: 0.0,
+};
+/// Springs of Man et al. 2023.
+const POLYHEDRA_LAW: ContactLaw = ContactLaw::Hooke {
+    normal_stiffness: 4000.0,
+    tangential_stiffness: 2000.0,
+    features: FeatureRule::Full,
+};
+/// Rounding of Man et al. 2023 [m].
+const ROUNDING: f64 = 1e-4;
 
 /// Materials in the order of the file, which is the order of their indices.
 struct NamedMaterials(Vec<(String, MaterialFile)>);
@@ -135,7 +152,22 @@ enum ContainerFile {
         max: DVec3,
         material: String,
     },
+    Column {
+        radius: Option<f64>,
+        radius_mm: Option<f64>,
+        height: Option<f64>,
+        height_mm: Option<f64>,
+        material: String,
+        tube: Option<TubeFile>,
+    },
     Planes(Vec<PlaneFile>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Tube", deny_unknown_fields)]
+struct TubeFile {
+    speed: f64,
+    material: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -158,7 +190,24 @@ enum GrainsFile {
         packing: Option<f64>,
         species: Vec<SpeciesFile>,
     },
+    Voronoi {
+        cell: Option<f64>,
+        cell_mm: Option<f64>,
+        rounding: Option<f64>,
+        rounding_mm: Option<f64>,
+        solid_fraction: Option<f64>,
+        bulk_fraction: Option<f64>,
+        species: Vec<CellSpeciesFile>,
+    },
     List(Vec<GrainFile>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Species", deny_unknown_fields)]
+struct CellSpeciesFile {
+    name: Option<String>,
+    material: String,
+    share: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -181,8 +230,41 @@ struct GrainFile {
     spin: DVec3,
     radius: Option<f64>,
     radius_mm: Option<f64>,
+    shape: Option<ShapeFile>,
+    rounding: Option<f64>,
+    rounding_mm: Option<f64>,
+    #[serde(default)]
+    orientation: OrientationFile,
     material: String,
     film: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Shape", deny_unknown_fields)]
+enum ShapeFile {
+    Sphere,
+    Box { size: DVec3 },
+    Tetrahedron { edge: f64 },
+    Prism { sides: u32, edge: f64, height: f64 },
+    Hull { points: Vec<DVec3> },
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename = "Orientation", deny_unknown_fields)]
+enum OrientationFile {
+    #[default]
+    Upright,
+    Turned {
+        axis: DVec3,
+        angle: Option<f64>,
+        angle_deg: Option<f64>,
+    },
+    Quaternion {
+        x: f64,
+        y: f64,
+        z: f64,
+        w: f64,
+    },
 }
 
 /// A liquid: a case of the paper's Table 1, whose values others may replace, or all of them.
@@ -215,36 +297,44 @@ impl SceneFile {
     pub fn into_scene(self) -> Result<Scene, Problem> {
         let container = self.container.into_container()?;
         let grains = self.grains.into_grains(&container)?;
-        Ok(Scene {
+        let mut scene = Scene {
             title: self.title,
             look_for: self.look_for,
             source: self.source,
-            materials: self.materials.into_list(),
+            materials: Vec::new(),
             pairs: self.pairs,
             container,
             grains,
             liquid: self.liquid.map(LiquidFile::into_liquid).transpose()?,
             gravity: self.gravity,
-            law: self.law,
+            law: ContactLaw::default(),
             time_step: self.time_step,
             duration: self.duration,
             output_interval: self.output_interval,
             seed: self.seed,
-        })
+        };
+        let (defaults, law) = if scene.is_polyhedral() {
+            (POLYHEDRA, POLYHEDRA_LAW)
+        } else {
+            (GLASS, ContactLaw::default())
+        };
+        scene.materials = self.materials.into_list(&defaults);
+        scene.law = self.law.unwrap_or(law);
+        Ok(scene)
     }
 }
 
 impl NamedMaterials {
-    fn into_list(self) -> Vec<SceneMaterial> {
+    fn into_list(self, defaults: &MaterialDefaults) -> Vec<SceneMaterial> {
         let with_name = |(name, file): (String, MaterialFile)| SceneMaterial {
             name,
-            youngs_modulus: file.youngs_modulus,
-            poisson_ratio: file.poisson_ratio,
-            density: file.density,
-            restitution: file.restitution,
-            friction: file.friction,
+            youngs_modulus: file.youngs_modulus.unwrap_or(63e6),
+            poisson_ratio: file.poisson_ratio.unwrap_or(0.21),
+            density: file.density.unwrap_or(defaults.density),
+            restitution: file.restitution.unwrap_or(defaults.restitution),
+            friction: file.friction.unwrap_or(defaults.friction),
             wet_friction: file.wet_friction,
-            rolling_friction: file.rolling_friction,
+            rolling_friction: file.rolling_friction.unwrap_or(defaults.rolling_friction),
         };
         self.0.into_iter().map(with_name).collect()
     }
@@ -272,6 +362,24 @@ impl ContainerFile {
                 material,
             },
             Self::Box { min, max, material } => SceneContainer::Box { min, max, material },
+            Self::Column {
+                radius,
+                radius_mm,
+                height,
+                height_mm,
+                material,
+                tube,
+            } => SceneContainer::Column {
+                radius: either("container.radius", radius, "_mm", radius_mm.map(metres))?
+                    .unwrap_or(0.025),
+                height: either("container.height", height, "_mm", height_mm.map(metres))?
+                    .ok_or_else(|| missing_length("container", "height"))?,
+                tube: tube.map(|tube| SceneTube {
+                    speed: tube.speed,
+                    material: tube.material.unwrap_or_else(|| material.clone()),
+                }),
+                material,
+            },
             Self::Planes(planes) => SceneContainer::Planes(
                 planes
                     .into_iter()
@@ -328,6 +436,33 @@ impl GrainsFile {
                     species,
                 })
             }
+            Self::Voronoi {
+                cell,
+                cell_mm,
+                rounding,
+                rounding_mm,
+                solid_fraction,
+                bulk_fraction,
+                species,
+            } => {
+                let alone = species.len() == 1;
+                let whole = match container {
+                    SceneContainer::Drum { .. } => 0.35,
+                    _ => 1.0,
+                };
+                Ok(SceneGrains::Voronoi(SceneCells {
+                    cell: either("grains.cell", cell, "_mm", cell_mm.map(metres))?.unwrap_or(0.002),
+                    rounding: either("grains.rounding", rounding, "_mm", rounding_mm.map(metres))?
+                        .unwrap_or(ROUNDING),
+                    solid_fraction: solid_fraction.unwrap_or(0.8),
+                    bulk_fraction: bulk_fraction.unwrap_or(whole),
+                    species: species
+                        .into_iter()
+                        .enumerate()
+                        .map(|(index, species)| species.into_species(index, alone))
+                        .collect::<Result<_, _>>()?,
+                }))
+            }
             Self::List(grains) => Ok(SceneGrains::List(
                 grains
                     .into_iter()
@@ -343,32 +478,131 @@ impl SpeciesFile {
     fn into_species(self, index: usize, alone: bool) -> Result<SceneSpecies, Problem> {
         let path = format!("grains.species[{index}]");
         let radius = required_radius(&path, self.radius, self.radius_mm)?;
-        let Some(share) = self.share.or(alone.then_some(1.0)) else {
-            return Err(Problem::new(
-                path,
-                "has no `share`",
-                "its share of the grains by number, 0 to 1, as there are several species",
-            ));
-        };
         Ok(SceneSpecies {
             name: self.name.unwrap_or_else(|| self.material.clone()),
             radius,
             material: self.material,
-            share,
+            share: required_share(path, self.share, alone)?,
         })
     }
 }
 
+impl CellSpeciesFile {
+    fn into_species(self, index: usize, alone: bool) -> Result<SceneCellSpecies, Problem> {
+        let path = format!("grains.species[{index}]");
+        Ok(SceneCellSpecies {
+            name: self.name.unwrap_or_else(|| self.material.clone()),
+            material: self.material,
+            share: required_share(path, self.share, alone)?,
+        })
+    }
+}
+
+/// The share that a species states, all of the grains where it stands `alone`.
+fn required_share(species: String, share: Option<f64>, alone: bool) -> Result<f64, Problem> {
+    share.or(alone.then_some(1.0)).ok_or_else(|| {
+        Problem::new(
+            species,
+            "has no `share`",
+            "its share of the grains by number, 0 to 1, as there are several species",
+        )
+    })
+}
+
 impl GrainFile {
     fn into_grain(self, index: usize) -> Result<SceneGrain, Problem> {
+        let path = format!("grains[{index}]");
+        let rounding = either(
+            &format!("{path}.rounding"),
+            self.rounding,
+            "_mm",
+            self.rounding_mm.map(metres),
+        )?;
+        let shape = self.shape.map_or(SceneShape::Sphere, |shape| {
+            shape.into_shape(rounding.unwrap_or(ROUNDING))
+        });
+        let radius = if shape.is_sphere() {
+            if rounding.is_some() {
+                return Err(Problem::new(
+                    format!("{path}.rounding"),
+                    "is given for a sphere, which has no edges",
+                    "a `shape` such as `Box(size: (0.01, 0.01, 0.01))` beside it",
+                ));
+            }
+            required_radius(&path, self.radius, self.radius_mm)?
+        } else {
+            if self.radius.or(self.radius_mm).is_some() {
+                return Err(Problem::new(
+                    format!("{path}.radius"),
+                    "is given beside a `shape`, which has a size of its own",
+                    "a `radius` for a sphere or a `shape` for a polyhedron",
+                ));
+            }
+            shape.radius()
+        };
         Ok(SceneGrain {
             position: self.position,
             velocity: self.velocity,
             spin: self.spin,
-            radius: required_radius(&format!("grains[{index}]"), self.radius, self.radius_mm)?,
+            radius,
+            shape,
+            orientation: self.orientation.into_rotation(&path)?,
             material: self.material,
             film: self.film,
         })
+    }
+}
+
+impl ShapeFile {
+    fn into_shape(self, rounding: f64) -> SceneShape {
+        match self {
+            Self::Sphere => SceneShape::Sphere,
+            Self::Box { size } => SceneShape::Box { size, rounding },
+            Self::Tetrahedron { edge } => SceneShape::Tetrahedron { edge, rounding },
+            Self::Prism {
+                sides,
+                edge,
+                height,
+            } => SceneShape::Prism {
+                sides,
+                edge,
+                height,
+                rounding,
+            },
+            Self::Hull { points } => SceneShape::Hull { points, rounding },
+        }
+    }
+}
+
+impl OrientationFile {
+    fn into_rotation(self, grain: &str) -> Result<DQuat, Problem> {
+        let refuse = |expected| {
+            let path = format!("{grain}.orientation");
+            Problem::new(path, "says no direction", expected)
+        };
+        match self {
+            Self::Upright => Ok(DQuat::IDENTITY),
+            Self::Turned {
+                axis,
+                angle,
+                angle_deg,
+            } => {
+                let path = format!("{grain}.orientation.angle");
+                let degrees = angle_deg.map(f64::to_radians);
+                let angle = either(&path, angle, "_deg", degrees)?.unwrap_or(0.0);
+                let axis = axis.try_normalize().filter(|_| angle.is_finite());
+                axis.map(|axis| rotation(axis, angle)).ok_or_else(|| {
+                    refuse("an axis `(x, y, z)` that is not zero and an angle in rad, or in degrees as `angle_deg`")
+                })
+            }
+            Self::Quaternion { x, y, z, w } => {
+                let length = (x * x + y * y + z * z + w * w).sqrt();
+                let turn = DQuat::from_xyzw(x / length, y / length, z / length, w / length);
+                Some(turn)
+                    .filter(|turn| turn.is_normalized())
+                    .ok_or_else(|| refuse("a quaternion `x`, `y`, `z`, `w` that is not zero"))
+            }
+        }
     }
 }
 
@@ -448,13 +682,16 @@ fn either(
 }
 
 fn required_radius(holder: &str, si: Option<f64>, mm: Option<f64>) -> Result<f64, Problem> {
-    either(&format!("{holder}.radius"), si, "_mm", mm.map(metres))?.ok_or_else(|| {
-        Problem::new(
-            holder,
-            "has no `radius`",
-            "a length in m, or in mm as `radius_mm`",
-        )
-    })
+    either(&format!("{holder}.radius"), si, "_mm", mm.map(metres))?
+        .ok_or_else(|| missing_length(holder, "radius"))
+}
+
+fn missing_length(holder: &str, key: &str) -> Problem {
+    Problem::new(
+        holder,
+        format!("has no `{key}`"),
+        format!("a length in m, or in mm as `{key}_mm`"),
+    )
 }
 
 fn given_count(

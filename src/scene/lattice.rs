@@ -72,7 +72,9 @@ impl Lattice {
                 let cell = DVec3::new(size.x / counts[0] as f64, pitch, size.z / counts[2] as f64);
                 (Region::Box { min, counts }, cell)
             }
-            SceneContainer::Nothing | SceneContainer::Planes(_) => return None,
+            SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
+                return None;
+            }
         };
         region.has_room().then_some(Self {
             cell,

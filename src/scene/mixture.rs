@@ -47,6 +47,11 @@ pub fn size_classes(count: usize, species: &[SceneSpecies]) -> Vec<SizeClass> {
         .collect()
 }
 
+/// The `count` grains of the species with these shares: the index of each and its grains.
+pub fn species_counts(count: usize, shares: &[f64]) -> Vec<(usize, usize)> {
+    apportion(count, shares).into_iter().enumerate().collect()
+}
+
 /// `total` split in proportion to `shares` by the method of the largest remainder; the first wins a tie.
 fn apportion(total: usize, shares: &[f64]) -> Vec<usize> {
     let sum: f64 = shares.iter().sum();

@@ -14,6 +14,7 @@ mod liquid;
 mod mixture;
 mod outline;
 mod set;
+mod shape;
 mod syntax;
 
 pub use built_in::{BuiltIn, built_in};
@@ -23,11 +24,12 @@ pub use liquid::{
     BridgeLaw, BridgeVolume, CapillaryGap, CoulombBound, LIQUID_CASES, LiquidCase, PAPER_VOLUME,
     PairAngle, Rupture, SceneLiquid, SmallestGap,
 };
-pub use mixture::{SizeClass, size_classes};
+pub use mixture::{SizeClass, size_classes, species_counts};
 pub use set::seconds;
+pub use shape::{SceneBody, SceneShape};
 
 use file::SceneFile;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use ron::extensions::Extensions;
 use serde::{Deserialize, Serialize};
 use std::io::Read;
@@ -172,8 +174,28 @@ pub enum SceneContainer {
         /// Name of its material.
         material: String,
     },
+    /// An unbounded floor at y = 0 for a column about the y axis.
+    Column {
+        /// Radius of the column, `R_i` [m].
+        radius: f64,
+        /// Height of the column, `H_i` [m].
+        height: f64,
+        /// Name of the floor's material.
+        material: String,
+        /// What holds the column at the start; nothing where it is let go at once.
+        tube: Option<SceneTube>,
+    },
     /// Unbounded planes.
     Planes(Vec<ScenePlane>),
+}
+
+/// A thin upright tube round a column, pulled up from time zero on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneTube {
+    /// Its speed upwards [m/s].
+    pub speed: f64,
+    /// Name of its material.
+    pub material: String,
 }
 
 /// An unbounded plane.
@@ -203,8 +225,36 @@ pub enum SceneGrains {
         /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
         species: Vec<SceneSpecies>,
     },
+    /// Rounded Voronoi cells that fill the container, some of them taken away at random; nothing is settled.
+    Voronoi(SceneCells),
     /// Each grain as listed; nothing is settled.
     List(Vec<SceneGrain>),
+}
+
+/// Voronoi cells as grains, after Man et al. 2023: of one random point in each cell of a lattice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneCells {
+    /// Size of a lattice cell [m].
+    pub cell: f64,
+    /// Rounding radius `R_s` of the grains [m].
+    pub rounding: f64,
+    /// Share of the cells' volume that becomes grains, `φ_i`.
+    pub solid_fraction: f64,
+    /// Part of the container's volume that the cells take, from below.
+    pub bulk_fraction: f64,
+    /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
+    pub species: Vec<SceneCellSpecies>,
+}
+
+/// A kind of grain among Voronoi cells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneCellSpecies {
+    /// What people call it.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// Share by number, 0 … 1.
+    pub share: f64,
 }
 
 /// A kind of grain in a filling.
@@ -229,8 +279,12 @@ pub struct SceneGrain {
     pub velocity: DVec3,
     /// Angular velocity [rad/s].
     pub spin: DVec3,
-    /// Radius [m].
+    /// Radius [m]; of a polyhedron that of the sphere about its centroid that holds it before it is rounded.
     pub radius: f64,
+    /// What it is.
+    pub shape: SceneShape,
+    /// Rotation from the shape's axes to those of the world, a unit quaternion.
+    pub orientation: DQuat,
     /// Name of its material.
     pub material: String,
     /// Volume of the liquid film on it, where it is not its share of the scene's liquid [m³].
@@ -315,18 +369,108 @@ impl Scene {
         materials.find(|(_, material)| material.name == name)
     }
 
-    /// Indices of the species that share the radius of the one at `index`, itself included: their mixing ratio can change
-    /// while a run goes on. Empty for listed grains.
-    pub fn species_of_same_radius(&self, index: usize) -> Vec<usize> {
-        let SceneGrains::Fill { species, .. } = &self.grains else {
-            return Vec::new();
+    /// Whether its grains are rounded polyhedra. Spheres among them are polyhedra of one corner.
+    pub fn is_polyhedral(&self) -> bool {
+        match &self.grains {
+            SceneGrains::Fill { .. } => false,
+            SceneGrains::Voronoi(_) => true,
+            SceneGrains::List(list) => list.iter().any(|grain| !grain.shape.is_sphere()),
+        }
+    }
+
+    /// Number of its grains. Voronoi cells that are all to be grains can be a few more or less: which cells have their
+    /// centroid in a column is known when they are made.
+    pub fn grain_count(&self) -> usize {
+        match &self.grains {
+            SceneGrains::Fill { count, .. } => *count,
+            SceneGrains::Voronoi(cells) => cells.grain_count(&self.container),
+            SceneGrains::List(list) => list.len(),
+        }
+    }
+
+    /// Name and material of each species of a filling in its order; none for listed grains.
+    pub fn species(&self) -> Vec<(&str, &str)> {
+        match &self.grains {
+            SceneGrains::Fill { species, .. } => {
+                let names = species
+                    .iter()
+                    .map(|s| (s.name.as_str(), s.material.as_str()));
+                names.collect()
+            }
+            SceneGrains::Voronoi(cells) => {
+                let names = cells.species.iter();
+                names
+                    .map(|s| (s.name.as_str(), s.material.as_str()))
+                    .collect()
+            }
+            SceneGrains::List(_) => Vec::new(),
+        }
+    }
+
+    /// Share by number of the species at `index` of a filling; zero for listed grains.
+    pub fn share(&self, index: usize) -> f64 {
+        let share = match &self.grains {
+            SceneGrains::Fill { species, .. } => species.get(index).map(|s| s.share),
+            SceneGrains::Voronoi(cells) => cells.species.get(index).map(|s| s.share),
+            SceneGrains::List(_) => None,
         };
-        let Some(kind) = species.get(index) else {
-            return Vec::new();
-        };
-        (0..species.len())
-            .filter(|&other| species[other].radius == kind.radius)
-            .collect()
+        share.unwrap_or(0.0)
+    }
+
+    /// Whether any of its grains is made of the material called `name`.
+    pub fn has_grains_of(&self, name: &str) -> bool {
+        match &self.grains {
+            SceneGrains::List(list) => list.iter().any(|grain| grain.material == name),
+            _ => self.species().iter().any(|species| species.1 == name),
+        }
+    }
+
+    /// Indices of the species whose grains the one at `index` can change places with while a run goes on, itself included:
+    /// those of its radius, or all species of Voronoi cells. Empty for listed grains.
+    pub fn interchangeable_species(&self, index: usize) -> Vec<usize> {
+        match &self.grains {
+            SceneGrains::Fill { species, .. } => {
+                let radius = species.get(index).map(|kind| kind.radius);
+                let alike = |other: &usize| Some(species[*other].radius) == radius;
+                (0..species.len()).filter(alike).collect()
+            }
+            SceneGrains::Voronoi(cells) if index < cells.species.len() => {
+                (0..cells.species.len()).collect()
+            }
+            SceneGrains::Voronoi(_) | SceneGrains::List(_) => Vec::new(),
+        }
+    }
+}
+
+/// Volume of the smallest of some ten thousand Voronoi cells, in lattice cells.
+const SMALLEST_CELL: f64 = 0.2;
+
+impl SceneCells {
+    /// Radius of the sphere of the volume of its smallest grains [m].
+    pub fn smallest_radius(&self) -> f64 {
+        shape::sphere_radius(SMALLEST_CELL * self.cell.powi(3))
+    }
+
+    /// Lattice cells that the bed takes.
+    pub fn cell_count(&self, container: &SceneContainer) -> usize {
+        let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
+        (volume / self.cell.powi(3)).round() as usize
+    }
+
+    /// Grains that the bed is made of: `π R_i² H_i` times cells per volume times `φ_i` for a column.
+    pub fn grain_count(&self, container: &SceneContainer) -> usize {
+        let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
+        (volume / self.cell.powi(3) * self.solid_fraction).round() as usize
+    }
+}
+
+/// Volume that Voronoi cells can fill [m³]; none of an open container.
+fn bed_volume(container: &SceneContainer) -> Option<f64> {
+    match container {
+        SceneContainer::Column { radius, height, .. } => {
+            Some(std::f64::consts::PI * radius * radius * height)
+        }
+        closed => check::volume(closed).ok(),
     }
 }
 

@@ -5,7 +5,10 @@
 
 use super::error::{Problem, SceneError, suggestion};
 use super::file::count_of;
-use super::{BridgeLaw, LiquidCase, Scene, SceneGrains, SceneLiquid, TimeStep};
+use super::{
+    BridgeLaw, ContactLaw, FeatureRule, LiquidCase, PairOverride, Scene, SceneCells,
+    SceneContainer, SceneGrains, SceneLiquid, TimeStep,
+};
 
 /// One value that can be replaced.
 struct Setting {
@@ -16,7 +19,7 @@ struct Setting {
     apply: fn(&mut Scene, &str) -> Option<()>,
 }
 
-const SETTINGS: [Setting; 8] = [
+const SETTINGS: &[Setting] = &[
     Setting {
         key: "seed",
         expected: "a whole number of at least 0",
@@ -65,13 +68,96 @@ const SETTINGS: [Setting; 8] = [
                 *solid_volume = None;
                 Some(())
             }
-            SceneGrains::List(_) => None,
+            SceneGrains::Voronoi(_) | SceneGrains::List(_) => None,
         },
     },
     Setting {
         key: "radius",
-        expected: "a length such as `2mm`, in a scene that fills its container with grains of one radius",
+        expected: "a length such as `2mm`: of the column, or in a scene that fills its container with grains of one radius, of those",
         apply: |scene, text| set_radius(scene, metres(text)?),
+    },
+    Setting {
+        key: "height",
+        expected: "a length such as `5cm`, in a scene of a column",
+        apply: |scene, text| {
+            let SceneContainer::Column { height, .. } = &mut scene.container else {
+                return None;
+            };
+            *height = metres(text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "cell",
+        expected: "a length such as `2mm`, in a scene of Voronoi cells",
+        apply: |scene, text| {
+            cells(scene)?.cell = metres(text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "rounding",
+        expected: "a length such as `0.1mm`, in a scene of Voronoi cells",
+        apply: |scene, text| {
+            cells(scene)?.rounding = metres(text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "solid-fraction",
+        expected: "a fraction such as `0.8`, in a scene of Voronoi cells",
+        apply: |scene, text| {
+            cells(scene)?.solid_fraction = number(text)?;
+            Some(())
+        },
+    },
+    Setting {
+        key: "mix",
+        expected: "the share of the second species such as `0.3`, in a scene of Voronoi cells of two species",
+        apply: |scene, text| {
+            let [first, second] = cells(scene)?.species.as_mut_slice() else {
+                return None;
+            };
+            second.share = number(text)?;
+            first.share = 1.0 - second.share;
+            Some(())
+        },
+    },
+    Setting {
+        key: "mu11",
+        expected: "the friction of two grains of the first species, such as `0.1`",
+        apply: |scene, text| set_friction(scene, 0, number(text)?),
+    },
+    Setting {
+        key: "mu22",
+        expected: "the friction of two grains of the second species, such as `0.4`",
+        apply: |scene, text| set_friction(scene, 1, number(text)?),
+    },
+    Setting {
+        key: "mu-wall",
+        expected: "the friction between all species and the container, such as `0.4`, where it is of another material",
+        apply: |scene, text| set_wall_friction(scene, number(text)?),
+    },
+    Setting {
+        key: "normal-stiffness",
+        expected: "a stiffness in N/m such as `4000`, in a scene with the law `Hooke`; the tangential one stays in proportion",
+        apply: |scene, text| set_stiffness(scene, number(text)?),
+    },
+    Setting {
+        key: "features",
+        expected: "`full` or `shared`, in a scene of polyhedra",
+        apply: |scene, text| {
+            let polyhedral = scene.is_polyhedral();
+            let ContactLaw::Hooke { features, .. } = &mut scene.law else {
+                return None;
+            };
+            *features = match text {
+                "full" => FeatureRule::Full,
+                "shared" => FeatureRule::Shared,
+                _ => return None,
+            };
+            polyhedral.then_some(())
+        },
     },
     Setting {
         key: "liquid",
@@ -100,8 +186,7 @@ impl Scene {
             .map(|setting| (setting.key, setting.expected))
     }
 
-    /// Replaces one value before anything is built: `seed`, `duration`, `output-interval`, `time-step`, `count`,
-    /// `radius`, `liquid`, `bridge-law`.
+    /// Replaces one value before anything is built: one of [`Scene::settings`].
     ///
     /// # Errors
     /// When there is no such key, the text is no such value, or the scene does not hold together with it; the scene is
@@ -122,8 +207,82 @@ impl Scene {
     }
 }
 
-/// Gives all grains the radius `wanted` [m]; the bed keeps its volume, so their number changes.
+fn cells(scene: &mut Scene) -> Option<&mut SceneCells> {
+    match &mut scene.grains {
+        SceneGrains::Voronoi(cells) => Some(cells),
+        SceneGrains::Fill { .. } | SceneGrains::List(_) => None,
+    }
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// Gives two grains of the species at `index` this friction.
+fn set_friction(scene: &mut Scene, index: usize, friction: f64) -> Option<()> {
+    let name = scene.species().get(index)?.1.to_owned();
+    let (index, _) = scene.material(&name)?;
+    scene.materials[index].friction = friction;
+    Some(())
+}
+
+/// Gives grains of every species this friction on the container.
+fn set_wall_friction(scene: &mut Scene, friction: f64) -> Option<()> {
+    let wall = match &scene.container {
+        SceneContainer::Column { material, .. }
+        | SceneContainer::Drum { material, .. }
+        | SceneContainer::Box { material, .. } => material.clone(),
+        SceneContainer::Nothing | SceneContainer::Planes(_) => return None,
+    };
+    let mut grains: Vec<String> = scene.species().iter().map(|s| s.1.to_owned()).collect();
+    grains.sort();
+    grains.dedup();
+    if grains.is_empty() || grains.contains(&wall) {
+        return None;
+    }
+    for grain in grains {
+        pair(scene, grain, &wall).friction = Some(friction);
+    }
+    Some(())
+}
+
+/// What the scene says of the pair of materials `a` and `b`, which is added where it says nothing.
+fn pair<'a>(scene: &'a mut Scene, a: String, b: &str) -> &'a mut PairOverride {
+    let known = scene.pairs.iter().position(|pair| pair.is_between(&a, b));
+    let index = known.unwrap_or_else(|| {
+        scene.pairs.push(PairOverride {
+            between: (a, b.to_owned()),
+            restitution: None,
+            friction: None,
+            wet_friction: None,
+            rolling_friction: None,
+        });
+        scene.pairs.len() - 1
+    });
+    &mut scene.pairs[index]
+}
+
+/// Gives contacts the normal stiffness `wanted` [N/m] and a tangential one in the proportion it had.
+fn set_stiffness(scene: &mut Scene, wanted: f64) -> Option<()> {
+    let ContactLaw::Hooke {
+        normal_stiffness,
+        tangential_stiffness,
+        ..
+    } = &mut scene.law
+    else {
+        return None;
+    };
+    *tangential_stiffness *= wanted / *normal_stiffness;
+    *normal_stiffness = wanted;
+    Some(())
+}
+
+/// Gives a column the radius `wanted` [m], or all grains of a filling: the bed keeps its volume, so their number changes.
 fn set_radius(scene: &mut Scene, wanted: f64) -> Option<()> {
+    if let SceneContainer::Column { radius, .. } = &mut scene.container {
+        *radius = wanted;
+        return (wanted > 0.0).then_some(());
+    }
     let SceneGrains::Fill {
         count,
         solid_volume,

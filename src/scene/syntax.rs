@@ -214,11 +214,18 @@ fn meaning(key: &str) -> &'static str {
     match key {
         "title" => "one line that names the scene",
         "materials" => "the materials by name: `{\"glass\": (density: 2500), …}`",
-        "container" => "`Drum(…)`, `Box(…)`, `Planes([…])` or `Nothing`",
-        "grains" => "`Fill(…)` or `List([…])`",
+        "container" => "`Drum(…)`, `Box(…)`, `Column(…)`, `Planes([…])` or `Nothing`",
+        "grains" => "`Fill(…)`, `Voronoi(…)` or `List([…])`",
         "species" => "the kinds of grain, `[(radius: 0.003, material: \"glass\")]`",
         "material" => "the name of one of the scene's materials",
         "radius" => "a length in m, or in mm as `radius_mm`",
+        "height" => "a length in m, or in mm as `height_mm`",
+        "cell" | "rounding" => "a length in m, or in mm under a key that ends in `_mm`",
+        "shape" => {
+            "`Box(size: …)`, `Tetrahedron(edge: …)`, `Prism(…)`, `Hull(points: […])` or `Sphere`"
+        }
+        "orientation" => "`Turned(axis: …, angle_deg: …)`, `Quaternion(…)` or `Upright`",
+        "tube" => "`(speed: …)` in m/s",
         "width" => "a length in m, or in mm as `width_mm`",
         "speed" => "rad/s, or turns per minute as `speed_rpm`",
         "position" | "point" | "min" | "max" => "a point `(x, y, z)` in m",

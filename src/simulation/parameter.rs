@@ -5,7 +5,7 @@
 
 use super::{Parameter, relabel};
 use crate::measure::elastic_energy;
-use crate::scene::{BridgeLaw, Scene, SceneContainer, SceneGrains, SceneLiquid, SceneSpecies};
+use crate::scene::{BridgeLaw, Scene, SceneContainer, SceneLiquid};
 use crate::world::{Liquid, MaterialId, Materials, PairProperties, World};
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -163,7 +163,13 @@ pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
     list.push(gravity(scene.gravity.length()));
     list.extend(meeting_pairs(world).into_iter().flat_map(|(a, b)| {
         let names = [a, b].map(|id| world.materials.get(id).name.clone());
-        pair_parameters(names, world.materials.pair(a, b), scene.liquid.is_some())
+        let rolls = world.polyhedra.is_none();
+        pair_parameters(
+            names,
+            world.materials.pair(a, b),
+            scene.liquid.is_some(),
+            rolls,
+        )
     }));
     list.extend(shares(scene));
     list.extend(scene.liquid.iter().flat_map(liquid_parameters));
@@ -254,8 +260,14 @@ fn gravity(magnitude: f64) -> ParameterInfo {
     }
 }
 
-/// What can change about how two materials meet; wet friction only where the scene has a liquid.
-fn pair_parameters(names: [String; 2], pair: PairProperties, wet: bool) -> Vec<ParameterInfo> {
+/// What can change about how two materials meet: wet friction only where the scene has a liquid, rolling friction only
+/// where grains are spheres.
+fn pair_parameters(
+    names: [String; 2],
+    pair: PairProperties,
+    wet: bool,
+    rolls: bool,
+) -> Vec<ParameterInfo> {
     let [a, b] = names;
     let info = |parameter, name, symbol, range, default, description| ParameterInfo {
         parameter,
@@ -286,7 +298,7 @@ fn pair_parameters(names: [String; 2], pair: PairProperties, wet: bool) -> Vec<P
         pair.friction,
         "Sliding starts when the tangential force reaches this share of the normal force.",
     );
-    let others = [
+    let rolling_friction = rolls.then(|| {
         info(
             Parameter::RollingFriction(a.clone(), b.clone()),
             "rolling friction",
@@ -294,20 +306,21 @@ fn pair_parameters(names: [String; 2], pair: PairProperties, wet: bool) -> Vec<P
             0.0..=pair.rolling_friction.max(0.2),
             pair.rolling_friction,
             "Rolling is opposed by a torque of this share of the normal force times the effective radius.",
-        ),
-        info(
-            Parameter::Restitution(a.clone(), b.clone()),
-            "restitution",
-            "e",
-            pair.restitution.min(0.05)..=1.0,
-            pair.restitution,
-            "Rebound speed over impact speed of a head-on impact.",
-        ),
-    ];
+        )
+    });
+    let restitution = info(
+        Parameter::Restitution(a.clone(), b.clone()),
+        "restitution",
+        "e",
+        pair.restitution.min(0.05)..=1.0,
+        pair.restitution,
+        "Rebound speed over impact speed of a head-on impact.",
+    );
     wet_friction
         .into_iter()
         .chain([friction])
-        .chain(others)
+        .chain(rolling_friction)
+        .chain([restitution])
         .collect()
 }
 
@@ -418,28 +431,26 @@ pub fn canonical(parameter: &Parameter, materials: &Materials) -> Parameter {
     }
 }
 
-/// A share for each species that shares its radius with another.
+/// A share for each species whose grains can change places with those of another.
 fn shares(scene: &Scene) -> Vec<ParameterInfo> {
-    let SceneGrains::Fill { species, .. } = &scene.grains else {
-        return Vec::new();
+    let species = scene.species();
+    let info = |(index, (name, _)): (usize, &(&str, &str))| {
+        let members = scene.interchangeable_species(index);
+        let most = members.iter().map(|&member| scene.share(member)).sum();
+        (members.len() > 1).then(|| share(name, scene.share(index), most))
     };
-    let of_radius = |radius: f64| species.iter().filter(move |s| s.radius == radius);
-    species
-        .iter()
-        .filter(|s| of_radius(s.radius).count() > 1)
-        .map(|s| share(s, of_radius(s.radius).map(|s| s.share).sum()))
-        .collect()
+    species.iter().enumerate().filter_map(info).collect()
 }
 
-fn share(species: &SceneSpecies, most: f64) -> ParameterInfo {
+fn share(species: &str, default: f64, most: f64) -> ParameterInfo {
     ParameterInfo {
-        parameter: Parameter::Share(species.name.clone()),
-        label: format!("share {}", species.name),
+        parameter: Parameter::Share(species.to_owned()),
+        label: format!("share {species}"),
         symbol: "P",
         unit: "1",
         range: 0.0..=most,
-        default: species.share,
-        description: "Share of the grains by number; the next species of the same radius gives or takes the difference.",
+        default,
+        description: "Share of the grains by number; the next species of the same size gives or takes the difference.",
         display: PERCENT,
     }
 }

@@ -1,6 +1,6 @@
 //! From a scene to a run at time zero: build, then a kept bed or settling.
 //!
-//! In: a scene, its time step, where beds are kept. Out: a [`Run`]. The work comes in short slices, so that whoever does it
+//! In: a scene, its time step, where beds are kept. Out: a [`Run`]. Voronoi cells are cut to size instead. The work comes in short slices, so that whoever does it
 //! can show progress and stop.
 
 use super::bed::{BedKey, BedStore};
@@ -9,7 +9,7 @@ use super::{Run, bed};
 use crate::measure::elastic_energy;
 use crate::scene::Scene;
 use crate::solver::{Fault, Solver, advise};
-use crate::world::{self, Clock, World};
+use crate::world::{self, Clock, Packing, World};
 use std::sync::Arc;
 
 /// A time so short that nothing moves, in time steps.
@@ -27,6 +27,7 @@ pub struct Preparation {
 
 enum Stage {
     Placing,
+    Packing(Box<Packing>),
     Settling {
         key: BedKey,
         settling: Box<Settling>,
@@ -59,11 +60,12 @@ impl Preparation {
     /// # Errors
     /// The solver's [`Fault`] while the grains settle.
     pub fn advance(&mut self) -> Result<Prepared, Fault> {
-        let Stage::Settling { settling, .. } = &mut self.stage else {
-            return Ok(self.place());
+        let done = match &mut self.stage {
+            Stage::Placing => return Ok(self.place()),
+            Stage::Packing(packing) => packing.advance(),
+            Stage::Settling { settling, .. } => settling.advance()?,
         };
-        let at_rest = settling.advance()?;
-        Ok(if at_rest {
+        Ok(if done {
             self.finish()
         } else {
             Prepared::NotYet
@@ -74,6 +76,7 @@ impl Preparation {
     pub fn name(&self) -> &'static str {
         match self.stage {
             Stage::Placing => "placing the grains",
+            Stage::Packing(_) => "cutting the grains",
             Stage::Settling { .. } => "settling the bed",
         }
     }
@@ -82,6 +85,7 @@ impl Preparation {
     pub fn progress(&self) -> f32 {
         match &self.stage {
             Stage::Placing => 0.0,
+            Stage::Packing(packing) => packing.progress(),
             Stage::Settling { settling, .. } => settling.progress(),
         }
     }
@@ -92,6 +96,10 @@ impl Preparation {
     }
 
     fn place(&mut self) -> Prepared {
+        if let Some(packing) = Packing::new(&self.scene) {
+            self.stage = Stage::Packing(Box::new(packing));
+            return Prepared::NotYet;
+        }
         let built = world::build(&self.scene, self.time_step);
         if !needs_settling(&self.scene) {
             return self.ready(with_forces(built, self.threads));
@@ -107,13 +115,18 @@ impl Preparation {
     }
 
     fn finish(&mut self) -> Prepared {
-        let Stage::Settling { key, settling } = std::mem::replace(&mut self.stage, Stage::Placing)
-        else {
-            return Prepared::NotYet;
-        };
-        let settled = settling.finish();
-        self.warnings.extend(self.beds.keep(key, &settled).err());
-        self.ready(settled)
+        match std::mem::replace(&mut self.stage, Stage::Placing) {
+            Stage::Placing => Prepared::NotYet,
+            Stage::Packing(packing) => {
+                let built = world::build_packed(&self.scene, self.time_step, packing.finish());
+                self.ready(with_forces(built, self.threads))
+            }
+            Stage::Settling { key, settling } => {
+                let settled = settling.finish();
+                self.warnings.extend(self.beds.keep(key, &settled).err());
+                self.ready(settled)
+            }
+        }
     }
 
     fn ready(&self, bed: World) -> Prepared {
@@ -147,6 +160,10 @@ fn with_forces(built: World, threads: usize) -> World {
     world.grains.position = built.grains.position;
     world.grains.velocity = built.grains.velocity;
     world.grains.spin = built.grains.spin;
+    if let (Some(polyhedra), Some(built)) = (&mut world.polyhedra, built.polyhedra) {
+        polyhedra.orientation = built.orientation;
+        polyhedra.angular_momentum = built.angular_momentum;
+    }
     let elastic = elastic_energy(&world);
     world.restart_clock(elastic);
     world

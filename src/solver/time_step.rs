@@ -121,11 +121,21 @@ fn kinds(scene: &Scene) -> Vec<Kind<'_>> {
                 })
             })
             .collect(),
+        SceneGrains::Voronoi(cells) => cells
+            .species
+            .iter()
+            .filter_map(|species| {
+                Some(Kind {
+                    radius: cells.smallest_radius(),
+                    material: material(&species.material)?,
+                })
+            })
+            .collect(),
         SceneGrains::List(grains) => grains
             .iter()
             .filter_map(|grain| {
                 Some(Kind {
-                    radius: grain.radius,
+                    radius: grain.equal_volume_radius(),
                     material: material(&grain.material)?,
                 })
             })
@@ -144,7 +154,7 @@ fn kinds(scene: &Scene) -> Vec<Kind<'_>> {
 
 fn impact_speed(scene: &Scene) -> f64 {
     match &scene.grains {
-        SceneGrains::Fill { .. } => IMPACT_SPEED,
+        SceneGrains::Fill { .. } | SceneGrains::Voronoi(_) => IMPACT_SPEED,
         SceneGrains::List(grains) => grains
             .iter()
             .map(|grain| 2.0 * grain.velocity.length())

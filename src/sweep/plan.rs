@@ -2,7 +2,7 @@
 
 use super::Sweep;
 use crate::headless::{HeadlessError, apply_setting};
-use crate::scene::{Scene, SceneGrains};
+use crate::scene::Scene;
 use crate::simulation::ScriptedCommand;
 use crate::solver::advise;
 
@@ -72,11 +72,7 @@ impl Variation {
 impl Case {
     /// What it costs to run, in grains times steps.
     pub fn cost(&self) -> f64 {
-        let grains = match &self.scene.grains {
-            SceneGrains::Fill { count, .. } => *count,
-            SceneGrains::List(list) => list.len(),
-        };
-        grains as f64 * self.scene.duration / self.time_step
+        self.scene.grain_count() as f64 * self.scene.duration / self.time_step
     }
 }
 

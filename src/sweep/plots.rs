@@ -163,10 +163,11 @@ fn viscosity(outcome: &Outcome) -> Option<f64> {
     Some(1e3 * outcome.case.scene.liquid.as_ref()?.viscosity)
 }
 
-/// Radius of a case's first species [mm].
+/// Radius of a case's first species, half a lattice cell where it is one of Voronoi cells [mm].
 fn radius(outcome: &Outcome) -> f64 {
     match &outcome.case.scene.grains {
         SceneGrains::Fill { species, .. } => species.first().map_or(0.0, |kind| 1e3 * kind.radius),
+        SceneGrains::Voronoi(cells) => 0.5e3 * cells.cell,
         SceneGrains::List(list) => list.first().map_or(0.0, |grain| 1e3 * grain.radius),
     }
 }

@@ -1,7 +1,7 @@
 //! What the scene is, what to look for, where its numbers come from.
 
 use super::{Panel, Request};
-use crate::scene::{ContactLaw, Scene, SceneGrains};
+use crate::scene::{ContactLaw, Scene};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
@@ -36,10 +36,7 @@ impl Panel for AboutScene {
 
 /// Grains, law and seed in one line.
 fn outline(scene: &Scene) -> String {
-    let grains = match &scene.grains {
-        SceneGrains::Fill { count, .. } => *count,
-        SceneGrains::List(grains) => grains.len(),
-    };
+    let grains = scene.grain_count();
     let law = match scene.law {
         ContactLaw::HertzMindlin => "Hertz–Mindlin",
         ContactLaw::Hooke { .. } => "Hooke",

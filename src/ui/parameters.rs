@@ -1,7 +1,7 @@
 //! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
 
 use super::{Panel, Request, number, symbol};
-use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer, SceneGrains};
+use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer};
 use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
@@ -59,21 +59,13 @@ impl Group {
             | Parameter::WetFriction(a, b)
             | Parameter::Restitution(a, b)
             | Parameter::RollingFriction(a, b) => {
-                if is_of_grains(scene, a) && is_of_grains(scene, b) {
+                if scene.has_grains_of(a) && scene.has_grains_of(b) {
                     Self::GrainGrain
                 } else {
                     Self::GrainWall
                 }
             }
         }
-    }
-}
-
-/// Whether grains of `scene` are made of `material`.
-fn is_of_grains(scene: &Scene, material: &str) -> bool {
-    match &scene.grains {
-        SceneGrains::Fill { species, .. } => species.iter().any(|s| s.material == material),
-        SceneGrains::List(grains) => grains.iter().any(|g| g.material == material),
     }
 }
 
@@ -84,6 +76,11 @@ fn is_of_walls(scene: &Scene, material: &str) -> bool {
         SceneContainer::Drum { material: own, .. } | SceneContainer::Box { material: own, .. } => {
             own == material
         }
+        SceneContainer::Column {
+            material: floor,
+            tube,
+            ..
+        } => floor == material || tube.as_ref().is_some_and(|tube| tube.material == material),
         SceneContainer::Planes(planes) => planes.iter().any(|plane| plane.material == material),
     }
 }

@@ -1,21 +1,24 @@
 //! From a scene to the world it starts with: grains placed without overlap, nothing settled yet.
 //!
-//! In: a checked scene. Out: its world at time zero. A filling is put on the scene's lattice from below: which size stands
-//! where, how far each grain is off its site and which species it is of come from the seed.
+//! In: a checked scene. Out: its world at time zero. A filling of spheres is put on the scene's lattice from below: which
+//! size stands where, how far each grain is off its site and which species it is of come from the seed. Voronoi cells come
+//! from [`Packing`]; only their species are chosen here.
 
-use super::mixture::{assign_species, random};
+use super::mixture::{assign_species, labelled, random};
 use super::{
-    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
-    Shape, Species, SpeciesId, Surface, Wall, World,
+    Body, Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, Packing,
+    PairProperties, Polyhedra, Polyhedron, Rounded, Shape, Species, SpeciesId, Surface, Wall,
+    World,
 };
 use crate::scene::{
-    Lattice, Scene, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
-    SceneSpecies, SizeClass, size_classes,
+    Lattice, Scene, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
+    SceneSpecies, SceneTube, SizeClass, size_classes, species_counts,
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use std::collections::HashMap;
 
 /// How far a grain may be off its site, in parts of the free width round it; below one half neighbours cannot touch.
 const JITTER: f64 = 0.45;
@@ -25,8 +28,18 @@ const PLACES: u64 = 1;
 /// The world that `scene` asks for at time zero, with steps of `time_step` [s]. The scene is one that was parsed, or that
 /// [`Scene::check`] passed; of any other, what does not fit is left out.
 pub fn build(scene: &Scene, time_step: f64) -> World {
-    let (species, grains) = match &scene.grains {
-        SceneGrains::Fill { count, species, .. } => fill(scene, *count, species),
+    let cells = Packing::new(scene).map(Packing::finish);
+    build_packed(scene, time_step, cells.unwrap_or_default())
+}
+
+/// As [`build`], with the grains `cells` that a [`Packing`] of the scene made where its grains are Voronoi cells.
+pub fn build_packed(scene: &Scene, time_step: f64, cells: Vec<Rounded>) -> World {
+    let (species, grains, polyhedra) = match &scene.grains {
+        SceneGrains::Fill { count, species, .. } => {
+            let (species, grains) = fill(scene, *count, species);
+            (species, grains, None)
+        }
+        SceneGrains::Voronoi(wanted) => packed(scene, wanted, cells),
         SceneGrains::List(list) => listed(scene, list),
     };
     let mut world = World {
@@ -39,7 +52,7 @@ pub fn build(scene: &Scene, time_step: f64) -> World {
         liquid: scene.liquid,
         law: scene.law,
         contacts: Vec::new(),
-        polyhedra: None,
+        polyhedra: polyhedra.map(Box::new),
         ledger: Ledger::default(),
     };
     world.spread_liquid();
@@ -122,6 +135,18 @@ fn container(scene: &Scene) -> Container {
             },
             box_walls(*min, *max, material_id(scene, material)),
         ),
+        SceneContainer::Column {
+            radius,
+            height,
+            material,
+            tube,
+        } => (
+            Shape::Column {
+                radius: *radius,
+                height: *height,
+            },
+            column_walls(scene, *radius, material, tube.as_ref()),
+        ),
         SceneContainer::Planes(planes) => (
             Shape::Planes,
             planes.iter().map(|plane| wall(scene, plane)).collect(),
@@ -157,6 +182,29 @@ fn drum_walls(radius: f64, width: f64, speed: f64, material: MaterialId) -> Vec<
     .into()
 }
 
+/// The floor and, where there is one, the tube that stands on it and rises.
+fn column_walls(scene: &Scene, radius: f64, floor: &str, tube: Option<&SceneTube>) -> Vec<Wall> {
+    let floor = Wall {
+        name: "floor".to_owned(),
+        surface: Surface::Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::Y,
+        },
+        material: material_id(scene, floor),
+        motion: Motion::default(),
+    };
+    let tube = tube.map(|tube| Wall {
+        name: "tube".to_owned(),
+        surface: Surface::Tube { radius, rim: 0.0 },
+        material: material_id(scene, &tube.material),
+        motion: Motion {
+            velocity: tube.speed * DVec3::Y,
+            spin: DVec3::ZERO,
+        },
+    });
+    [floor].into_iter().chain(tube).collect()
+}
+
 fn box_walls(min: DVec3, max: DVec3, material: MaterialId) -> Vec<Wall> {
     [
         ("left", min, DVec3::X),
@@ -190,8 +238,8 @@ fn wall(scene: &Scene, plane: &ScenePlane) -> Wall {
     }
 }
 
-/// One species for each material that a listed grain is made of, in the order of the materials.
-fn listed(scene: &Scene, list: &[SceneGrain]) -> (Vec<Species>, Grains) {
+/// One species for each material that a listed grain is made of, in the order of the materials, and the grains.
+fn listed(scene: &Scene, list: &[SceneGrain]) -> (Vec<Species>, Grains, Option<Polyhedra>) {
     let used = |name: &str| list.iter().any(|grain| grain.material == name);
     let materials = scene.materials.iter().filter(|m| used(&m.name));
     let species: Vec<Species> = materials
@@ -200,17 +248,130 @@ fn listed(scene: &Scene, list: &[SceneGrain]) -> (Vec<Species>, Grains) {
             material: material_id(scene, &material.name),
         })
         .collect();
+    let label = |grain: &SceneGrain| {
+        let made_of = |kind: &Species| kind.name == grain.material;
+        SpeciesId(species.iter().position(made_of).unwrap_or(0) as u16)
+    };
+    let (grains, polyhedra) = if scene.is_polyhedral() {
+        let (grains, polyhedra) = listed_polyhedra(scene, list, label);
+        (grains, Some(polyhedra))
+    } else {
+        (listed_spheres(scene, list, label), None)
+    };
+    (species, grains, polyhedra)
+}
+
+fn listed_spheres(
+    scene: &Scene,
+    list: &[SceneGrain],
+    label: impl Fn(&SceneGrain) -> SpeciesId,
+) -> Grains {
     let mut grains = Grains::default();
     for grain in list {
-        let made_of = |kind: &Species| kind.name == grain.material;
-        let id = species.iter().position(made_of).unwrap_or(0);
-        let density = scene.material(&grain.material).map_or(0.0, |m| m.1.density);
         let place = grains.len();
-        grains.push_sphere(grain.position, grain.radius, density, SpeciesId(id as u16));
+        let density = density(scene, &grain.material);
+        grains.push_sphere(grain.position, grain.radius, density, label(grain));
         grains.velocity[place] = grain.velocity;
         grains.spin[place] = grain.spin;
     }
-    (species, grains)
+    grains
+}
+
+/// The grains of a list in which some are polyhedra; equal grains share a shape.
+fn listed_polyhedra(
+    scene: &Scene,
+    list: &[SceneGrain],
+    label: impl Fn(&SceneGrain) -> SpeciesId,
+) -> (Grains, Polyhedra) {
+    let mut known: HashMap<Vec<u8>, u32> = HashMap::new();
+    let mut shapes: Vec<(Polyhedron, DQuat)> = Vec::new();
+    let mut bodies = Vec::new();
+    for grain in list {
+        let key = postcard::to_stdvec(&(&grain.shape, grain.radius)).unwrap_or_default();
+        let shape = *known.entry(key).or_insert_with(|| {
+            shapes.push(shape_of(grain));
+            (shapes.len() - 1) as u32
+        });
+        bodies.push(Body {
+            shape,
+            position: grain.position,
+            orientation: (grain.orientation * shapes[shape as usize].1).normalize(),
+            velocity: grain.velocity,
+            spin: grain.spin,
+            density: density(scene, &grain.material),
+            species: label(grain),
+        });
+    }
+    let shapes: Vec<Polyhedron> = shapes.into_iter().map(|(shape, _)| shape).collect();
+    placed(shapes, &bodies)
+}
+
+/// The shape of a listed grain, and the rotation from its body axes to the axes that the scene gave it in.
+fn shape_of(grain: &SceneGrain) -> (Polyhedron, DQuat) {
+    let rounding = grain.shape.rounding().unwrap_or(0.0);
+    let rounded = grain
+        .shape
+        .solid()
+        .and_then(|solid| Polyhedron::rounded(&solid, rounding).ok());
+    rounded.map_or_else(
+        || (Polyhedron::sphere(grain.radius), DQuat::IDENTITY),
+        |rounded| (rounded.shape, rounded.orientation),
+    )
+}
+
+/// Voronoi cells as grains, each with a species of its own choice but exact in number.
+fn packed(
+    scene: &Scene,
+    wanted: &SceneCells,
+    cells: Vec<Rounded>,
+) -> (Vec<Species>, Grains, Option<Polyhedra>) {
+    let shares: Vec<f64> = wanted.species.iter().map(|kind| kind.share).collect();
+    let everyone: Vec<usize> = (0..cells.len()).collect();
+    let counts = species_counts(cells.len(), &shares);
+    let mut labels = vec![SpeciesId(0); cells.len()];
+    for (grain, label) in labelled(scene.seed, &everyone, &counts) {
+        labels[grain] = label;
+    }
+    let densities: Vec<f64> = wanted
+        .species
+        .iter()
+        .map(|kind| density(scene, &kind.material))
+        .collect();
+    let bodies: Vec<Body> = cells
+        .iter()
+        .zip(labels)
+        .enumerate()
+        .map(|(index, (cell, species))| Body {
+            shape: index as u32,
+            position: cell.position,
+            orientation: cell.orientation,
+            velocity: DVec3::ZERO,
+            spin: DVec3::ZERO,
+            density: densities[usize::from(species.0)],
+            species,
+        })
+        .collect();
+    let shapes: Vec<Polyhedron> = cells.into_iter().map(|cell| cell.shape).collect();
+    let (grains, polyhedra) = placed(shapes, &bodies);
+    let species = wanted.species.iter().map(|kind| Species {
+        name: kind.name.clone(),
+        material: material_id(scene, &kind.material),
+    });
+    (species.collect(), grains, Some(polyhedra))
+}
+
+fn placed(shapes: Vec<Polyhedron>, bodies: &[Body]) -> (Grains, Polyhedra) {
+    let mut grains = Grains::default();
+    let mut polyhedra = Polyhedra::new(shapes);
+    for body in bodies {
+        polyhedra.push(&mut grains, body);
+    }
+    (grains, polyhedra)
+}
+
+/// Density of the material called `name` [kg/m³].
+fn density(scene: &Scene, name: &str) -> f64 {
+    scene.material(name).map_or(0.0, |m| m.1.density)
 }
 
 /// The container filled from below.
@@ -222,7 +383,7 @@ fn fill(scene: &Scene, count: usize, kinds: &[SceneSpecies]) -> (Vec<Species>, G
     let mut grains = Grains::default();
     for (place, label) in places.iter().zip(labels) {
         let kind = &kinds[usize::from(label.0)];
-        let density = scene.material(&kind.material).map_or(0.0, |m| m.1.density);
+        let density = density(scene, &kind.material);
         grains.push_sphere(place.position, kind.radius, density, label);
     }
     let species = kinds

@@ -30,7 +30,7 @@ pub struct Grains {
     pub radius: Vec<f64>,
     /// Mass [kg].
     pub mass: Vec<f64>,
-    /// Moment of inertia about the centre, `2/5 m r²` [kg m²].
+    /// Moment of inertia about the centre, `2/5 m r²` of a sphere [kg m²].
     pub inertia: Vec<f64>,
     /// Kind of grain.
     pub species: Vec<SpeciesId>,
@@ -68,12 +68,30 @@ impl Grains {
     /// Adds a sphere at rest in equilibrium (no force) of the given density [kg/m³].
     pub fn push_sphere(&mut self, position: DVec3, radius: f64, density: f64, species: SpeciesId) {
         let mass = sphere_volume(radius) * density;
+        self.push(
+            position,
+            radius,
+            mass,
+            0.4 * mass * radius * radius,
+            species,
+        );
+    }
+
+    /// Adds a grain at rest in equilibrium (no force) of this radius [m], mass [kg] and moment of inertia [kg m²].
+    pub(super) fn push(
+        &mut self,
+        position: DVec3,
+        radius: f64,
+        mass: f64,
+        inertia: f64,
+        species: SpeciesId,
+    ) {
         self.position.push(position);
         self.velocity.push(DVec3::ZERO);
         self.spin.push(DVec3::ZERO);
         self.radius.push(radius);
         self.mass.push(mass);
-        self.inertia.push(0.4 * mass * radius * radius);
+        self.inertia.push(inertia);
         self.species.push(species);
         self.force.push(DVec3::ZERO);
         self.torque.push(DVec3::ZERO);
@@ -84,17 +102,9 @@ impl Grains {
         self.open_bridges.push(0);
         self.liquid_loss.push([0.0; 2]);
     }
-
-    /// Makes grain `i` one of `species`, with the mass its radius and the `density` [kg/m³] give.
-    pub fn relabel(&mut self, i: usize, species: SpeciesId, density: f64) {
-        let radius = self.radius[i];
-        self.species[i] = species;
-        self.mass[i] = sphere_volume(radius) * density;
-        self.inertia[i] = 0.4 * self.mass[i] * radius * radius;
-    }
 }
 
 /// Volume of a sphere [m³].
-fn sphere_volume(radius: f64) -> f64 {
+pub(super) fn sphere_volume(radius: f64) -> f64 {
     4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius
 }

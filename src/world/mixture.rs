@@ -4,6 +4,7 @@
 //! The grains of one radius stand in a random order that the seed fixes, and the species take successive runs of it. So a
 //! larger share only adds grains to a species, and going back takes the same ones away.
 
+use super::grains::sphere_volume;
 use super::{SpeciesId, World};
 use crate::scene::{Scene, SizeClass};
 use rand::SeedableRng;
@@ -47,14 +48,14 @@ pub(super) fn assign_species(
 
 /// Makes the share by number of the species `species` of a filling as near `share` as whole grains allow.
 ///
-/// The difference goes to, or comes from, the species of the same radius that follow in the scene's list, the next one
-/// first and round: so giving the shares of all but the last one after another reaches any mixture. A species that shares
-/// its radius with no other keeps its grains, and so do listed grains.
+/// The difference goes to, or comes from, the species that it can change places with (of the same radius, or all species
+/// of Voronoi cells) and that follow in the scene's list, the next one first and round: so giving the shares of all but the
+/// last one after another reaches any mixture. A species without such others keeps its grains, and so do listed grains.
 ///
-/// A grain that changes its species keeps its place and its motion and takes the other material's density. What that does
+/// A grain that changes its species keeps its place, its shape and its motion and takes the other material's density. What that does
 /// to the energies is for the caller to book.
 pub fn set_share(world: &mut World, scene: &Scene, species: SpeciesId, share: f64) {
-    let members = scene.species_of_same_radius(usize::from(species.0));
+    let members = scene.interchangeable_species(usize::from(species.0));
     let Some(own) = members.iter().position(|&m| m == usize::from(species.0)) else {
         return;
     };
@@ -69,6 +70,31 @@ pub fn set_share(world: &mut World, scene: &Scene, species: SpeciesId, share: f6
     }
     let wanted: Vec<(usize, usize)> = members.into_iter().zip(counts).collect();
     relabel(world, scene.seed, &wanted);
+}
+
+impl World {
+    /// Makes grain `i` one of `species`, with the mass that its shape and the species' density give. It keeps its place and
+    /// its motion.
+    fn relabel(&mut self, i: usize, species: SpeciesId) {
+        let material = self.species[usize::from(species.0)].material;
+        let density = self.materials.get(material).density;
+        let radius = self.grains.radius[i];
+        let (volume, gyration) = match &self.polyhedra {
+            Some(polyhedra) => {
+                let shape = polyhedra.shape_of(i);
+                (shape.volume, shape.mean_gyration())
+            }
+            None => (sphere_volume(radius), 0.4 * radius * radius),
+        };
+        let mass = volume * density;
+        self.grains.species[i] = species;
+        self.grains.mass[i] = mass;
+        self.grains.inertia[i] = mass * gyration;
+        if let Some(polyhedra) = &mut self.polyhedra {
+            polyhedra.inertia[i] = mass * polyhedra.shape_of(i).gyration;
+            polyhedra.set_spin(i, self.grains.spin[i]);
+        }
+    }
 }
 
 fn count(world: &World, species: usize) -> usize {
@@ -88,15 +114,13 @@ fn relabel(world: &mut World, seed: u64, wanted: &[(usize, usize)]) {
         .collect();
     for (grain, species) in labelled(seed, &members, wanted) {
         if world.grains.species[grain] != species {
-            let material = world.species[usize::from(species.0)].material;
-            let density = world.materials.get(material).density;
-            world.grains.relabel(grain, species, density);
+            world.relabel(grain, species);
         }
     }
 }
 
 /// The grains `members` in label order, each with its species: the first run is of the first species, and so on.
-fn labelled<'a>(
+pub(super) fn labelled<'a>(
     seed: u64,
     members: &'a [usize],
     counts: &'a [(usize, usize)],

@@ -13,11 +13,13 @@ mod ledger;
 mod liquid;
 mod material;
 mod mixture;
+mod packing;
 mod polyhedra;
 mod polyhedron;
+mod voronoi;
 
 pub use crate::scene::SceneLiquid as Liquid;
-pub use build::build;
+pub use build::{build, build_packed};
 pub use contact::{Contact, Partner};
 pub use container::{Container, Motion, Shape, Surface, Wall};
 pub use grains::{Grains, Species, SpeciesId};
@@ -26,8 +28,10 @@ pub use ledger::Ledger;
 pub use liquid::Bridge;
 pub use material::{Material, MaterialId, Materials, PairProperties};
 pub use mixture::{label_order, set_share};
-pub use polyhedra::{Feature, FeatureContact, Polyhedra};
-pub use polyhedron::Polyhedron;
+pub use packing::Packing;
+pub use polyhedra::{Body, Feature, FeatureContact, Polyhedra};
+pub use polyhedron::{Polyhedron, Rounded};
+pub use voronoi::{Boundary, Tessellation};
 
 use crate::scene::ContactLaw;
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! What grains that are no spheres need beside the columns that all grains have.
 
-use super::{Partner, Polyhedron};
+use super::{Grains, Partner, Polyhedron, SpeciesId};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -57,7 +57,55 @@ pub enum Feature {
     VertexVertex,
 }
 
+/// A polyhedral grain to place: which shape, where, how it moves, and of what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Index of its shape.
+    pub shape: u32,
+    /// Where its centroid is [m].
+    pub position: DVec3,
+    /// Rotation from body axes to the axes of the world, a unit quaternion.
+    pub orientation: DQuat,
+    /// Velocity of the centroid [m/s].
+    pub velocity: DVec3,
+    /// Angular velocity [rad/s].
+    pub spin: DVec3,
+    /// Density [kg/m³].
+    pub density: f64,
+    /// Kind of grain.
+    pub species: SpeciesId,
+}
+
 impl Polyhedra {
+    /// No grains yet, of these shapes.
+    pub fn new(shapes: impl Into<Arc<[Polyhedron]>>) -> Self {
+        Self {
+            shapes: shapes.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds `body` to these columns and to those of `grains`.
+    pub fn push(&mut self, grains: &mut Grains, body: &Body) {
+        let shape = &self.shapes[body.shape as usize];
+        let mass = shape.volume * body.density;
+        grains.push(
+            body.position,
+            shape.bounding_radius(),
+            mass,
+            mass * shape.mean_gyration(),
+            body.species,
+        );
+        let place = grains.len() - 1;
+        grains.velocity[place] = body.velocity;
+        grains.spin[place] = body.spin;
+        self.shape.push(body.shape);
+        self.orientation.push(body.orientation);
+        self.angular_momentum.push(DVec3::ZERO);
+        self.inertia.push(mass * shape.gyration);
+        self.set_spin(place, body.spin);
+    }
+
     /// The shape of grain `i`.
     pub fn shape_of(&self, i: usize) -> &Polyhedron {
         &self.shapes[self.shape[i] as usize]

@@ -1,6 +1,8 @@
 //! One rounded convex polyhedron in its body frame.
 
-use glam::DVec3;
+use super::grains::sphere_volume;
+use crate::geometry::{Flaw, Solid};
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// A convex core and the radius by which it is rounded: the body is all that lies within `rounding` of the core.
@@ -23,7 +25,46 @@ pub struct Polyhedron {
     pub gyration: DVec3,
 }
 
+/// A solid made a rounded polyhedron, and where its body frame is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rounded {
+    /// The rounded polyhedron in its body frame.
+    pub shape: Polyhedron,
+    /// Centroid of the solid [m].
+    pub position: DVec3,
+    /// Rotation from body axes to the solid's.
+    pub orientation: DQuat,
+}
+
 impl Polyhedron {
+    /// `solid` with its edges and corners rounded: it is eroded by `rounding` [m], then dilated by it, so that flat faces
+    /// stay where they were. Volume and moments are those of `solid` itself, as in the program of Man et al. 2023.
+    ///
+    /// # Errors
+    /// [`Flaw::Empty`] where erosion leaves nothing.
+    pub fn rounded(solid: &Solid, rounding: f64) -> Result<Rounded, Flaw> {
+        let core = solid.eroded(rounding).ok_or(Flaw::Empty)?;
+        let moments = solid.moments();
+        let (orientation, second) = moments.principal_axes();
+        let into_body = orientation.conjugate();
+        let vertices = core.vertices.iter();
+        let shape = Self {
+            vertices: vertices
+                .map(|x| into_body * (*x - moments.centroid))
+                .collect(),
+            edges: core.edges(),
+            faces: core.faces,
+            rounding,
+            volume: moments.volume,
+            gyration: (DVec3::splat(second.element_sum()) - second) / moments.volume,
+        };
+        Ok(Rounded {
+            shape,
+            position: moments.centroid,
+            orientation,
+        })
+    }
+
     /// A sphere.
     pub fn sphere(radius: f64) -> Self {
         Self {
@@ -31,7 +72,7 @@ impl Polyhedron {
             edges: Vec::new(),
             faces: Vec::new(),
             rounding: radius,
-            volume: 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius,
+            volume: sphere_volume(radius),
             gyration: DVec3::splat(0.4 * radius * radius),
         }
     }
@@ -40,5 +81,10 @@ impl Polyhedron {
     pub fn bounding_radius(&self) -> f64 {
         let farthest = self.vertices.iter().map(|v| v.length());
         farthest.fold(0.0, f64::max) + self.rounding
+    }
+
+    /// Mean of the principal moments of inertia over the mass [m²].
+    pub fn mean_gyration(&self) -> f64 {
+        self.gyration.element_sum() / 3.0
     }
 }

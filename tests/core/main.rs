@@ -7,3 +7,4 @@ mod scene;
 mod solver;
 mod sweep;
 mod vtk;
+mod world;

@@ -231,7 +231,7 @@ fn a_share_cannot_change_where_radii_differ() {
     let mut world = start.clone();
     world::set_share(&mut world, &scene, SpeciesId(0), 0.9);
     assert_eq!(world.grains, start.grains);
-    assert_eq!(scene.species_of_same_radius(0), [0]);
+    assert_eq!(scene.interchangeable_species(0), [0]);
 }
 
 #[test]

@@ -118,7 +118,13 @@ fn no_mutation_of_a_scene_makes_it_panic() {
         .iter()
         .map(|scene| scene.text.to_owned())
         .collect();
-    for name in ["every-key", "touching-list", "two-sizes-box"] {
+    for name in [
+        "every-key",
+        "every-shape",
+        "held-column",
+        "touching-list",
+        "two-sizes-box",
+    ] {
         sources.push(std::fs::read_to_string(format!("tests/core/scene/good/{name}.ron")).unwrap());
     }
     let mut rng = ChaCha8Rng::seed_from_u64(20_210_401);
@@ -132,12 +138,15 @@ fn no_mutation_of_a_scene_makes_it_panic() {
                 // Building large ones would only take time.
                 if round % 20 == 0 {
                     assert!(scene.check().is_ok());
-                    let wanted = match &scene.grains {
-                        SceneGrains::Fill { count, .. } => *count,
-                        SceneGrains::List(list) => list.len(),
-                    };
+                    let cells = matches!(scene.grains, SceneGrains::Voronoi(_));
+                    if cells && scene.grain_count() > 10_000 {
+                        continue;
+                    }
                     let mut world = world::build(&scene, advise(&scene).time_step);
-                    assert_eq!(world.grains.len(), wanted, "{text}");
+                    // How many cells lie in a drum or in a column is known when they are made.
+                    if !cells {
+                        assert_eq!(world.grains.len(), scene.grain_count(), "{text}");
+                    }
                     // A fault is a fair answer to an odd scene; a panic is not.
                     let _ = solver.advance(&mut world, 2);
                 }

@@ -1,0 +1,165 @@
+//! The shapes that listed grains can have.
+//!
+//! In: what a scene says of a shape. Out: the solid it is, about its own centroid, and the rounded core a grain of it has.
+
+use super::SceneGrain;
+use super::check::{MOST_POINTS, MOST_SIDES};
+use crate::geometry::Solid;
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// What a listed grain is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SceneShape {
+    /// A sphere of the grain's radius.
+    Sphere,
+    /// A box along its axes.
+    Box {
+        /// Its edges along x, y and z [m].
+        size: DVec3,
+        /// Rounding radius [m].
+        rounding: f64,
+    },
+    /// A regular tetrahedron.
+    Tetrahedron {
+        /// Its edge [m].
+        edge: f64,
+        /// Rounding radius [m].
+        rounding: f64,
+    },
+    /// An upright prism over a regular polygon.
+    Prism {
+        /// Sides of the polygon.
+        sides: u32,
+        /// Side of the polygon [m].
+        edge: f64,
+        /// Height along y [m].
+        height: f64,
+        /// Rounding radius [m].
+        rounding: f64,
+    },
+    /// The convex hull of points.
+    Hull {
+        /// The points, in any frame: the grain's position is the hull's centroid [m].
+        points: Vec<DVec3>,
+        /// Rounding radius [m].
+        rounding: f64,
+    },
+}
+
+/// What a listed grain takes up in space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneBody {
+    /// A sphere.
+    Sphere,
+    /// A rounded core.
+    Polyhedron {
+        /// The solid in its place, eroded by the rounding radius.
+        core: Solid,
+        /// Rounding radius [m].
+        rounding: f64,
+    },
+}
+
+impl SceneShape {
+    /// Whether it is a sphere.
+    pub fn is_sphere(&self) -> bool {
+        *self == Self::Sphere
+    }
+
+    /// Rounding radius [m]; none of a sphere.
+    pub fn rounding(&self) -> Option<f64> {
+        match self {
+            Self::Sphere => None,
+            Self::Box { rounding, .. }
+            | Self::Tetrahedron { rounding, .. }
+            | Self::Prism { rounding, .. }
+            | Self::Hull { rounding, .. } => Some(*rounding),
+        }
+    }
+
+    /// Radius of the sphere about its centroid that holds it before it is rounded [m]; not a number for a sphere, nor
+    /// where it encloses nothing.
+    pub fn radius(&self) -> f64 {
+        let solid = self.solid();
+        solid.map_or(f64::NAN, |solid| {
+            let corners = solid.vertices.iter().map(|x| x.length());
+            corners.fold(0.0, f64::max)
+        })
+    }
+
+    /// The solid before it is rounded, its centroid at the origin; none of a sphere, nor of points in one plane.
+    pub fn solid(&self) -> Option<Solid> {
+        let solid = match self {
+            Self::Sphere => return None,
+            Self::Box { size, .. } => Solid::cuboid(-0.5 * *size, 0.5 * *size),
+            Self::Tetrahedron { edge, .. } => Solid::hull(&tetrahedron(*edge))?,
+            Self::Prism {
+                sides,
+                edge,
+                height,
+                ..
+            } if *sides <= MOST_SIDES => Solid::hull(&prism(*sides, *edge, *height))?,
+            Self::Prism { .. } => return None,
+            Self::Hull { points, .. } if points.len() <= MOST_POINTS => Solid::hull(points)?,
+            Self::Hull { .. } => return None,
+        };
+        let centroid = solid.moments().centroid;
+        Some(solid.moved(-centroid))
+    }
+}
+
+impl SceneGrain {
+    /// What it takes up in space; none where its shape encloses nothing, or nothing is left of it to round.
+    pub fn body(&self) -> Option<SceneBody> {
+        let Some(rounding) = self.shape.rounding() else {
+            return Some(SceneBody::Sphere);
+        };
+        let core = self.shape.solid()?.eroded(rounding)?;
+        Some(SceneBody::Polyhedron {
+            core: core.turned(self.orientation).moved(self.position),
+            rounding,
+        })
+    }
+
+    /// Radius of the sphere of its volume [m].
+    pub fn equal_volume_radius(&self) -> f64 {
+        let solid = self.shape.solid();
+        solid.map_or(self.radius, |solid| sphere_radius(solid.moments().volume))
+    }
+}
+
+/// Radius of the sphere of this volume [m].
+pub(super) fn sphere_radius(volume: f64) -> f64 {
+    libm::cbrt(0.75 * volume / std::f64::consts::PI)
+}
+
+fn tetrahedron(edge: f64) -> [DVec3; 4] {
+    let half = edge / 8.0_f64.sqrt();
+    let corners = [
+        DVec3::new(1.0, 1.0, 1.0),
+        DVec3::new(1.0, -1.0, -1.0),
+        DVec3::new(-1.0, 1.0, -1.0),
+        DVec3::new(-1.0, -1.0, 1.0),
+    ];
+    corners.map(|corner| half * corner)
+}
+
+fn prism(sides: u32, edge: f64, height: f64) -> Vec<DVec3> {
+    let half_angle = std::f64::consts::PI / f64::from(sides);
+    let radius = 0.5 * edge / libm::sin(half_angle);
+    let corner = |i: u32| {
+        let angle = 2.0 * half_angle * f64::from(i);
+        radius * DVec3::new(libm::cos(angle), 0.0, libm::sin(angle))
+    };
+    let up = 0.5 * height * DVec3::Y;
+    (0..sides)
+        .flat_map(|i| [corner(i) - up, corner(i) + up])
+        .collect()
+}
+
+/// The rotation by `angle` [rad] about `axis`, a unit vector; the same bits on every machine.
+pub(super) fn rotation(axis: DVec3, angle: f64) -> DQuat {
+    let along = libm::sin(0.5 * angle) * axis;
+    DQuat::from_xyzw(along.x, along.y, along.z, libm::cos(0.5 * angle))
+}
