@@ -272,13 +272,14 @@ mod avx {
 
     use super::{Lanes, Quad, Row, Rows, WIDEST, Work};
     use std::arch::x86_64::{
-        __m256d, __m512d, __mmask8, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd,
-        _mm256_div_pd, _mm256_loadu_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd,
-        _mm256_set_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd,
-        _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd, _mm512_add_pd,
-        _mm512_castpd256_pd512, _mm512_castpd512_pd256, _mm512_cmp_pd_mask, _mm512_div_pd,
-        _mm512_extractf64x4_pd, _mm512_insertf64x4, _mm512_mask_blend_pd, _mm512_mul_pd,
-        _mm512_set1_pd, _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd, _mm512_xor_pd,
+        __m256d, __m512d, __mmask8, _CMP_GT_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_pd,
+        _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd, _mm256_loadu_pd, _mm256_movemask_pd,
+        _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set_pd, _mm256_set1_pd, _mm256_sqrt_pd,
+        _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd,
+        _mm512_add_pd, _mm512_castpd256_pd512, _mm512_castpd512_pd256, _mm512_cmp_pd_mask,
+        _mm512_div_pd, _mm512_extractf64x4_pd, _mm512_insertf64x4, _mm512_mask_blend_pd,
+        _mm512_mul_pd, _mm512_set1_pd, _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd,
+        _mm512_xor_pd,
     };
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -289,6 +290,18 @@ mod avx {
     /// Proof that the processor has AVX-512 (F, DQ, VL) as well: only [`Avx512::detect`] makes one.
     #[derive(Clone, Copy, Debug)]
     pub struct Avx512(());
+
+    /// Asks for the first cache lines of `items`.
+    #[inline(always)]
+    pub fn prefetch<T, const LINES: usize>(items: &[T]) {
+        const LINE: usize = 64;
+        let start = items.as_ptr().cast::<i8>();
+        let lines = std::mem::size_of_val(items).div_ceil(LINE);
+        for line in 0..lines.min(LINES) {
+            // SAFETY: a prefetch reads nothing that the program could see; the address lies within `items`.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line * LINE)) };
+        }
+    }
 
     /// Either proof: the processor has AVX2.
     pub trait Proof: Copy {}
@@ -681,6 +694,15 @@ mod avx {
             numbers
         }
     }
+}
+
+/// Asks for the memory at the beginning of `items`, up to `LINES` cache lines of it, before it is needed.
+#[inline(always)]
+pub fn prefetch<T, const LINES: usize>(items: &[T]) {
+    #[cfg(target_arch = "x86_64")]
+    avx::prefetch::<T, LINES>(items);
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = items;
 }
 
 /// Something to compute in lanes.

@@ -3,9 +3,10 @@
 //! Vertices are turned anew from the body frame in every step, so that shapes never drift.
 
 use super::super::row::{Row, length_squared, row, vector};
-use super::nearest::Geometry;
+use super::nearest::Places;
 use crate::world::{Polyhedron, World};
 use glam::{DQuat, DVec3};
+use std::ops::Range;
 
 /// What the pair loop reads of a body, and what moves it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,14 +56,14 @@ pub struct Shapes {
     pub places: Vec<Place>,
     /// Vertices along the body axes [m].
     pub body_vertices: Vec<Row>,
-    /// Outward normals along the body axes; the face's first vertex.
-    pub body_normals: Vec<(DVec3, u32)>,
-    /// Ends of the edges: vertices.
-    pub edges: Vec<[u32; 2]>,
+    /// Outward normals along the body axes; the face's first vertex, by its number in the body.
+    pub body_normals: Vec<(DVec3, u16)>,
+    /// Ends of the edges, by their numbers in the body.
+    pub edges: Vec<[u16; 2]>,
     /// Where in `loops` each face's vertices begin.
     pub loop_starts: Vec<u32>,
-    /// Vertices of the faces.
-    pub loops: Vec<u32>,
+    /// Vertices of the faces, by their numbers in the body.
+    pub loops: Vec<u16>,
 }
 
 impl Shapes {
@@ -86,22 +87,19 @@ impl Shapes {
     }
 
     fn push(&mut self, shape: &Polyhedron) {
-        let place = self.end();
-        self.places.push(place);
-        let absolute = |vertex: &u16| place.vertex + u32::from(*vertex);
+        self.places.push(self.end());
         self.body_vertices
             .extend(shape.vertices.iter().map(|&v| row(v, 0.0)));
-        self.edges
-            .extend(shape.edges.iter().map(|[a, b]| [absolute(a), absolute(b)]));
+        self.edges.extend_from_slice(&shape.edges);
         for face in &shape.faces {
             self.loop_starts.push(self.loops.len() as u32);
-            self.loops.extend(face.iter().map(absolute));
-            let first = face.first().map_or(place.vertex, absolute);
+            self.loops.extend_from_slice(face);
+            let first = face.first().copied().unwrap_or(0);
             self.body_normals.push((outward_normal(shape, face), first));
         }
         if shape.vertices.len() == 1 {
             // Two spheres meet as two edges of no length.
-            self.edges.push([place.vertex; 2]);
+            self.edges.push([0; 2]);
         }
     }
 
@@ -126,19 +124,51 @@ impl Shapes {
         let own = &self.body_normals[from.face as usize..to.face as usize];
         for (plane, (normal, corner)) in planes.iter_mut().zip(own) {
             let n = turned(normal.to_array());
-            let v = vertices[(corner - from.vertex) as usize];
+            let v = vertices[usize::from(*corner)];
             *plane = [n[0], n[1], n[2], n[0] * v[0] + n[1] * v[1] + n[2] * v[2]];
         }
     }
 
-    /// Features of all bodies at these places.
-    pub fn geometry<'a>(&'a self, vertices: &'a [Row], planes: &'a [Row]) -> Geometry<'a> {
-        Geometry {
-            vertices,
-            planes,
-            loop_starts: &self.loop_starts,
-            loops: &self.loops,
-        }
+    /// Ranges of the features of body `i` in the tables: vertices, edges, faces.
+    #[inline(always)]
+    pub fn features_of(&self, i: usize) -> [Range<usize>; 3] {
+        let (from, to) = (self.places[i], self.places[i + 1]);
+        [
+            from.vertex as usize..to.vertex as usize,
+            from.edge as usize..to.edge as usize,
+            from.face as usize..to.face as usize,
+        ]
+    }
+
+    /// Vertices of a face of the tables, by their numbers in the body.
+    #[inline(always)]
+    pub fn outline(&self, face: usize) -> &[u16] {
+        &self.loops[self.loop_starts[face] as usize..self.loop_starts[face + 1] as usize]
+    }
+}
+
+/// The shapes of all bodies, and where they are now.
+#[derive(Clone, Copy)]
+pub struct Geometry<'a> {
+    /// The shapes.
+    pub shapes: &'a Shapes,
+    /// Their features.
+    pub places: Places<'a>,
+}
+
+impl<'a> Geometry<'a> {
+    /// The vertices of body `i` [m].
+    #[inline(always)]
+    pub fn vertices_of(&self, i: usize) -> &'a [Row] {
+        let [vertices, ..] = self.shapes.features_of(i);
+        &self.places.vertices[vertices]
+    }
+
+    /// The planes of its faces.
+    #[inline(always)]
+    pub fn planes_of(&self, i: usize) -> &'a [Row] {
+        let [_, _, faces] = self.shapes.features_of(i);
+        &self.places.planes[faces]
     }
 }
 

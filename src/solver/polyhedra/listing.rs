@@ -7,26 +7,24 @@
 //! nothing to any result.
 
 use super::super::lanes::{Lanes, Row, dot, side_by_side};
-use super::bodies::{Place, Shapes};
-use super::nearest::{EdgeJob, FaceJob, Geometry, Nearest, at_faces, between_edges};
+use super::super::row::{sub, vector};
+use super::bodies::{Geometry, Shapes};
+use super::nearest::{EdgeJob, FaceJob, Jobs, Nearest, OutlineJob, Places};
 use crate::world::Feature;
-use std::ops::Range;
 
-/// Two features that may touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Entry {
+/// The features of a pair that may touch, in order.
+#[derive(Clone, Debug, Default)]
+pub struct List {
     /// Which.
-    pub feature: Feature,
-    /// Whether it is a vertex that stays over the inside of the face while the list is good.
-    pub inside: bool,
+    pub features: Vec<Feature>,
+    /// What to compute for them, numbered in that order.
+    pub jobs: Jobs,
 }
 
 /// What a search needs again and again.
 #[derive(Default)]
 pub struct Search {
-    edges: Vec<EdgeJob>,
-    faces: Vec<FaceJob>,
-    features: Vec<Feature>,
+    candidates: List,
     results: Vec<Nearest>,
     near: [NearFeatures; 2],
     marks: Vec<bool>,
@@ -35,9 +33,9 @@ pub struct Search {
 /// Features of a body within reach of the parting plane, by their indices in the shape.
 #[derive(Default)]
 struct NearFeatures {
-    vertices: Vec<u32>,
-    edges: Vec<u32>,
-    faces: Vec<u32>,
+    vertices: Vec<u16>,
+    edges: Vec<u16>,
+    faces: Vec<u16>,
 }
 
 /// A direction from the first body to the second, and what it parts.
@@ -50,19 +48,11 @@ struct Axis {
 
 impl Axis {
     /// What `direction` parts.
-    fn between(
-        shapes: &Shapes,
-        geometry: &Geometry<'_>,
-        bodies: [usize; 2],
-        direction: [f64; 3],
-    ) -> Self {
-        let [a, b] = bodies.map(|body| features_of(shapes, body)[0].clone());
+    fn between(vertices: [&[Row]; 2], direction: [f64; 3]) -> Self {
+        let [first, second] = vertices;
         Self {
             direction,
-            ends: [
-                extent(&geometry.vertices[a], direction)[1],
-                extent(&geometry.vertices[b], direction)[0],
-            ],
+            ends: [extent(first, direction)[1], extent(second, direction)[0]],
         }
     }
 
@@ -92,16 +82,6 @@ pub struct Found {
     pub slack: f64,
     /// The direction that parts them best.
     pub axis: Row,
-}
-
-/// Vertices, edges and faces of a body.
-fn features_of(shapes: &Shapes, body: usize) -> [Range<usize>; 3] {
-    let (from, to): (Place, Place) = (shapes.places[body], shapes.places[body + 1]);
-    [
-        from.vertex as usize..to.vertex as usize,
-        from.edge as usize..to.edge as usize,
-        from.face as usize..to.face as usize,
-    ]
 }
 
 /// Smallest and largest coordinate of some vertices along a direction.
@@ -159,13 +139,14 @@ impl Search {
     pub fn run<N: Lanes>(
         &mut self,
         processor: N::Processor,
-        shapes: &Shapes,
         geometry: &Geometry<'_>,
         wanted: &Wanted,
-        list: &mut Vec<Entry>,
+        list: &mut List,
     ) -> Found {
         list.clear();
-        let axis = parting_axis::<N>(processor, shapes, geometry, wanted);
+        let vertices = wanted.bodies.map(|body| geometry.vertices_of(body));
+        let planes = wanted.bodies.map(|body| geometry.planes_of(body));
+        let axis = parting_axis::<N>(processor, vertices, planes, wanted.axis);
         let [x, y, z] = axis.direction;
         let mut found = Found {
             slack: wanted.skin,
@@ -176,52 +157,41 @@ impl Search {
             found.slack = axis.gap() - wanted.touch;
             return found;
         }
-        self.collect_near(shapes, geometry, wanted, &axis, cutoff);
-        self.collect_jobs(shapes, wanted);
+        self.collect_near(geometry, wanted, &axis, cutoff);
+        self.collect_candidates(geometry.shapes, wanted);
         self.results.clear();
-        self.results.resize(self.features.len(), Nearest::default());
-        at_faces::<N, true>(processor, geometry, &self.faces, &mut self.results);
-        between_edges::<N>(processor, geometry, &self.edges, &mut self.results);
+        self.results
+            .resize(self.candidates.features.len(), Nearest::default());
+        let jobs = &self.candidates.jobs;
+        jobs.run::<N, true>(processor, &geometry.places, &mut self.results);
         let mut nearest = f64::INFINITY;
-        for (feature, result) in self.features.iter().zip(&self.results) {
+        for result in &self.results {
             let [nx, ny, nz, distance] = result.normal;
-            if distance < cutoff {
-                let over_face = !matches!(feature, Feature::EdgeEdge(..) | Feature::VertexVertex);
-                list.push(Entry {
-                    feature: *feature,
-                    inside: over_face && result.middle[3] > wanted.skin,
-                });
-            }
             if distance < nearest {
                 nearest = distance;
                 found.axis = [nx, ny, nz, 0.0];
             }
         }
-        if list.is_empty() {
+        self.keep_near(&geometry.places, cutoff, wanted.skin, list);
+        if list.features.is_empty() {
             // The nearest features tell a better direction, which may part the two by more.
             let [x, y, z, _] = found.axis;
-            let gap = Axis::between(shapes, geometry, wanted.bodies, [x, y, z]).gap();
+            let gap = Axis::between(vertices, [x, y, z]).gap();
             found.slack = found.slack.max(gap - wanted.touch);
         }
         found
     }
 
     /// Features of both bodies that lie within `cutoff` of the other body along the axis.
-    fn collect_near(
-        &mut self,
-        shapes: &Shapes,
-        geometry: &Geometry<'_>,
-        wanted: &Wanted,
-        axis: &Axis,
-        cutoff: f64,
-    ) {
+    fn collect_near(&mut self, geometry: &Geometry<'_>, wanted: &Wanted, axis: &Axis, cutoff: f64) {
         for side in 0..2 {
-            let [vertices, edges, faces] = features_of(shapes, wanted.bodies[side]);
+            let shapes = geometry.shapes;
+            let body = wanted.bodies[side];
+            let [_, edges, faces] = shapes.features_of(body);
             let near = &mut self.near[side];
-            let first = vertices.start as u32;
             self.marks.clear();
             self.marks
-                .extend(geometry.vertices[vertices].iter().map(|v| {
+                .extend(geometry.vertices_of(body).iter().map(|v| {
                     let place = along(*v, axis.direction);
                     if side == 0 {
                         place >= axis.ends[1] - cutoff
@@ -230,111 +200,228 @@ impl Search {
                     }
                 }));
             let marks = &self.marks;
-            let marked = |v: &u32| marks[(v - first) as usize];
+            let marked = |v: &u16| marks[usize::from(*v)];
             near.vertices.clear();
             near.vertices
-                .extend((0..marks.len() as u32).filter(|v| marks[*v as usize]));
+                .extend((0..marks.len() as u16).filter(|v| marked(v)));
             near.edges.clear();
-            let begin = edges.start;
+            let ends = shapes.edges[edges].iter().zip(0..);
             near.edges.extend(
-                edges
-                    .filter(|&edge| shapes.edges[edge].iter().any(marked))
-                    .map(|edge| (edge - begin) as u32),
+                ends.filter(|(ends, _)| ends.iter().any(marked))
+                    .map(|(_, edge)| edge),
             );
             near.faces.clear();
-            let begin = faces.start;
+            let outlines = faces.map(|face| shapes.outline(face)).zip(0..);
             near.faces.extend(
-                faces
-                    .filter(|&face| geometry.outline(face as u32).iter().any(marked))
-                    .map(|face| (face - begin) as u32),
+                outlines
+                    .filter(|(outline, _)| outline.iter().any(marked))
+                    .map(|(_, face)| face),
             );
         }
     }
 
     /// Every pair of near features, in order.
-    fn collect_jobs(&mut self, shapes: &Shapes, wanted: &Wanted) {
-        let [a, b] = wanted.bodies.map(|body| shapes.places[body]);
+    fn collect_candidates(&mut self, shapes: &Shapes, wanted: &Wanted) {
+        let [a, b] = wanted.bodies.map(|body| shapes.features_of(body));
         let [near_a, near_b] = &self.near;
-        self.features.clear();
-        self.faces.clear();
-        self.edges.clear();
+        let list = &mut self.candidates;
+        list.clear();
+        let [starts_a, starts_b] = [&a, &b].map(|of| [0, 1, 2].map(|kind| of[kind].start as u32));
         for &vertex in &near_a.vertices {
             for &face in &near_b.faces {
-                self.faces.push(FaceJob {
-                    vertex: a.vertex + vertex,
-                    face: b.face + face,
+                let job = FaceJob {
+                    vertex: starts_a[0] + u32::from(vertex),
+                    face: starts_b[2] + u32::from(face),
                     side: 0,
-                    out: self.features.len() as u32,
-                });
-                self.features
-                    .push(Feature::VertexFace(vertex as u16, face as u16));
+                    out: 0,
+                };
+                list.push_outline(shapes, Feature::VertexFace(vertex, face), job, starts_b[0]);
             }
         }
         for &face in &near_a.faces {
             for &vertex in &near_b.vertices {
-                self.faces.push(FaceJob {
-                    vertex: b.vertex + vertex,
-                    face: a.face + face,
+                let job = FaceJob {
+                    vertex: starts_b[0] + u32::from(vertex),
+                    face: starts_a[2] + u32::from(face),
                     side: 1,
-                    out: self.features.len() as u32,
-                });
-                self.features
-                    .push(Feature::FaceVertex(face as u16, vertex as u16));
+                    out: 0,
+                };
+                list.push_outline(shapes, Feature::FaceVertex(face, vertex), job, starts_a[0]);
             }
         }
-        let spheres = wanted.bodies.map(|body| is_sphere(shapes, body));
+        let spheres = [&a[0], &b[0]].map(|vertices| vertices.len() == 1);
         if spheres[0] != spheres[1] {
             // A sphere has a vertex, which meets faces, and no edge.
             return;
         }
         for &first in &near_a.edges {
             for &second in &near_b.edges {
-                self.edges.push(edge_job(
-                    shapes,
-                    [a.edge + first, b.edge + second],
-                    self.features.len() as u32,
-                ));
-                self.features.push(if spheres[0] {
+                let [p, q] = shapes.edges[a[1].start + usize::from(first)];
+                let [r, s] = shapes.edges[b[1].start + usize::from(second)];
+                let [p, q] = [p, q].map(|vertex| starts_a[0] + u32::from(vertex));
+                let [r, s] = [r, s].map(|vertex| starts_b[0] + u32::from(vertex));
+                list.jobs.edges.push(EdgeJob {
+                    ends: [p, q, r, s],
+                    out: list.features.len() as u32,
+                });
+                list.features.push(if spheres[0] {
                     Feature::VertexVertex
                 } else {
-                    Feature::EdgeEdge(first as u16, second as u16)
+                    Feature::EdgeEdge(first, second)
                 });
+            }
+        }
+    }
+
+    /// Keeps the candidates nearer than `cutoff`, each with what matters while the bodies move by `skin`.
+    fn keep_near(&self, places: &Places<'_>, cutoff: f64, skin: f64, list: &mut List) {
+        let Jobs {
+            outlines,
+            sides,
+            edges,
+            ..
+        } = &self.candidates.jobs;
+        for job in outlines {
+            let candidate = job.face.out as usize;
+            let result = &self.results[candidate];
+            if result.normal[3] >= cutoff {
+                continue;
+            }
+            let face = FaceJob {
+                out: list.features.len() as u32,
+                ..job.face
+            };
+            list.features.push(self.candidates.features[candidate]);
+            if result.middle[3] > skin {
+                list.jobs.above.push(face);
+                continue;
+            }
+            let first = list.jobs.sides.len() as u32;
+            let all = &sides[job.first as usize..(job.first + job.count) as usize];
+            let beside = || all.iter().map(|side| along_side(places, &face, *side));
+            let nearest = beside().fold(f64::INFINITY, |least, (_, distance)| least.min(distance));
+            // Every distance changes by the skin at most.
+            let matters = |(margin, distance): (f64, f64)| {
+                margin <= 1.01 * skin || distance <= nearest + 2.02 * skin
+            };
+            let kept = all
+                .iter()
+                .zip(beside())
+                .filter(|(_, place)| matters(*place));
+            list.jobs.sides.extend(kept.map(|(side, _)| *side));
+            let count = list.jobs.sides.len() as u32 - first;
+            list.jobs.outlines.push(OutlineJob { face, count, first });
+        }
+        for job in edges {
+            let candidate = job.out as usize;
+            if self.results[candidate].normal[3] < cutoff {
+                list.jobs.edges.push(EdgeJob {
+                    out: list.features.len() as u32,
+                    ..*job
+                });
+                list.features.push(self.candidates.features[candidate]);
             }
         }
     }
 }
 
-fn is_sphere(shapes: &Shapes, body: usize) -> bool {
-    shapes.places[body + 1].vertex - shapes.places[body].vertex == 1
+/// How far inside a `side` of a face the foot of a vertex lies, and how far the vertex is from that edge [m].
+fn along_side(places: &Places<'_>, job: &FaceJob, side: [u32; 2]) -> (f64, f64) {
+    let [begin, end] = side.map(|corner| places.vertices[corner as usize]);
+    let point = places.vertices[job.vertex as usize];
+    let outward = vector(places.planes[job.face as usize]);
+    let (edge, away) = (vector(sub(end, begin)), vector(sub(point, begin)));
+    let margin = outward.cross(edge).dot(away) / edge.length();
+    let foot = (away.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+    (margin, (foot * edge - away).length())
 }
 
-/// The job of two edges of the tables.
-pub fn edge_job(shapes: &Shapes, [first, second]: [u32; 2], out: u32) -> EdgeJob {
-    let ([a, b], [c, d]) = (shapes.edges[first as usize], shapes.edges[second as usize]);
-    EdgeJob {
-        ends: [a, b, c, d],
-        out,
+impl List {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.features.clear();
+        self.jobs.clear();
+    }
+
+    /// Becomes the part of `all` that is nearer than `cutoff` [m] by `results`, of which its own move to the front. Returns the
+    /// distance of the nearest of the others [m]. `numbers` is room to work in.
+    pub fn choose(
+        &mut self,
+        all: &Self,
+        results: &mut [Nearest],
+        cutoff: f64,
+        numbers: &mut Vec<u32>,
+    ) -> f64 {
+        const GONE: u32 = u32::MAX;
+        self.clear();
+        numbers.clear();
+        let mut nearest = f64::INFINITY;
+        for (slot, feature) in all.features.iter().enumerate() {
+            let distance = results[slot].normal[3];
+            if distance < cutoff {
+                let number = self.features.len();
+                numbers.push(number as u32);
+                self.features.push(*feature);
+                results[number] = results[slot];
+            } else {
+                numbers.push(GONE);
+                nearest = nearest.min(distance);
+            }
+        }
+        let moved = |job: &FaceJob| {
+            let out = numbers[job.out as usize];
+            (out != GONE).then_some(FaceJob { out, ..*job })
+        };
+        let jobs = &mut self.jobs;
+        jobs.above.extend(all.jobs.above.iter().filter_map(moved));
+        for job in &all.jobs.outlines {
+            let Some(face) = moved(&job.face) else {
+                continue;
+            };
+            let first = jobs.sides.len() as u32;
+            let sides = &all.jobs.sides[job.first as usize..];
+            jobs.sides.extend_from_slice(&sides[..job.count as usize]);
+            jobs.outlines.push(OutlineJob {
+                face,
+                first,
+                ..*job
+            });
+        }
+        jobs.edges.extend(all.jobs.edges.iter().filter_map(|job| {
+            let out = numbers[job.out as usize];
+            (out != GONE).then_some(EdgeJob { out, ..*job })
+        }));
+        nearest
+    }
+
+    /// A vertex and a face with all its edges; the vertices of the face's body begin at `start`.
+    fn push_outline(&mut self, shapes: &Shapes, feature: Feature, job: FaceJob, start: u32) {
+        let outline = shapes.outline(job.face as usize);
+        let first = self.jobs.sides.len() as u32;
+        let next = outline.iter().skip(1).chain(outline.first());
+        let sides = outline.iter().zip(next);
+        let placed = |(a, b): (&u16, &u16)| [*a, *b].map(|corner| start + u32::from(corner));
+        self.jobs.sides.extend(sides.map(placed));
+        self.jobs.outlines.push(OutlineJob {
+            face: FaceJob {
+                out: self.features.len() as u32,
+                ..job
+            },
+            first,
+            count: outline.len() as u32,
+        });
+        self.features.push(feature);
     }
 }
 
-/// The direction that parts the two bodies best among the normals of their faces and that of last time.
+/// The direction that parts the two bodies best among the normals of their faces and `known`, that of last time.
 #[inline(always)]
 fn parting_axis<N: Lanes>(
     processor: N::Processor,
-    shapes: &Shapes,
-    geometry: &Geometry<'_>,
-    wanted: &Wanted,
+    vertices: [&[Row]; 2],
+    planes: [&[Row]; 2],
+    known: Row,
 ) -> Axis {
-    let [a, b] = wanted.bodies.map(|body| features_of(shapes, body));
-    let vertices = [
-        &geometry.vertices[a[0].clone()],
-        &geometry.vertices[b[0].clone()],
-    ];
-    let planes = [
-        &geometry.planes[a[2].clone()],
-        &geometry.planes[b[2].clone()],
-    ];
-    let measured = |direction| Axis::between(shapes, geometry, wanted.bodies, direction);
     let of_first = best_face::<N>(processor, planes[0], vertices[1]);
     let of_second = best_face::<N>(processor, planes[1], vertices[0]);
     let face = match (of_first, of_second) {
@@ -348,7 +435,7 @@ fn parting_axis<N: Lanes>(
         }
         _ => None,
     };
-    let [x, y, z, _] = wanted.axis;
+    let [x, y, z, _] = known;
     let known = (x * x + y * y + z * z > 0.0).then_some([x, y, z]);
     // Two spheres at the first time: along the line of their centres.
     let centres = || {
@@ -357,8 +444,8 @@ fn parting_axis<N: Lanes>(
         let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
         d.map(|x| if length > 0.0 { x / length } else { 0.0 })
     };
-    let first = measured(face.or(known).unwrap_or_else(centres));
-    match known.map(measured) {
+    let first = Axis::between(vertices, face.or(known).unwrap_or_else(centres));
+    match known.map(|direction| Axis::between(vertices, direction)) {
         Some(last) if last.gap() > first.gap() => last,
         _ => first,
     }

@@ -29,8 +29,8 @@ use super::team::{Barrier, Shared, Team, share};
 use super::{Fault, FaultKind, Profile, Stage, Stretch};
 use crate::scene::{ContactLaw, FeatureRule};
 use crate::world::{Contact, FeatureContact, Materials, Partner, Polyhedron, SpeciesId, World};
-use bodies::{Body, Load, Shapes};
-use listing::Entry;
+use bodies::{Body, Geometry, Load, Shapes};
+use nearest::Places;
 use pairs::{Action, DEEPEST, Desk, Forces, Pair, Surroundings};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -51,6 +51,8 @@ pub struct State {
     walls: Vec<WallBody>,
     pairs: Vec<Pair>,
     actions: Vec<Action>,
+    /// Which pairs act.
+    busy: Vec<bool>,
     sides: Sides,
     /// Where the bodies were when the pairs were found.
     reference: Vec<Row>,
@@ -177,12 +179,18 @@ impl State {
     fn contacts(&self) -> impl Iterator<Item = FeatureContact> {
         let count = self.bodies.len();
         self.pairs.iter().flat_map(move |pair| {
-            let features = pair.entries.iter().zip(&pair.springs).zip(&pair.overlaps);
+            let features = pair
+                .memory
+                .active
+                .features
+                .iter()
+                .zip(&pair.memory.springs)
+                .zip(&pair.memory.overlaps);
             features.filter(|(_, overlap)| **overlap > 0.0).map(
-                move |((entry, spring), overlap)| FeatureContact {
+                move |((feature, spring), overlap)| FeatureContact {
                     grain: pair.first,
                     partner: partner(pair, count),
-                    feature: entry.feature,
+                    feature: *feature,
                     overlap: *overlap,
                     spring: vector(*spring),
                     stiffness: spring[3],
@@ -247,7 +255,10 @@ impl State {
                 }));
             }
         }
+        self.actions.clear();
         self.actions.resize(self.pairs.len(), Action::default());
+        self.busy.clear();
+        self.busy.resize(self.pairs.len(), false);
         self.sides = Sides::of(&self.pairs, count);
         self.reference.clear();
         self.reference
@@ -266,7 +277,7 @@ impl State {
                 _ => 0.0,
             };
             pair.touch = own + other;
-            pair.offset = 0.5 * (own - other);
+            pair.memory.offset = 0.5 * (own - other);
         }
     }
 
@@ -289,14 +300,14 @@ impl State {
                 coefficients,
                 contact,
             } = pairing.constants(world.law, &world.materials, false);
-            pair.law = [
+            pair.memory.law = [
                 coefficients[0],
                 coefficients[1],
                 coefficients[2],
                 contact[0],
             ];
             if self.rule == FeatureRule::Shared {
-                pair.stored = pair.stored_energy(pair.part());
+                pair.memory.stored = pair.memory.stored_energy(pair.memory.part());
             }
         }
     }
@@ -317,15 +328,14 @@ impl State {
             while let Some(contact) =
                 features.next_if(|contact| (contact.grain, contact.partner) == wanted)
             {
-                pair.entries.push(Entry {
-                    feature: contact.feature,
-                    inside: false,
-                });
-                pair.springs.push(row(contact.spring, contact.stiffness));
-                pair.overlaps.push(contact.overlap);
+                pair.memory.active.features.push(contact.feature);
+                pair.memory
+                    .springs
+                    .push(row(contact.spring, contact.stiffness));
+                pair.memory.overlaps.push(contact.overlap);
             }
             if self.rule == FeatureRule::Shared {
-                pair.stored = pair.stored_energy(pair.part());
+                pair.memory.stored = pair.memory.stored_energy(pair.memory.part());
             }
         }
     }
@@ -356,28 +366,28 @@ impl State {
             wall.surface = body.surface;
         }
         let count = self.bodies.len();
-        let touching = self.pairs.iter().zip(&self.actions);
+        let acting = self.pairs.iter().zip(&self.actions).zip(&self.busy);
+        let touching = acting
+            .filter(|((_, action), busy)| **busy && action.force[3] > 0.0)
+            .map(|((pair, action), _)| Contact {
+                grain: pair.first,
+                partner: partner(pair, count),
+                spring: glam::DVec3::ZERO,
+                stiffness: 0.0,
+                force: vector(action.force),
+                touching: true,
+                bridge: None,
+            });
         world.contacts.clear();
-        world
-            .contacts
-            .extend(
-                touching
-                    .filter(|(_, action)| action.force[3] > 0.0)
-                    .map(|(pair, action)| Contact {
-                        grain: pair.first,
-                        partner: partner(pair, count),
-                        spring: glam::DVec3::ZERO,
-                        stiffness: 0.0,
-                        force: vector(action.force),
-                        touching: true,
-                        bridge: None,
-                    }),
-            );
+        world.contacts.extend(touching);
     }
 
     /// Number of listed pairs of features.
     pub fn listed(&self) -> usize {
-        self.pairs.iter().map(|pair| pair.entries.len()).sum()
+        self.pairs
+            .iter()
+            .map(|pair| pair.memory.near.features.len())
+            .sum()
     }
 
     /// Takes `steps` steps; on a fault, says after how many.
@@ -514,6 +524,7 @@ impl State {
             planes: Shared::new(&mut self.planes),
             pairs: Shared::new(&mut self.pairs),
             actions: Shared::new(&mut self.actions),
+            busy: Shared::new(&mut self.busy),
             shapes: &self.shapes,
             sides: &self.sides,
             reference: &self.reference,
@@ -551,7 +562,7 @@ impl State {
             return (grain, kind);
         }
         let deep = self.pairs.iter().find_map(|pair| {
-            let deepest = pair.overlaps.iter().copied().fold(0.0, f64::max) / pair.touch;
+            let deepest = pair.memory.overlaps.iter().copied().fold(0.0, f64::max) / pair.touch;
             (deepest > DEEPEST).then_some((pair.first as usize, FaultKind::TooDeep(deepest)))
         });
         deep.unwrap_or((0, FaultKind::NotFinite("state")))
@@ -568,7 +579,7 @@ fn partner(pair: &Pair, count: usize) -> Partner {
 
 /// Ranges of pairs that take about equally long.
 fn shares(pairs: &[Pair], size: usize) -> Vec<Range<usize>> {
-    let cost = |pair: &Pair| 1 + pair.entries.len();
+    let cost = |pair: &Pair| 1 + pair.memory.active.features.len();
     let all: usize = pairs.iter().map(cost).sum();
     let mut shares = Vec::with_capacity(size);
     let (mut begin, mut spent) = (0, 0);
@@ -594,6 +605,7 @@ struct Phase<'a> {
     planes: Shared<'a, Row>,
     pairs: Shared<'a, Pair>,
     actions: Shared<'a, Action>,
+    busy: Shared<'a, bool>,
     shapes: &'a Shapes,
     sides: &'a Sides,
     reference: &'a [Row],
@@ -630,13 +642,14 @@ impl Phase<'_> {
         let own = self.shares[member].clone();
         // SAFETY: in this phase bodies and features are only read, pairs and actions only written, each member its own
         // share.
-        let (bodies, vertices, planes, pairs, actions) = unsafe {
+        let (bodies, vertices, planes, pairs, actions, busy) = unsafe {
             (
                 self.bodies.all(),
                 self.vertices.all(),
                 self.planes.all(),
                 self.pairs.range_mut(own.clone()),
-                self.actions.range_mut(own),
+                self.actions.range_mut(own.clone()),
+                self.busy.range_mut(own),
             )
         };
         let Ok(mut desk) = self.desks[member].lock() else {
@@ -650,12 +663,15 @@ impl Phase<'_> {
                 dt: self.dt,
                 rule: self.rule,
                 bodies,
-                shapes: self.shapes,
-                geometry: self.shapes.geometry(vertices, planes),
+                geometry: Geometry {
+                    shapes: self.shapes,
+                    places: Places { vertices, planes },
+                },
                 walls,
             },
             pairs,
             actions,
+            busy,
             desk: &mut desk,
         })
     }
@@ -668,7 +684,7 @@ impl Phase<'_> {
         let own = share(self.reference.len(), member, size);
         let (from, to) = (self.shapes.places[own.start], self.shapes.places[own.end]);
         // SAFETY: in this phase actions are only read, bodies and features only written, each member its own share.
-        let (bodies, loads, vertices, planes, actions) = unsafe {
+        let (bodies, loads, vertices, planes, actions, busy) = unsafe {
             (
                 self.bodies.range_mut(own.clone()),
                 self.loads.range_mut(own.clone()),
@@ -676,13 +692,14 @@ impl Phase<'_> {
                     .range_mut(from.vertex as usize..to.vertex as usize),
                 self.planes.range_mut(from.face as usize..to.face as usize),
                 self.actions.all(),
+                self.busy.all(),
             )
         };
         let half = 0.5 * self.dt;
         let mut outcome = Outcome::default();
         for (k, (body, load)) in bodies.iter_mut().zip(loads).enumerate() {
             let i = own.start + k;
-            self.sum(i, actions, load);
+            self.sum(i, actions, busy, load);
             body.kick(load, half, self.gravity);
             if last {
                 body.update_spin();
@@ -707,19 +724,26 @@ impl Phase<'_> {
     }
 
     /// Sums what the pairs of body `i` do to it, in the pairs' order.
-    fn sum(&self, i: usize, actions: &[Action], load: &mut Load) {
+    fn sum(&self, i: usize, actions: &[Action], busy: &[bool], load: &mut Load) {
         let (as_second, as_first) = self.sides.of_body(i);
         load.force = [0.0; 4];
         load.torque = [0.0; 4];
-        for &pair in as_second {
-            let action = &actions[pair as usize];
+        for pair in as_second.iter().map(|&pair| pair as usize) {
+            if !busy[pair] {
+                continue;
+            }
+            let action = &actions[pair];
             for axis in 0..3 {
                 load.force[axis] -= action.force[axis];
                 load.torque[axis] += action.second[axis];
             }
             load.force[3] += action.force[3];
         }
-        for action in &actions[as_first] {
+        for pair in as_first {
+            if !busy[pair] {
+                continue;
+            }
+            let action = &actions[pair];
             for axis in 0..4 {
                 load.force[axis] += action.force[axis];
                 load.torque[axis] += action.first[axis];

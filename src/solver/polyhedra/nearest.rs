@@ -3,7 +3,7 @@
 //! In: jobs that name vertices and faces by their indices in the world's tables. Out: for each the unit vector from the
 //! first body to the second, the distance, and the point in the middle. Each is computed in lanes, every lane for itself.
 
-use super::super::lanes::{Lanes, Quad, Row, cross, dot, minus, plus, side_by_side, times};
+use super::super::lanes::{Lanes, Quad, Row, WIDEST, cross, dot, minus, plus, side_by_side, times};
 
 /// Nearest points of two features.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,39 +16,125 @@ pub struct Nearest {
     pub middle: Row,
 }
 
-/// Two edges: where their ends are, first body's first.
-#[derive(Clone, Copy, Debug)]
+/// Two edges.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct EdgeJob {
-    /// Vertices.
+    /// Where the ends of the first body's edge are, then those of the second's.
     pub ends: [u32; 4],
-    /// Which result is theirs.
+    /// Number of the result.
     pub out: u32,
 }
 
-/// A vertex and a face.
-#[derive(Clone, Copy, Debug)]
+/// A vertex of one body and a face of the other.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct FaceJob {
-    /// The vertex.
+    /// Where the vertex is.
     pub vertex: u32,
-    /// The face.
+    /// Where the face is.
     pub face: u32,
     /// 0 where the vertex is the first body's, 1 where it is the second's.
     pub side: u32,
-    /// Which result is theirs.
+    /// Number of the result.
     pub out: u32,
+}
+
+/// A vertex and a face near whose outline it stands.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OutlineJob {
+    /// Vertex and face.
+    pub face: FaceJob,
+    /// The first of the edges of the face that matter, in [`Jobs::sides`].
+    pub first: u32,
+    /// How many they are, at least one.
+    pub count: u32,
+}
+
+/// Features to compute the nearest points of.
+#[derive(Clone, Debug, Default)]
+pub struct Jobs {
+    /// Vertices over the inside of faces.
+    pub above: Vec<FaceJob>,
+    /// Vertices near the outlines of faces.
+    pub outlines: Vec<OutlineJob>,
+    /// Where the ends are of edges of those faces, anticlockwise seen from outside.
+    pub sides: Vec<[u32; 2]>,
+    /// Pairs of edges.
+    pub edges: Vec<EdgeJob>,
+}
+
+impl Jobs {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.above.clear();
+        self.outlines.clear();
+        self.sides.clear();
+        self.edges.clear();
+    }
+
+    /// Takes over the jobs of `other`, whose results begin at `out`.
+    #[inline(always)]
+    pub fn extend(&mut self, other: &Self, out: u32) {
+        let sides = self.sides.len() as u32;
+        let moved = |job: &FaceJob| FaceJob {
+            out: job.out + out,
+            ..*job
+        };
+        self.above.extend(other.above.iter().map(moved));
+        self.outlines
+            .extend(other.outlines.iter().map(|job| OutlineJob {
+                face: moved(&job.face),
+                first: job.first + sides,
+                count: job.count,
+            }));
+        self.sides.extend_from_slice(&other.sides);
+        self.edges.extend(other.edges.iter().map(|job| EdgeJob {
+            ends: job.ends,
+            out: job.out + out,
+        }));
+    }
+
+    /// Computes all; without `MARGIN` no companion of a middle counts.
+    #[inline(always)]
+    pub fn run<N: Lanes, const MARGIN: bool>(
+        &self,
+        processor: N::Processor,
+        places: &Places<'_>,
+        results: &mut [Nearest],
+    ) {
+        above_faces::<N>(processor, places, &self.above, results);
+        at_outlines::<N, MARGIN>(processor, places, &self.outlines, &self.sides, results);
+        between_edges::<N>(processor, places, &self.edges, results);
+    }
 }
 
 /// Vertices and faces of all bodies where they are now.
 #[derive(Clone, Copy)]
-pub struct Geometry<'a> {
+pub struct Places<'a> {
     /// Vertices [m].
     pub vertices: &'a [Row],
     /// Outward unit normals of the faces; distances of their planes from the origin [m].
     pub planes: &'a [Row],
-    /// Where in `loops` each face's vertices begin, and after the last face the end.
-    pub loop_starts: &'a [u32],
-    /// Vertices of each face, anticlockwise seen from outside.
-    pub loops: &'a [u32],
+}
+
+impl<'a> Places<'a> {
+    #[inline(always)]
+    fn vertex(&self, index: u32) -> &'a Row {
+        &self.vertices[index as usize]
+    }
+
+    #[inline(always)]
+    fn plane(&self, index: u32) -> &'a Row {
+        &self.planes[index as usize]
+    }
+}
+
+/// As many jobs as there are lanes; where fewer are left, the last one fills up.
+#[inline(always)]
+pub fn group<J: Copy>(jobs: &[J]) -> [J; WIDEST] {
+    match jobs.first_chunk() {
+        Some(group) => *group,
+        None => std::array::from_fn(|k| jobs[k.min(jobs.len() - 1)]),
+    }
 }
 
 /// Sines squared below which two edges count as parallel: the middle of their overlap is taken then.
@@ -72,21 +158,22 @@ fn vector<N: Lanes>([x, y, z, _]: [N; 4]) -> [N; 3] {
 
 /// Nearest points of pairs of edges.
 #[inline(always)]
-pub fn between_edges<N: Lanes>(
+fn between_edges<N: Lanes>(
     processor: N::Processor,
-    geometry: &Geometry<'_>,
+    places: &Places<'_>,
     jobs: &[EdgeJob],
     results: &mut [Nearest],
 ) {
-    for group in jobs.chunks(N::COUNT) {
-        let last = group.len() - 1;
-        let end = |e: usize| {
-            side_by_side::<N, _>(|k| &geometry.vertices[group[k.min(last)].ends[e] as usize])
-        };
-        let from = vector(N::gather(processor, end(0)));
-        let other = vector(N::gather(processor, end(2)));
-        let along = vector(N::gather_difference(processor, end(1), end(0)));
-        let across = vector(N::gather_difference(processor, end(3), end(2)));
+    for chunk in jobs.chunks(N::COUNT) {
+        let all = group(chunk);
+        let p0 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[0]));
+        let p1 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[1]));
+        let q0 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[2]));
+        let q1 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[3]));
+        let from = vector(N::gather(processor, p0));
+        let other = vector(N::gather(processor, q0));
+        let along = vector(N::gather_difference(processor, p1, p0));
+        let across = vector(N::gather_difference(processor, q1, q0));
         let (s, t) = on_edges(processor, minus(from, other), along, across);
         let (p, q) = (plus(from, times(along, s)), plus(other, times(across, t)));
         let apart = minus(q, p);
@@ -95,7 +182,7 @@ pub fn between_edges<N: Lanes>(
         let middle = times(plus(p, q), N::splat(processor, 0.5));
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
         let middles = N::rows([middle[0], middle[1], middle[2], distance]);
-        for (k, job) in group.iter().enumerate() {
+        for (k, job) in chunk.iter().enumerate() {
             results[job.out as usize] = Nearest {
                 normal: normals[k].row(),
                 middle: middles[k].row(),
@@ -138,17 +225,16 @@ const TURN: [Row; 2] = [[1.0, 1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, 1.0]];
 
 /// Nearest points of vertices and faces on which they stand: those whose foot is known to lie inside the outline.
 #[inline(always)]
-pub fn above_faces<N: Lanes>(
+fn above_faces<N: Lanes>(
     processor: N::Processor,
-    geometry: &Geometry<'_>,
+    places: &Places<'_>,
     jobs: &[FaceJob],
     results: &mut [Nearest],
 ) {
-    for group in jobs.chunks(N::COUNT) {
-        let last = group.len() - 1;
-        let vertex =
-            side_by_side::<N, _>(|k| &geometry.vertices[group[k.min(last)].vertex as usize]);
-        let plane = side_by_side::<N, _>(|k| &geometry.planes[group[k.min(last)].face as usize]);
+    for chunk in jobs.chunks(N::COUNT) {
+        let all = group(chunk);
+        let vertex = side_by_side::<N, _>(|k| places.vertex(all[k].vertex));
+        let plane = side_by_side::<N, _>(|k| places.plane(all[k].face));
         let point = vector(N::gather(processor, vertex));
         let [nx, ny, nz, offset] = N::gather(processor, plane);
         let outward = [nx, ny, nz];
@@ -156,7 +242,7 @@ pub fn above_faces<N: Lanes>(
         let (normal, distance, middle) = on_plane(processor, point, outward, height);
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
         let middles = N::rows([middle[0], middle[1], middle[2], distance]);
-        for (k, job) in group.iter().enumerate() {
+        for (k, job) in chunk.iter().enumerate() {
             let turn = N::Quad::load(processor, &TURN[job.side as usize]);
             results[job.out as usize] = Nearest {
                 normal: (normals[k] * turn).row(),
@@ -184,22 +270,21 @@ fn on_plane<N: Lanes>(
     )
 }
 
-/// Nearest points of vertices and faces, wherever the vertices are. With `MARGIN` the companion of the middle tells how far
-/// inside the outline the foot of the vertex lies [m], negative outside.
+/// Nearest points of vertices and faces, wherever the vertices are: of the outlines only the edges named matter. With
+/// `MARGIN` the companion of the middle tells how far inside these edges the foot of the vertex lies [m], negative outside.
 #[inline(always)]
-pub fn at_faces<N: Lanes, const MARGIN: bool>(
+fn at_outlines<N: Lanes, const MARGIN: bool>(
     processor: N::Processor,
-    geometry: &Geometry<'_>,
-    jobs: &[FaceJob],
+    places: &Places<'_>,
+    jobs: &[OutlineJob],
+    sides: &[[u32; 2]],
     results: &mut [Nearest],
 ) {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
-    for group in jobs.chunks(N::COUNT) {
-        let last = group.len() - 1;
-        let vertex =
-            side_by_side::<N, _>(|k| &geometry.vertices[group[k.min(last)].vertex as usize]);
-        let plane = side_by_side::<N, _>(|k| &geometry.planes[group[k.min(last)].face as usize]);
-        let outline = side_by_side::<N, _>(|k| geometry.outline(group[k.min(last)].face));
+    for chunk in jobs.chunks(N::COUNT) {
+        let all = group(chunk);
+        let vertex = side_by_side::<N, _>(|k| places.vertex(all[k].face.vertex));
+        let plane = side_by_side::<N, _>(|k| places.plane(all[k].face.face));
         let point = vector(N::gather(processor, vertex));
         let [nx, ny, nz, offset] = N::gather(processor, plane);
         let outward = [nx, ny, nz];
@@ -208,20 +293,19 @@ pub fn at_faces<N: Lanes, const MARGIN: bool>(
         let mut nearest = [zero; 3];
         let mut square = N::splat(processor, f64::INFINITY);
         let mut inside = N::splat(processor, f64::INFINITY);
-        let corners = group.iter().map(|job| geometry.outline(job.face).len());
-        for corner in 0..corners.max().unwrap_or(0) {
-            let begin = side_by_side::<N, _>(|k| {
-                let outline = outline[k];
-                &geometry.vertices[outline[corner.min(outline.len() - 1)] as usize]
+        let mut count = 0;
+        for job in chunk {
+            count = count.max(job.count);
+        }
+        for index in 0..count {
+            let side = side_by_side::<N, _>(|k| {
+                let job = &all[k];
+                &sides[(job.first + index.min(job.count - 1)) as usize]
             });
-            let end = side_by_side::<N, _>(|k| {
-                let outline = outline[k];
-                let next = corner.min(outline.len() - 1) + 1;
-                &geometry.vertices[outline[if next == outline.len() { 0 } else { next }] as usize]
-            });
+            let begin = side_by_side::<N, _>(|k| places.vertex(side[k][0]));
+            let end = side_by_side::<N, _>(|k| places.vertex(side[k][1]));
             let edge = vector(N::gather_difference(processor, end, begin));
-            let begin = vector(N::gather(processor, begin));
-            let away = minus(point, begin);
+            let away = vector(N::gather_difference(processor, vertex, begin));
             let length = dot(edge, edge);
             let foot = clamp(dot(away, edge) / length, zero, one);
             let to_edge = minus(times(edge, foot), away);
@@ -252,21 +336,12 @@ pub fn at_faces<N: Lanes, const MARGIN: bool>(
         let distance = N::choose(over, at_height, distance);
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
         let middles = N::rows([middle[0], middle[1], middle[2], inside]);
-        for (k, job) in group.iter().enumerate() {
-            let turn = N::Quad::load(processor, &TURN[job.side as usize]);
-            results[job.out as usize] = Nearest {
+        for (k, job) in chunk.iter().enumerate() {
+            let turn = N::Quad::load(processor, &TURN[job.face.side as usize]);
+            results[job.face.out as usize] = Nearest {
                 normal: (normals[k] * turn).row(),
                 middle: middles[k].row(),
             };
         }
-    }
-}
-
-impl<'a> Geometry<'a> {
-    /// Vertices of a face.
-    #[inline(always)]
-    pub fn outline(&self, face: u32) -> &'a [u32] {
-        let face = face as usize;
-        &self.loops[self.loop_starts[face] as usize..self.loop_starts[face + 1] as usize]
     }
 }

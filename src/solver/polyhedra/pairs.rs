@@ -8,52 +8,73 @@
 //! The contacts of a pair are summed in the order of their features: neither lists nor threads nor lanes show in a sum.
 
 use super::super::contacts::WallBody;
-use super::super::lanes::{Lanes, Quad, Row, Work, cross, dot, minus, plus, side_by_side, times};
+use super::super::lanes::{
+    Lanes, Quad, Row, Work, cross, dot, minus, plus, prefetch, side_by_side, times,
+};
 use super::super::law::{Hooke, Law};
 use super::super::row::{length_squared, row, sub, vector};
 use super::super::spring::{UNLOADED, stretch};
-use super::bodies::{Body, Shapes};
-use super::listing::{Entry, Search, Wanted, edge_job};
-use super::nearest::{EdgeJob, FaceJob, Geometry, Nearest, above_faces, at_faces, between_edges};
+use super::bodies::{Body, Geometry};
+use super::listing::{List, Search, Wanted};
+use super::nearest::{Jobs, Nearest, group};
 use crate::scene::FeatureRule;
 use crate::world::{Feature, Surface};
 
 /// Steps that a list is made to last at the pace at which its bodies move.
-const LIFE: f64 = 40.0;
+const LIFE: f64 = 60.0;
 /// Bounds of a list's skin relative to the distance of cores at which the two touch.
 const SKIN: std::ops::RangeInclusive<f64> = 0.01..=0.5;
+/// Steps that a choice of active features is made to last.
+const ACTIVE_LIFE: f64 = 10.0;
+/// Smallest skin of active features relative to the distance at which the two touch.
+const ACTIVE_SKIN: f64 = 1e-4;
 /// Bodies are taken to move by so much more than their velocities say.
 const CAUTION: f64 = 1.05;
 /// Two cores that come nearer than the rest of this share of the touching distance could pass through each other.
 pub const DEEPEST: f64 = 0.8;
-/// Results that are computed in one go: they stay in the nearest cache.
-const BATCH: usize = 256;
+/// Features that are measured in one go: enough to fill the lanes, few enough to stay in the nearest cache.
+const BATCH: usize = 192;
 
-/// Two bodies near each other.
+/// Two bodies near each other: what is looked at in every step.
 #[derive(Clone, Debug, Default)]
+#[repr(C, align(64))]
 pub struct Pair {
     /// The grain on which the computed force acts.
     pub first: u32,
     /// The other grain; from the number of grains on, a wall.
     pub second: u32,
-    /// `K_n`, the normal dashpot `m_e γ_n`, `K_t`, μ.
-    pub law: Row,
     /// Distance of cores at which the two touch: the sum of their rounding radii [m].
     pub touch: f64,
+    /// How far the two may still move relative to each other until [`Memory::near`] must be made anew [m].
+    pub slack: f64,
+    /// How far they may still move before anything else than what is active can touch [m].
+    pub active_slack: f64,
+    /// How far they may still move before anything active can touch; none where something does [m].
+    pub quiet: f64,
+    /// What it remembers.
+    pub memory: Box<Memory>,
+}
+
+/// What a pair remembers, what is looked at in most steps first.
+#[derive(Clone, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Memory {
+    /// `K_n`, the normal dashpot `m_e γ_n`, `K_t`, μ.
+    pub law: Row,
     /// Half the difference of the rounding radii [m].
     pub offset: f64,
-    /// How far the two may still move relative to each other until the list must be made anew [m].
-    pub slack: f64,
-    /// The direction that parted them best when it was last made; zero when never.
-    pub axis: Row,
-    /// What may touch, in order of the features.
-    pub entries: Vec<Entry>,
-    /// Tangential spring of each [m], and the stiffness of its last stretch [N/m].
+    /// What may touch before long.
+    pub active: List,
+    /// Tangential spring of each active feature [m], and the stiffness of its last stretch [N/m].
     pub springs: Vec<Row>,
     /// Overlap of each, zero where it does not touch [m].
     pub overlaps: Vec<f64>,
     /// What the normal springs store, where they share their stiffness [J].
     pub stored: f64,
+    /// The direction that parted the two best when `near` was last made; zero when never.
+    pub axis: Row,
+    /// What may touch until the slack is used up.
+    pub near: List,
 }
 
 /// What a pair does to its bodies.
@@ -80,40 +101,55 @@ pub struct Surroundings<'a> {
     pub rule: FeatureRule,
     /// Every grain.
     pub bodies: &'a [Body],
-    /// Their shapes.
-    pub shapes: &'a Shapes,
-    /// Where those are.
+    /// Where their features are.
     pub geometry: Geometry<'a>,
     /// Every wall.
     pub walls: &'a [WallBody],
 }
 
-/// A pair on the way through the pair loop, what its contacts depend on in rows.
+/// How the bodies of a pair move relative to each other.
+#[derive(Clone, Copy, Default)]
+struct Relative {
+    /// Velocity of the first relative to the second at the first's centroid [m/s].
+    velocity: Row,
+    /// Relative spin [rad/s].
+    spin: Row,
+    /// Centroid of the second; of a wall, the origin [m].
+    second: Row,
+}
+
+/// A pair on its way through a batch.
 #[derive(Clone, Copy, Default)]
 struct Span {
-    /// Velocity of the first relative to the second at the first's centroid [m/s]; part of the stiffness that each contact
-    /// has.
+    /// Velocity of the first relative to the second at the first's centroid [m/s]; part of the pair's stiffness that each
+    /// contact has.
     velocity: Row,
     /// Relative spin [rad/s].
     spin: Row,
     /// Centroid of the first [m]; half the difference of the rounding radii [m].
     centre: Row,
-    /// As [`Pair::law`].
+    /// As [`Memory::law`].
     law: Row,
-    /// Index of the pair.
+    /// Centroid of the second; of a wall, the origin [m].
+    second: Row,
+    /// Number of the pair.
     pair: usize,
-    /// First of its results.
-    first: usize,
-    /// First of its touching contacts.
-    touching: usize,
+    /// Where its results begin.
+    results: usize,
+    /// Where its contacts begin.
+    contacts: usize,
+    /// By how much it moved in this step, where its active features are to be chosen [m].
+    choose: Option<f64>,
+    /// What the springs stored that lost their contact in this step [J].
+    released: f64,
 }
 
-/// A contact: where its span, its spring and its result are.
+/// A contact on its way through a batch: where its span and its result are, and its number among the active features.
 #[derive(Clone, Copy)]
 struct Touch {
-    span: usize,
-    slot: usize,
-    result: usize,
+    span: u32,
+    result: u32,
+    slot: u32,
 }
 
 /// What a contact does.
@@ -128,14 +164,15 @@ struct Effect {
 #[derive(Default)]
 pub struct Desk {
     search: Search,
-    old_entries: Vec<Entry>,
+    old_features: Vec<Feature>,
     old_springs: Vec<Row>,
+    numbers: Vec<u32>,
     spans: Vec<Span>,
-    edges: Vec<EdgeJob>,
-    above: Vec<FaceJob>,
-    faces: Vec<FaceJob>,
+    jobs: Jobs,
     results: Vec<Nearest>,
     touching: Vec<Touch>,
+    /// The springs of what touches.
+    springs: Vec<Row>,
     effects: Vec<Effect>,
 }
 
@@ -154,8 +191,10 @@ pub struct Forces<'a> {
     pub surroundings: Surroundings<'a>,
     /// The pairs.
     pub pairs: &'a mut [Pair],
-    /// What they do.
+    /// What they do; of those that do nothing, whatever they did before.
     pub actions: &'a mut [Action],
+    /// Whether they do anything.
+    pub busy: &'a mut [bool],
     /// Room to work in.
     pub desk: &'a mut Desk,
 }
@@ -169,37 +208,63 @@ impl Work for Forces<'_> {
             surroundings: all,
             pairs,
             actions,
+            busy,
             desk,
         } = self;
         let mut outcome = Outcome::default();
+        busy.fill(false);
         desk.clear();
         for index in 0..pairs.len() {
+            fetch_ahead(pairs, index);
             let pair = &mut pairs[index];
-            let mut span = all.span(pair);
-            pair.slack -= CAUTION * all.dt * pace(&span, all.bodies[pair.first as usize].spin[3]);
+            let relative = all.relative(pair);
+            let moved = CAUTION * all.dt * pace(&relative, all.bodies[pair.first as usize].spin[3]);
+            pair.slack -= moved;
+            pair.active_slack -= moved;
+            pair.quiet -= moved;
             if pair.slack < 0.0 {
                 outcome.listed += 1;
-                desk.list::<N>(processor, &all, &span, pair);
+                desk.list::<N>(processor, &all, moved, pair);
             }
-            if pair.entries.is_empty() {
-                actions[index] = Action::default();
+            let choose = pair.active_slack < 0.0;
+            if !choose && pair.quiet > 0.0 {
                 continue;
             }
-            span.pair = index;
-            desk.queue(&all, pair, span);
+            desk.queue(&all, pair, &relative, index, choose.then_some(moved));
             if desk.results.len() >= BATCH {
-                outcome.fault |= desk.finish::<N>(processor, &all, pairs, actions);
+                outcome.fault |= desk.finish::<N>(processor, &all, pairs, actions, busy);
             }
         }
-        outcome.fault |= desk.finish::<N>(processor, &all, pairs, actions);
+        outcome.fault |= desk.finish::<N>(processor, &all, pairs, actions, busy);
         outcome
+    }
+}
+
+/// Asks for what the pairs after `index` remember: it lies scattered in memory.
+#[inline(always)]
+fn fetch_ahead(pairs: &[Pair], index: usize) {
+    const FAR: usize = 12;
+    const NEAR: usize = 6;
+    let wanted = |ahead: usize| pairs.get(index + ahead).filter(|pair| pair.quiet <= 0.0);
+    if let Some(pair) = wanted(FAR) {
+        prefetch::<_, 4>(std::slice::from_ref(&*pair.memory));
+    }
+    if let Some(pair) = wanted(NEAR) {
+        let memory = &pair.memory;
+        let jobs = &memory.active.jobs;
+        prefetch::<_, 2>(&jobs.above);
+        prefetch::<_, 2>(&jobs.outlines);
+        prefetch::<_, 2>(&jobs.sides);
+        prefetch::<_, 3>(&jobs.edges);
+        prefetch::<_, 2>(&memory.overlaps);
+        prefetch::<_, 8>(&memory.springs);
     }
 }
 
 /// A speed that no point of the first body, `reach` from its centroid at most, exceeds relative to the second [m/s].
 #[inline(always)]
-fn pace(span: &Span, reach: f64) -> f64 {
-    length_squared(span.velocity).sqrt() + length_squared(span.spin).sqrt() * reach
+fn pace(relative: &Relative, reach: f64) -> f64 {
+    length_squared(relative.velocity).sqrt() + length_squared(relative.spin).sqrt() * reach
 }
 
 #[inline(always)]
@@ -243,135 +308,105 @@ impl Surroundings<'_> {
 
     /// How the two move relative to each other.
     #[inline(always)]
-    fn span(&self, pair: &Pair) -> Span {
+    fn relative(&self, pair: &Pair) -> Relative {
         let first = &self.bodies[pair.first as usize];
         let [position, velocity, spin] = self.second(pair);
         let turning = crossed(spin, sub(first.position, position));
-        let mut span = Span {
+        Relative {
             velocity: sub(sub(first.velocity, velocity), turning),
             spin: sub(first.spin, spin),
-            centre: first.position,
-            law: pair.law,
-            ..Span::default()
-        };
-        span.velocity[3] = 1.0;
-        span.centre[3] = pair.offset;
-        span
+            second: position,
+        }
     }
 }
 
 impl Desk {
     fn clear(&mut self) {
         self.spans.clear();
-        self.edges.clear();
-        self.above.clear();
-        self.faces.clear();
+        self.jobs.clear();
         self.results.clear();
         self.touching.clear();
+        self.springs.clear();
     }
 
-    /// Makes the list of `pair` anew; springs follow their features.
+    /// Makes the list of `pair`, which has `moved` by so much in this step, anew; springs follow their features.
     #[inline(always)]
     fn list<N: Lanes>(
         &mut self,
         processor: N::Processor,
         all: &Surroundings<'_>,
-        span: &Span,
+        moved: f64,
         pair: &mut Pair,
     ) {
-        let first = pair.first as usize;
-        let moves = CAUTION * all.dt * pace(span, all.bodies[first].spin[3]);
-        let skin = (LIFE * moves).clamp(SKIN.start() * pair.touch, SKIN.end() * pair.touch);
-        std::mem::swap(&mut self.old_entries, &mut pair.entries);
-        std::mem::swap(&mut self.old_springs, &mut pair.springs);
+        let skin = (LIFE * moved).clamp(SKIN.start() * pair.touch, SKIN.end() * pair.touch);
         pair.slack = match all.wall(pair) {
             Some(wall) => list_at_wall(all, &wall.surface, skin, pair),
             None => {
                 let wanted = Wanted {
-                    bodies: [first, pair.second as usize],
-                    axis: pair.axis,
+                    bodies: [pair.first as usize, pair.second as usize],
+                    axis: pair.memory.axis,
                     touch: pair.touch,
                     skin,
                 };
-                let found = self.search.run::<N>(
-                    processor,
-                    all.shapes,
-                    &all.geometry,
-                    &wanted,
-                    &mut pair.entries,
-                );
-                pair.axis = found.axis;
+                let found =
+                    self.search
+                        .run::<N>(processor, &all.geometry, &wanted, &mut pair.memory.near);
+                pair.memory.axis = found.axis;
                 found.slack
             }
         };
-        pair.springs.clear();
-        let mut known = self.old_entries.iter().zip(&self.old_springs).peekable();
-        for entry in &pair.entries {
-            while known
-                .next_if(|(old, _)| old.feature < entry.feature)
-                .is_some()
-            {}
-            let same = known.next_if(|(old, _)| old.feature == entry.feature);
-            pair.springs
-                .push(same.map_or(UNLOADED, |(_, spring)| *spring));
-        }
-        pair.overlaps.clear();
-        pair.overlaps.resize(pair.entries.len(), 0.0);
+        pair.active_slack = -1.0;
     }
 
-    /// Puts a pair's features on the list of what to compute.
+    /// Puts a pair's features into the batch: the near ones where its active features are to be chosen, else those.
     #[inline(always)]
-    fn queue(&mut self, all: &Surroundings<'_>, pair: &Pair, mut span: Span) {
-        span.first = self.results.len();
-        let own = all.shapes.places[pair.first as usize];
-        let wall = all.wall(pair);
-        let other = all.shapes.places[wall.map_or(pair.second as usize, |_| all.bodies.len())];
-        for entry in &pair.entries {
-            let out = self.results.len() as u32;
-            let mut result = Nearest::default();
-            let job = |vertex, face, side| FaceJob {
-                vertex,
-                face,
-                side,
-                out,
-            };
-            let face_job = match entry.feature {
-                Feature::VertexFace(vertex, face) => {
-                    let vertex = own.vertex + u32::from(vertex);
-                    if let Some(wall) = wall {
-                        result = to_wall(&wall.surface, all.geometry.vertices[vertex as usize]);
-                        None
-                    } else {
-                        Some(job(vertex, other.face + u32::from(face), 0))
-                    }
-                }
-                Feature::FaceVertex(face, vertex) => Some(job(
-                    other.vertex + u32::from(vertex),
-                    own.face + u32::from(face),
-                    1,
-                )),
-                Feature::EdgeEdge(first, second) => {
-                    let edges = [own.edge + u32::from(first), other.edge + u32::from(second)];
-                    self.edges.push(edge_job(all.shapes, edges, out));
-                    None
-                }
-                Feature::VertexVertex => {
-                    self.edges
-                        .push(edge_job(all.shapes, [own.edge, other.edge], out));
-                    None
-                }
-            };
-            match face_job {
-                Some(job) if entry.inside => self.above.push(job),
-                Some(job) => self.faces.push(job),
-                None => {}
+    fn queue(
+        &mut self,
+        all: &Surroundings<'_>,
+        pair: &Pair,
+        relative: &Relative,
+        index: usize,
+        choose: Option<f64>,
+    ) {
+        let memory = &pair.memory;
+        let list = if choose.is_some() {
+            &memory.near
+        } else {
+            &memory.active
+        };
+        let results = self.results.len();
+        match all.wall(pair) {
+            Some(wall) => {
+                let vertices = all.geometry.vertices_of(pair.first as usize);
+                self.results.extend(list.features.iter().map(|feature| {
+                    let Feature::VertexFace(vertex, _) = feature else {
+                        return Nearest::default();
+                    };
+                    to_wall(&wall.surface, vertices[usize::from(*vertex)])
+                }));
             }
-            self.results.push(result);
+            None => {
+                self.jobs.extend(&list.jobs, results as u32);
+                let end = results + list.features.len();
+                self.results.resize(end, Nearest::default());
+            }
         }
-        self.spans.push(span);
+        let [vx, vy, vz, _] = relative.velocity;
+        let [cx, cy, cz, _] = all.bodies[pair.first as usize].position;
+        self.spans.push(Span {
+            velocity: [vx, vy, vz, 1.0],
+            spin: relative.spin,
+            centre: [cx, cy, cz, memory.offset],
+            law: memory.law,
+            second: relative.second,
+            pair: index,
+            results,
+            choose,
+            ..Span::default()
+        });
     }
 
-    /// Computes what is on the list and clears it. True where two cores came too near each other.
+    /// Does what the batch holds and empties it. True where two cores came too near each other.
     #[inline(always)]
     fn finish<N: Lanes>(
         &mut self,
@@ -379,84 +414,143 @@ impl Desk {
         all: &Surroundings<'_>,
         pairs: &mut [Pair],
         actions: &mut [Action],
+        busy: &mut [bool],
     ) -> bool {
-        above_faces::<N>(processor, &all.geometry, &self.above, &mut self.results);
-        at_faces::<N, false>(processor, &all.geometry, &self.faces, &mut self.results);
-        between_edges::<N>(processor, &all.geometry, &self.edges, &mut self.results);
-        let fault = self.find_touching(all, pairs);
+        let places = &all.geometry.places;
+        self.jobs
+            .run::<N, false>(processor, places, &mut self.results);
+        let mut fault = false;
+        for number in 0..self.spans.len() {
+            let pair = &mut pairs[self.spans[number].pair];
+            fault |= self.find_touching(all, number, pair);
+        }
         self.effects.clear();
         self.effects.resize(self.touching.len(), Effect::default());
-        self.press::<N>(processor, all.dt, pairs);
-        for k in 0..self.spans.len() {
-            let end = self
-                .spans
-                .get(k + 1)
-                .map_or(self.touching.len(), |next| next.touching);
-            let span = &self.spans[k];
-            let effects = &self.effects[span.touching..end];
+        self.press::<N>(processor, all.dt);
+        for (number, span) in self.spans.iter().enumerate() {
+            let next = self.spans.get(number + 1);
+            let contacts = span.contacts..next.map_or(self.touching.len(), |next| next.contacts);
+            if contacts.is_empty() && span.released == 0.0 {
+                continue;
+            }
             let pair = &mut pairs[span.pair];
-            actions[span.pair] = all.action(pair, span, effects);
+            let touching = self.touching[contacts.clone()].iter();
+            for (touch, spring) in touching.zip(&self.springs[contacts.clone()]) {
+                pair.memory.springs[touch.slot as usize] = *spring;
+            }
+            actions[span.pair] = all.action(pair, span, &self.effects[contacts]);
+            busy[span.pair] = true;
         }
         self.clear();
         fault
     }
 
-    /// Finds the contacts among the results. Springs of what does not touch are gone, and their energy is lost.
+    /// Makes active what may touch within a few steps of the measured near features of a pair; springs follow their
+    /// features.
     #[inline(always)]
-    fn find_touching(&mut self, all: &Surroundings<'_>, pairs: &mut [Pair]) -> bool {
-        let mut fault = false;
-        for (index, span) in self.spans.iter_mut().enumerate() {
-            let pair = &mut pairs[span.pair];
-            span.touching = self.touching.len();
-            let (mut sum, mut squares) = (0.0, 0.0);
-            for slot in 0..pair.entries.len() {
-                let result = span.first + slot;
-                let overlap = pair.touch - self.results[result].normal[3];
-                if overlap > 0.0 {
-                    self.results[result].middle[3] = overlap;
-                    pair.overlaps[slot] = overlap;
-                    sum += overlap;
-                    squares += overlap * overlap;
-                    self.touching.push(Touch {
-                        span: index,
-                        slot,
-                        result,
-                    });
-                } else {
-                    pair.overlaps[slot] = 0.0;
-                }
+    fn activate(&mut self, number: usize, moved: f64, pair: &mut Pair) {
+        let span = &mut self.spans[number];
+        let skin = (ACTIVE_LIFE * moved).max(ACTIVE_SKIN * pair.touch);
+        let memory = &mut *pair.memory;
+        std::mem::swap(&mut self.old_features, &mut memory.active.features);
+        std::mem::swap(&mut self.old_springs, &mut memory.springs);
+        let results = &mut self.results[span.results..];
+        let cutoff = pair.touch + skin;
+        let nearest = memory
+            .active
+            .choose(&memory.near, results, cutoff, &mut self.numbers);
+        pair.active_slack = nearest - pair.touch;
+        memory.springs.clear();
+        memory.overlaps.clear();
+        let mut known = self.old_features.iter().zip(&self.old_springs).peekable();
+        let mut let_go = |spring: &Row| span.released += 0.5 * spring[3] * length_squared(*spring);
+        for feature in &memory.active.features {
+            while let Some((_, spring)) = known.next_if(|(old, _)| *old < feature) {
+                let_go(spring);
             }
-            fault |= all.is_too_deep(pair);
-            if all.rule == FeatureRule::Shared && sum > 0.0 {
-                span.velocity[3] = squares / (sum * sum);
-            }
+            let same = known.next_if(|(old, _)| *old == feature);
+            let spring = same.map_or(UNLOADED, |(_, spring)| *spring);
+            // That it touched before is all that its overlap tells until it is found touching.
+            memory.overlaps.push(spring[3]);
+            memory.springs.push(spring);
         }
-        fault
+        known.for_each(|(_, spring)| let_go(spring));
     }
 
-    /// The contact law of every contact.
+    /// Finds the contacts of a pair among the results. Springs of what does not touch are gone, and their energy is lost.
+    /// True where the cores are so near each other that they might pass through.
     #[inline(always)]
-    fn press<N: Lanes>(&mut self, processor: N::Processor, dt: f64, pairs: &mut [Pair]) {
+    fn find_touching(&mut self, all: &Surroundings<'_>, number: usize, pair: &mut Pair) -> bool {
+        if let Some(moved) = self.spans[number].choose {
+            self.activate(number, moved, pair);
+        }
+        let span = &mut self.spans[number];
+        span.contacts = self.touching.len();
+        let (mut sum, mut squares) = (0.0, 0.0);
+        let (mut deepest, mut nearest) = (0.0, f64::INFINITY);
+        let memory = &mut *pair.memory;
+        let results = self.results[span.results..].iter_mut();
+        for (slot, (known, result)) in memory.overlaps.iter_mut().zip(results).enumerate() {
+            let overlap = pair.touch - result.normal[3];
+            if overlap > 0.0 {
+                result.middle[3] = overlap;
+                *known = overlap;
+                sum += overlap;
+                squares += overlap * overlap;
+                deepest = if overlap > deepest { overlap } else { deepest };
+                self.touching.push(Touch {
+                    span: number as u32,
+                    result: (span.results + slot) as u32,
+                    slot: slot as u32,
+                });
+                self.springs.push(memory.springs[slot]);
+                continue;
+            }
+            nearest = if -overlap < nearest {
+                -overlap
+            } else {
+                nearest
+            };
+            if *known > 0.0 {
+                *known = 0.0;
+                let spring = std::mem::replace(&mut memory.springs[slot], UNLOADED);
+                span.released += 0.5 * spring[3] * length_squared(spring);
+            }
+        }
+        pair.quiet = if sum > 0.0 { 0.0 } else { nearest };
+        if all.rule == FeatureRule::Shared && sum > 0.0 {
+            span.velocity[3] = squares / (sum * sum);
+        }
+        deepest > DEEPEST * pair.touch && !all.has_sides(pair)
+    }
+
+    /// The contact law of every contact of the batch.
+    #[inline(always)]
+    fn press<N: Lanes>(&mut self, processor: N::Processor, dt: f64) {
         let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
         let step = N::splat(processor, dt);
-        let touching = one.exceeds(zero);
-        let groups = self.touching.chunks(N::COUNT);
-        for (group, effects) in groups.zip(self.effects.chunks_mut(N::COUNT)) {
-            let last = group.len() - 1;
-            let span = side_by_side::<N, _>(|k| &self.spans[group[k.min(last)].span]);
-            let result = side_by_side::<N, _>(|k| &self.results[group[k.min(last)].result]);
-            let springs = side_by_side::<N, _>(|k| {
-                let touch = &group[k.min(last)];
-                &pairs[self.spans[touch.span].pair].springs[touch.slot]
-            });
-            let [nx, ny, nz, _] = N::gather(processor, result.map(|result| &result.normal));
+        let always = one.exceeds(zero);
+        let outputs = self
+            .springs
+            .chunks_mut(N::COUNT)
+            .zip(self.effects.chunks_mut(N::COUNT));
+        for (chunk, (springs, effects)) in self.touching.chunks(N::COUNT).zip(outputs) {
+            let all = group(chunk);
+            let last = chunk.len() - 1;
+            let span = side_by_side::<N, _>(|k| &self.spans[all[k].span as usize]);
+            let result = side_by_side::<N, _>(|k| &self.results[all[k].result as usize]);
+            let old = side_by_side::<N, _>(|k| &springs[k.min(last)]);
+            let [nx, ny, nz, _] = N::gather(processor, side_by_side::<N, _>(|k| &result[k].normal));
             let normal = [nx, ny, nz];
-            let [mx, my, mz, overlap] = N::gather(processor, result.map(|result| &result.middle));
-            let [cx, cy, cz, offset] = N::gather(processor, span.map(|span| &span.centre));
-            let [vx, vy, vz, part] = N::gather(processor, span.map(|span| &span.velocity));
-            let [wx, wy, wz, _] = N::gather(processor, span.map(|span| &span.spin));
+            let [mx, my, mz, overlap] =
+                N::gather(processor, side_by_side::<N, _>(|k| &result[k].middle));
+            let [cx, cy, cz, offset] =
+                N::gather(processor, side_by_side::<N, _>(|k| &span[k].centre));
+            let [vx, vy, vz, part] =
+                N::gather(processor, side_by_side::<N, _>(|k| &span[k].velocity));
+            let [wx, wy, wz, _] = N::gather(processor, side_by_side::<N, _>(|k| &span[k].spin));
             let [normal_stiffness, damping, tangential_stiffness, friction] =
-                N::gather(processor, span.map(|span| &span.law));
+                N::gather(processor, side_by_side::<N, _>(|k| &span[k].law));
             let arm = plus(minus([mx, my, mz], [cx, cy, cz]), times(normal, offset));
             let velocity = plus([vx, vy, vz], cross([wx, wy, wz], arm));
             let approach = dot(velocity, normal);
@@ -466,10 +560,10 @@ impl Desk {
             let stiffness = tangential_stiffness * part;
             let stretched = stretch::<N>(
                 processor,
-                springs,
+                old,
                 times(slip, step),
                 normal,
-                touching,
+                always,
                 stiffness,
                 friction * Hooke.coulomb_force(elastic, repulsion, zero),
             );
@@ -483,31 +577,25 @@ impl Desk {
             let forces = N::rows([force[0], force[1], force[2], zero]);
             let moments = N::rows([moment[0], moment[1], moment[2], zero]);
             let energies = N::rows([in_dashpot, stretched.lost, pressed, zero]);
-            for (k, effect) in effects.iter_mut().enumerate() {
-                *effect = Effect {
-                    force: forces[k].row(),
-                    moment: moments[k].row(),
-                    energy: energies[k].row(),
-                };
-                let touch = &group[k];
-                let pair = &mut pairs[self.spans[touch.span].pair];
-                pair.springs[touch.slot] = stretched.rows[k].row();
+            for (k, (effect, spring)) in effects.iter_mut().zip(springs).enumerate() {
+                effect.force = forces[k].row();
+                effect.moment = moments[k].row();
+                effect.energy = energies[k].row();
+                *spring = stretched.rows[k].row();
             }
         }
     }
 }
 
 impl Surroundings<'_> {
-    /// Whether the cores of `pair` are so near that they might pass through each other. A plane and the inside of a drum
-    /// know which side is theirs.
+    /// Whether the second side of `pair` knows which side of it is which, however deep a body sinks: a plane and the inside
+    /// of a drum do.
     #[inline(always)]
-    fn is_too_deep(&self, pair: &Pair) -> bool {
-        let has_sides = self.wall(pair).is_some_and(|wall| match wall.surface {
+    fn has_sides(&self, pair: &Pair) -> bool {
+        self.wall(pair).is_some_and(|wall| match wall.surface {
             Surface::Plane { .. } | Surface::Cylinder { .. } => true,
             Surface::Tube { .. } => false,
-        });
-        let deepest = DEEPEST * pair.touch;
-        !has_sides && pair.overlaps.iter().any(|&overlap| overlap > deepest)
+        })
     }
 
     /// What `pair` does, from the `effects` of its contacts.
@@ -524,26 +612,20 @@ impl Surroundings<'_> {
             action.exchanged[1] += effect.energy[1];
             pressed += effect.energy[2];
         }
-        for (spring, overlap) in pair.springs.iter_mut().zip(&pair.overlaps) {
-            if *overlap == 0.0 && spring[3] > 0.0 {
-                action.exchanged[1] += 0.5 * spring[3] * length_squared(*spring);
-                *spring = UNLOADED;
-            }
-        }
+        action.exchanged[1] += span.released;
         if self.rule == FeatureRule::Shared {
             // Stiffness that is shared anew is no potential's: what it takes or gives is booked with the springs.
-            let stored = pair.stored_energy(span.velocity[3]);
-            action.exchanged[1] += pressed - (stored - pair.stored);
-            pair.stored = stored;
+            let stored = pair.memory.stored_energy(span.velocity[3]);
+            action.exchanged[1] += pressed - (stored - pair.memory.stored);
+            pair.memory.stored = stored;
         }
-        let [position, velocity, spin] = self.second(pair);
-        let across = crossed(sub(span.centre, position), action.force);
+        let across = crossed(sub(span.centre, span.second), action.force);
         for axis in 0..3 {
             action.second[axis] = -action.first[axis] - across[axis];
         }
-        if self.wall(pair).is_some() {
-            let force = vector(action.force).dot(vector(velocity));
-            let torque = -vector(action.second).dot(vector(spin));
+        if let Some(wall) = self.wall(pair) {
+            let force = vector(action.force).dot(wall.motion.velocity);
+            let torque = -vector(action.second).dot(wall.motion.spin);
             action.exchanged[3] = self.dt * (force + torque);
         }
         action.force[3] = if effects.is_empty() { 0.0 } else { 1.0 };
@@ -551,7 +633,7 @@ impl Surroundings<'_> {
     }
 }
 
-impl Pair {
+impl Memory {
     /// What its normal springs store where each contact has `part` of the stiffness [J].
     pub fn stored_energy(&self, part: f64) -> f64 {
         let squares: f64 = self.overlaps.iter().map(|x| x * x).sum();
@@ -572,19 +654,17 @@ impl Pair {
 
 /// Lists the vertices of the first body that may touch a wall; returns how far it may move until the next time.
 fn list_at_wall(all: &Surroundings<'_>, surface: &Surface, skin: f64, pair: &mut Pair) -> f64 {
-    pair.entries.clear();
-    let i = pair.first as usize;
-    let (from, to) = (all.shapes.places[i].vertex, all.shapes.places[i + 1].vertex);
+    pair.memory.near.clear();
     let mut nearest = f64::INFINITY;
-    for vertex in from..to {
-        let place = vector(all.geometry.vertices[vertex as usize]);
-        let distance = surface.distance(place).0;
+    let vertices = all.geometry.vertices_of(pair.first as usize);
+    for (vertex, place) in (0..).zip(vertices) {
+        let distance = surface.distance(vector(*place)).0;
         nearest = nearest.min(distance);
         if distance < pair.touch + skin {
-            pair.entries.push(Entry {
-                feature: Feature::VertexFace((vertex - from) as u16, 0),
-                inside: true,
-            });
+            pair.memory
+                .near
+                .features
+                .push(Feature::VertexFace(vertex, 0));
         }
     }
     skin.max(nearest - pair.touch)
