@@ -9,6 +9,7 @@ mod drum;
 mod faults;
 mod impact;
 mod pair_forces;
+mod polyhedra;
 mod published;
 mod random_scenes;
 mod rolling;
