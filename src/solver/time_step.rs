@@ -3,8 +3,10 @@
 //! In: a scene. Out: the step to take, every limit that was considered and the one that binds. A step given by the scene
 //! is taken as given, with a warning where it exceeds a limit.
 
-use super::law::{LARGEST_DRAG, smallest_viscous_gap};
-use crate::scene::{ContactLaw, Scene, SceneGrains, SceneLiquid, SceneMaterial, TimeStep};
+use super::law::{LARGEST_DRAG, natural_log, smallest_viscous_gap};
+use crate::scene::{
+    ContactLaw, FeatureRule, Scene, SceneGrains, SceneLiquid, SceneMaterial, TimeStep,
+};
 use std::f64::consts::PI;
 
 /// Share of the Rayleigh time that a step may take (physics of Kasper et al. 2021 as run by its authors: at most 0.2).
@@ -18,6 +20,14 @@ const IMPACT_SPEED: f64 = 0.2;
 
 /// Steps that half a period of a linear contact must last at least.
 const STEPS_PER_HALF_PERIOD: f64 = 20.0;
+
+/// Features of a polyhedron in a packed bed that are in contact at once, and those of two of them: each a spring and a
+/// dashpot of its own under [`FeatureRule::Full`].
+const FEATURES_OF_GRAIN: f64 = 40.0;
+const FEATURES_OF_PAIR: f64 = 9.0;
+
+/// Neighbours that touch a polyhedron at once, at most but for a few.
+const NEIGHBOURS_OF_GRAIN: f64 = 12.0;
 
 /// Neighbours of a grain whose drag the step must bear without bounding it.
 const DRAGGING_NEIGHBOURS: f64 = 6.0;
@@ -50,6 +60,13 @@ struct Kind<'a> {
     material: &'a SceneMaterial,
 }
 
+impl Kind<'_> {
+    /// [kg]
+    fn mass(&self) -> f64 {
+        4.0 / 3.0 * PI * self.radius.powi(3) * self.material.density
+    }
+}
+
 /// The time step for `scene`: the one it gives, or the largest that every limit allows.
 pub fn advise(scene: &Scene) -> TimeStepAdvice {
     let kinds = kinds(scene);
@@ -62,12 +79,16 @@ pub fn advise(scene: &Scene) -> TimeStepAdvice {
         ContactLaw::Hooke {
             normal_stiffness,
             tangential_stiffness,
-            ..
+            features,
         } => {
             let stiffness = normal_stiffness.max(tangential_stiffness);
+            let touching = scene.is_polyhedral().then_some(features);
             kinds
                 .iter()
-                .map(|kind| hooke_limit(kind, stiffness))
+                .flat_map(|kind| {
+                    let dashpots = touching.map(|rule| dashpot_limit(kind, normal_stiffness, rule));
+                    std::iter::once(hooke_limit(kind, stiffness, touching)).chain(dashpots)
+                })
                 .collect()
         }
     };
@@ -196,15 +217,40 @@ fn hertz_limit(kind: &Kind, speed: f64) -> Limit {
     }
 }
 
-/// Half a period of two equal grains on a spring, `π √(m*/K)`.
-fn hooke_limit(kind: &Kind, stiffness: f64) -> Limit {
-    let mass = 4.0 / 3.0 * PI * kind.radius.powi(3) * kind.material.density;
-    let time = PI * (0.5 * mass / stiffness).sqrt();
+/// Half a period of two equal grains on a spring, `π √(m*/K)`; on several, where polyhedra touch in several places.
+fn hooke_limit(kind: &Kind, stiffness: f64, touching: Option<FeatureRule>) -> Limit {
+    let springs = match touching {
+        Some(FeatureRule::Full) => FEATURES_OF_PAIR,
+        Some(FeatureRule::Shared) | None => 1.0,
+    };
+    let time = PI * (0.5 * kind.mass() / (springs * stiffness)).sqrt();
     Limit {
         name: "linear contact",
         time_step: time / STEPS_PER_HALF_PERIOD,
         reason: format!(
-            "1/{STEPS_PER_HALF_PERIOD} of the {time:.3e} s that two grains of {} touch on a spring of {stiffness:.3e} N/m",
+            "1/{STEPS_PER_HALF_PERIOD} of the {time:.3e} s that two grains of {} touch on {springs} springs of {stiffness:.3e} N/m",
+            kind.material.name
+        ),
+    }
+}
+
+/// `1.6 m/(M c)` with the dashpot `c = 2 √(ln² e K_n m/(π² + ln² e))` of a grain against a heavy one: up to that step the
+/// dashpots of `M` contacts take no more than all of its speed.
+fn dashpot_limit(kind: &Kind, normal_stiffness: f64, rule: FeatureRule) -> Limit {
+    let contacts = match rule {
+        FeatureRule::Full => FEATURES_OF_GRAIN,
+        FeatureRule::Shared => NEIGHBOURS_OF_GRAIN,
+    };
+    let log_squared = natural_log(kind.material.restitution).powi(2);
+    let damped = log_squared / (PI * PI + log_squared);
+    let dashpot = 2.0 * (damped * normal_stiffness * kind.mass()).sqrt();
+    Limit {
+        name: "dashpots of a polyhedron",
+        time_step: LARGEST_DRAG * kind.mass() / (contacts * dashpot),
+        reason: format!(
+            "{LARGEST_DRAG}/{contacts} of the {:.3e} s in which one dashpot stops the smallest grain of {}, which {contacts} of \
+             them act on at once",
+            kind.mass() / dashpot,
             kind.material.name
         ),
     }
@@ -213,7 +259,7 @@ fn hooke_limit(kind: &Kind, stiffness: f64) -> Limit {
 /// `1.6 m/(2 · 6 c)` with the drag `c = 6π η r*²/D` of two equal grains at the smallest gap: up to that step it acts
 /// unbounded on grains with six neighbours each.
 fn lubrication_limit(kind: &Kind, liquid: &SceneLiquid) -> Limit {
-    let mass = 4.0 / 3.0 * PI * kind.radius.powi(3) * kind.material.density;
+    let mass = kind.mass();
     let effective = 0.5 * kind.radius;
     let gap = smallest_viscous_gap(liquid.law.viscous_gap, effective, 2.0 * kind.radius);
     let drag = 6.0 * PI * liquid.viscosity * effective * effective / gap;

@@ -156,7 +156,7 @@ fn reduced(a: f64, b: f64) -> f64 {
 /// `ln x` for `x > 0` by sums and products alone: a platform's own may differ in the last bit.
 ///
 /// `x = 2^k m` with `m` near 1 and `ln m = 2 (s + s³/3 + s⁵/5 + …)`, `s = (m − 1)/(m + 1)`, |s| ≤ 1/5.
-fn natural_log(x: f64) -> f64 {
+pub fn natural_log(x: f64) -> f64 {
     const TERMS: u8 = 13;
     let (mut m, mut k) = (x, 0.0);
     while m < 0.75 && m > 0.0 {

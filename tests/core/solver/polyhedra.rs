@@ -53,7 +53,9 @@ fn free_asymmetric_body_keeps_its_angular_momentum_and_its_energy() {
         (polyhedra.orientation[0].conjugate() * polyhedra.angular_momentum[0]).to_array()
     };
     let start = in_body(&world);
-    let axis = (0..3).find(|&k| start[k].abs() > 0.9 * spin.length()).unwrap();
+    let axis = (0..3)
+        .find(|&k| start[k].abs() > 0.9 * spin.length())
+        .unwrap();
     let (mut worst, mut side, mut tumbles) = (0.0_f64, start[axis].signum(), 0);
     for _ in 0..1000 {
         solver.advance(&mut world, 1000).unwrap();
@@ -86,12 +88,21 @@ fn body_that_spins_about_a_principal_axis_turns_by_spin_times_time() {
 fn box_at_rest_sinks_by_its_weight_on_four_springs() {
     let grain = r#"(position: (0, 0.001, 0), shape: Box(size: (0.004, 0.002, 0.004)), rounding: 0.0001, material: "m")"#;
     for (rule, springs) in [("Full", 4.0), ("Shared", 1.0)] {
-        let mut world = bodies("density: 2650, restitution: 0.2", grain, "(0, -9.81, 0)", rule, 1e-6);
+        let mut world = bodies(
+            "density: 2650, restitution: 0.2",
+            grain,
+            "(0, -9.81, 0)",
+            rule,
+            1e-6,
+        );
         run(&mut world, 0.03);
         let weight = world.grains.mass[0] * 9.81;
         let sunk = 0.001 - world.grains.position[0].y;
         let expected = weight / (springs * STIFFNESS);
-        assert!((sunk / expected - 1.0).abs() < 1e-6, "{rule}: {sunk:e} {expected:e}");
+        assert!(
+            (sunk / expected - 1.0).abs() < 1e-6,
+            "{rule}: {sunk:e} {expected:e}"
+        );
         assert!(world.kinetic_energy() < 1e-20);
         let corners: Vec<Feature> = features(&world);
         assert_eq!(corners.len(), 4, "{corners:?}");
@@ -116,17 +127,31 @@ fn on_slope(friction: f64, size: &str, height: f64, slope: f64, time: f64) -> (W
 fn box_slides_down_a_slope_with_g_sin_minus_mu_g_cos() {
     let (friction, slope): (f64, f64) = (0.3, 0.5);
     let (world, _) = on_slope(friction, "(0.006, 0.001, 0.004)", 0.0005, slope, 0.05);
-    let expected = 9.81 * (slope.sin() - friction * slope.cos()) * 0.05;
+    // The elastic part of the normal force alone bounds the friction: while the box sinks in, its dashpots carry a part of
+    // the weight, and the friction lacks μ c g cos/K_n in all.
+    let log_squared = f64::ln(0.2).powi(2);
+    let damped = log_squared / (std::f64::consts::PI.powi(2) + log_squared);
+    let dashpot = 2.0 * (damped * STIFFNESS * world.grains.mass[0]).sqrt();
+    let lacking = friction * dashpot * 9.81 * slope.cos() / STIFFNESS;
+    let expected = 9.81 * (slope.sin() - friction * slope.cos()) * 0.05 + lacking;
     let speed = world.grains.velocity[0].x;
-    // It sinks in and stretches its springs first: √(m/4K) g, some 1e-3 of the speed.
-    assert!((speed / expected - 1.0).abs() < 2e-3, "{speed} against {expected}");
+    assert!(
+        (speed / expected - 1.0).abs() < 1e-4,
+        "{speed} against {expected}"
+    );
 }
 
 #[test]
 fn box_stays_on_a_slope_below_its_angle_of_friction() {
-    let (world, _) = on_slope(0.3, "(0.006, 0.001, 0.004)", 0.0005, 0.28, 0.05);
-    assert!(world.grains.velocity[0].length() < 1e-9);
-    assert!(world.grains.position[0].x < 1e-6);
+    let slope: f64 = 0.1;
+    let (world, _) = on_slope(0.3, "(0.006, 0.001, 0.004)", 0.0005, slope, 0.1);
+    // The law has no tangential dashpot: the box rings on its four springs, about where they hold it, and does not slide.
+    let held = world.grains.mass[0] * 9.81 * slope.sin() / (4.0 * 2000.0);
+    let gone = world.grains.position[0].x;
+    assert!(
+        (0.0..2.1 * held).contains(&gone),
+        "{gone:e} m, held at {held:e} m"
+    );
 }
 
 #[test]
@@ -135,7 +160,13 @@ fn box_tips_where_its_weight_passes_its_lower_corners() {
     let (half_width, half_height) = (0.001, 0.002);
     let tipping = f64::atan((half_width - 0.0001) / half_height);
     let tilt = |factor: f64| {
-        let (_, turned) = on_slope(5.0, "(0.002, 0.004, 0.002)", half_height, factor * tipping, 0.2);
+        let (_, turned) = on_slope(
+            5.0,
+            "(0.002, 0.004, 0.002)",
+            half_height,
+            factor * tipping,
+            0.2,
+        );
         (turned * DVec3::Y).y
     };
     assert!(tilt(0.98) > 0.9999, "{}", tilt(0.98));
@@ -149,8 +180,7 @@ fn pressed(first: &str, second: &str, rule: &str, overlap: DVec3) -> World {
     world
 }
 
-const PLATE: &str =
-    r#"(position: (0, 1, 0), shape: Box(size: (0.02, 0.004, 0.02)), rounding: 0.0002, material: "m")"#;
+const PLATE: &str = r#"(position: (0, 1, 0), shape: Box(size: (0.02, 0.004, 0.02)), rounding: 0.0002, material: "m")"#;
 
 #[test]
 fn small_face_on_a_large_one_presses_with_a_spring_at_each_corner() {
@@ -161,10 +191,15 @@ fn small_face_on_a_large_one_presses_with_a_spring_at_each_corner() {
         let world = pressed(PLATE, small, rule, DVec3::new(0.0, -1e-4 - overlap, 0.0));
         let (force, after) = force_at_rest(world, 1);
         let expected = springs * STIFFNESS * overlap;
-        assert!((force.y / expected - 1.0).abs() < 1e-9, "{rule}: {force} against {expected}");
+        assert!(
+            (force.y / expected - 1.0).abs() < 1e-9,
+            "{rule}: {force} against {expected}"
+        );
         assert!(force.x.abs() + force.z.abs() < 1e-9 * expected);
         let features = features(&after);
-        let at_faces = features.iter().filter(|f| matches!(f, Feature::FaceVertex(..)));
+        let at_faces = features
+            .iter()
+            .filter(|f| matches!(f, Feature::FaceVertex(..)));
         assert_eq!((features.len(), at_faces.count()), (4, 4), "{features:?}");
         // The springs stand evenly about the centre: no torque on the small one.
         assert!(after.grains.torque[1].length() < 1e-9 * expected * 0.001);
@@ -186,15 +221,30 @@ fn crossed_edges_press_each_other_once() {
     // From the axis of a bar to the edge of its core: √2 (1 mm − R_s), then R_s to the surface.
     let reach = 2.0_f64.sqrt() * 0.0008 + 0.0002;
     let first = bar("(0, 1, 0)", "(0.02, 0.002, 0.002)", "(1, 0, 0)");
-    let second = bar(&format!("(0, {}, 0)", 1.0 + 2.0 * reach + 1e-4), "(0.002, 0.002, 0.02)", "(0, 0, 1)");
+    let second = bar(
+        &format!("(0, {}, 0)", 1.0 + 2.0 * reach + 1e-4),
+        "(0.002, 0.002, 0.02)",
+        "(0, 0, 1)",
+    );
     let overlap = 3e-5;
-    let world = pressed(&first, &second, "Full", DVec3::new(0.0, -1e-4 - overlap, 0.0));
+    let world = pressed(
+        &first,
+        &second,
+        "Full",
+        DVec3::new(0.0, -1e-4 - overlap, 0.0),
+    );
     let (force, after) = force_at_rest(world, 1);
     let features = features(&after);
-    assert!(matches!(features[..], [Feature::EdgeEdge(..)]), "{features:?}");
+    assert!(
+        matches!(features[..], [Feature::EdgeEdge(..)]),
+        "{features:?}"
+    );
     let expected = STIFFNESS * overlap;
     // The overlap is the difference of places near 1 m: 1e-16 of 3e-5.
-    assert!((force.y / expected - 1.0).abs() < 1e-9, "{force} against {expected}");
+    assert!(
+        (force.y / expected - 1.0).abs() < 1e-9,
+        "{force} against {expected}"
+    );
     assert!(after.grains.torque[0].length() + after.grains.torque[1].length() < 1e-9 * expected);
 }
 
@@ -208,9 +258,15 @@ fn corner_on_a_face_presses_once_at_its_point() {
     let down = DVec3::new(0.0, 1.002 + reach - overlap - 1.01, 0.0);
     let (force, after) = force_at_rest(pressed(PLATE, cube, "Full", down), 1);
     let features = features(&after);
-    assert!(matches!(features[..], [Feature::FaceVertex(..)]), "{features:?}");
+    assert!(
+        matches!(features[..], [Feature::FaceVertex(..)]),
+        "{features:?}"
+    );
     let expected = STIFFNESS * overlap;
-    assert!((force.y / expected - 1.0).abs() < 1e-6, "{force} against {expected}");
+    assert!(
+        (force.y / expected - 1.0).abs() < 1e-6,
+        "{force} against {expected}"
+    );
     let turned = DVec3::new(0.003, 0.002, -0.001).cross(-force);
     assert!((after.grains.torque[0] - turned).length() < 1e-4 * turned.length());
 }
@@ -220,13 +276,23 @@ fn every_feature_of_equal_cubes_face_to_face_is_a_contact_of_its_own() {
     // Each of the four corners of either face meets three faces; every edge of the faces, and those that leave it at the
     // corners, meet: 4 with their twins, 8 with neighbours in the face, 16 with those that leave, 4 of those with each other.
     let cube = |y: f64| {
-        format!(r#"(position: (0, {y}, 0), shape: Box(size: (0.002, 0.002, 0.002)), rounding: 0.0002, material: "m")"#)
+        format!(
+            r#"(position: (0, {y}, 0), shape: Box(size: (0.002, 0.002, 0.002)), rounding: 0.0002, material: "m")"#
+        )
     };
     let overlap = 1e-5;
-    let world = pressed(&cube(1.0), &cube(1.0021), "Full", DVec3::new(0.0, -1e-4 - overlap, 0.0));
+    let world = pressed(
+        &cube(1.0),
+        &cube(1.0021),
+        "Full",
+        DVec3::new(0.0, -1e-4 - overlap, 0.0),
+    );
     let (force, after) = force_at_rest(world, 1);
     assert_eq!(features(&after).len(), 24 + 32);
-    assert!((force.y / (56.0 * STIFFNESS * overlap) - 1.0).abs() < 1e-9, "{force}");
+    assert!(
+        (force.y / (56.0 * STIFFNESS * overlap) - 1.0).abs() < 1e-9,
+        "{force}"
+    );
 }
 
 /// Speed after the impact of a flat box on the floor over that before.
@@ -247,7 +313,10 @@ fn shared_contacts_rebound_with_their_restitution_and_full_ones_do_not() {
         let shared = rebound("Shared", restitution);
         let full = rebound("Full", restitution);
         println!("e {restitution}: shared {shared:.4}, each a full contact {full:.4}");
-        assert!((0.0..0.02).contains(&(shared - restitution + 1e-3)), "{restitution}: {shared}");
+        assert!(
+            (0.0..0.02).contains(&(shared - restitution + 1e-3)),
+            "{restitution}: {shared}"
+        );
         if restitution < 1.0 {
             assert!(full < restitution - 0.05, "{restitution}: {full}");
         }
@@ -265,8 +334,20 @@ fn polyhedron_of_one_vertex_is_a_sphere() {
     let as_spheres = spheres.replace("SHAPE ", "");
     let as_polyhedra = spheres.replace("SHAPE", "shape: Sphere,") + far;
     let gravity = "(0, -9.81, 0)";
-    let mut plain = bodies(law, &as_spheres.replace("0.0029", "0.003"), gravity, "Full", 1e-6);
-    let mut rounded = bodies(law, &as_polyhedra.replace("0.0029", "0.003"), gravity, "Full", 1e-6);
+    let mut plain = bodies(
+        law,
+        &as_spheres.replace("0.0029", "0.003"),
+        gravity,
+        "Full",
+        1e-6,
+    );
+    let mut rounded = bodies(
+        law,
+        &as_polyhedra.replace("0.0029", "0.003"),
+        gravity,
+        "Full",
+        1e-6,
+    );
     for world in [&mut plain, &mut rounded] {
         run(world, 0.02);
     }
@@ -276,8 +357,18 @@ fn polyhedron_of_one_vertex_is_a_sphere() {
         // Sums in another order, along a path that a hit makes ten times more sensitive.
         let (a, b) = (&plain.grains, &rounded.grains);
         assert!((a.position[i] - b.position[i]).length() < 1e-12);
-        assert!((a.velocity[i] - b.velocity[i]).length() < 1e-9, "{} {}", a.velocity[i], b.velocity[i]);
-        assert!((a.spin[i] - b.spin[i]).length() < 1e-6, "{} {}", a.spin[i], b.spin[i]);
+        assert!(
+            (a.velocity[i] - b.velocity[i]).length() < 1e-9,
+            "{} {}",
+            a.velocity[i],
+            b.velocity[i]
+        );
+        assert!(
+            (a.spin[i] - b.spin[i]).length() < 1e-6,
+            "{} {}",
+            a.spin[i],
+            b.spin[i]
+        );
     }
 }
 
@@ -313,12 +404,24 @@ fn collapse_has_the_same_bits_for_any_threads_lanes_and_slices() {
     for rule in ["Full", "Shared"] {
         let whole = fallen(rule, Solver::new(1), &[3000]);
         for threads in [2, 3, 8] {
-            assert_eq!(fallen(rule, Solver::new(threads), &[3000]), whole, "{rule}, {threads} threads");
+            assert_eq!(
+                fallen(rule, Solver::new(threads), &[3000]),
+                whole,
+                "{rule}, {threads} threads"
+            );
         }
         for processor in Processor::all() {
-            assert_eq!(fallen(rule, Solver::on(processor, 1), &[3000]), whole, "{rule}, {processor}");
+            assert_eq!(
+                fallen(rule, Solver::on(processor, 1), &[3000]),
+                whole,
+                "{rule}, {processor}"
+            );
         }
-        assert_eq!(fallen(rule, Solver::new(1), &[1, 999, 500, 1500]), whole, "{rule}, in slices");
+        assert_eq!(
+            fallen(rule, Solver::new(1), &[1, 999, 500, 1500]),
+            whole,
+            "{rule}, in slices"
+        );
     }
 }
 
@@ -351,10 +454,20 @@ fn collapse_closes_its_energy_balance_and_comes_to_rest() {
             fastest = fastest.max(world.kinetic_energy());
         }
         let ledger = EnergyLedger::of(&world);
-        println!("{rule}: kinetic {:e} of at most {fastest:e}, {ledger:?}", world.kinetic_energy());
-        assert!(world.kinetic_energy() < 0.02 * fastest, "{rule}: it has come to rest");
+        println!(
+            "{rule}: kinetic {:e} of at most {fastest:e}, {ledger:?}",
+            world.kinetic_energy()
+        );
+        assert!(
+            world.kinetic_energy() < 0.02 * fastest,
+            "{rule}: it has come to rest"
+        );
         // Dashpots are booked with the velocities of half a step ago: first order in the step.
-        assert!(ledger.relative_residual().abs() < 0.05, "{rule}: {}", ledger.relative_residual());
+        assert!(
+            ledger.relative_residual().abs() < 0.05,
+            "{rule}: {}",
+            ledger.relative_residual()
+        );
     }
 }
 
@@ -366,10 +479,13 @@ fn cores_that_would_pass_through_each_other_are_caught() {
                 velocity: ({v}, 0, 0), orientation: Turned(axis: (1, 2, 3), angle_deg: 40))"#
         )
     };
-    let text = format!("{}, {}", grain(-0.002, 3.0), grain(0.002, -3.0));
+    let text = format!("{}, {}", grain(-0.002, 20.0), grain(0.002, -20.0));
     let mut world = bodies("restitution: 0.9", &text, "(0, 0, 0)", "Full", 1e-6);
     let fault = Solver::new(1).advance(&mut world, 5000).unwrap_err();
-    assert!(matches!(fault.kind, FaultKind::TooDeep(share) if share > 0.8), "{fault}");
+    assert!(
+        matches!(fault.kind, FaultKind::TooDeep(share) if share > 0.8),
+        "{fault}"
+    );
     assert_eq!(world.time(), 0.0, "the last good state is kept");
 }
 
@@ -379,7 +495,10 @@ fn body_too_fast_for_its_rounding_is_caught() {
         velocity: (30, 0, 0))"#;
     let mut world = bodies("", grain, "(0, 0, 0)", "Full", 1e-6);
     let fault = Solver::new(1).advance(&mut world, 10).unwrap_err();
-    assert!(matches!(fault.kind, FaultKind::TooFastForRounding(_)), "{fault}");
+    assert!(
+        matches!(fault.kind, FaultKind::TooFastForRounding(_)),
+        "{fault}"
+    );
 }
 
 #[test]
@@ -394,10 +513,19 @@ fn box_on_a_belt_is_carried_along() {
     let mut world = world(text, 1e-6);
     run(&mut world, 0.08);
     let speed = world.grains.velocity[0];
-    assert!((speed - DVec3::new(0.1, 0.0, 0.0)).length() < 1e-5, "{speed}");
+    assert!(
+        (speed - DVec3::new(0.1, 0.0, 0.0)).length() < 1e-5,
+        "{speed}"
+    );
     // Slipping up to speed takes as much from the belt again as the box gains.
     let gained = 0.5 * world.grains.mass[0] * 0.01;
     let ledger = EnergyLedger::of(&world);
-    assert!((ledger.wall_work / (2.0 * gained) - 1.0).abs() < 0.02, "{ledger:?} {gained:e}");
-    assert!((ledger.sliding_loss / gained - 1.0).abs() < 0.02, "{ledger:?} {gained:e}");
+    assert!(
+        (ledger.wall_work / (2.0 * gained) - 1.0).abs() < 0.02,
+        "{ledger:?} {gained:e}"
+    );
+    assert!(
+        (ledger.sliding_loss / gained - 1.0).abs() < 0.02,
+        "{ledger:?} {gained:e}"
+    );
 }
