@@ -254,7 +254,7 @@ impl Body {
     }
 
     /// Turns the free body for `dt` [s]: its angular momentum stays, its orientation follows by rotations about one body
-    /// axis after the other, forwards and back (the symmetric splitting of Dullweber, Leimkuhler and McLachlan 1997).
+    /// axis after the other, forwards and back (the symmetric splitting of Dullweber, Leimkuhler and `McLachlan` 1997).
     /// Each is symplectic, so the energy of a free body does not drift.
     #[inline(always)]
     fn turn(&mut self, dt: f64) {

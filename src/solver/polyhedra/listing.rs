@@ -310,7 +310,7 @@ impl Search {
                 .filter(|(_, place)| matters(*place));
             list.jobs.sides.extend(kept.map(|(side, _)| *side));
             let count = list.jobs.sides.len() as u32 - first;
-            list.jobs.outlines.push(OutlineJob { face, count, first });
+            list.jobs.outlines.push(OutlineJob { face, first, count });
         }
         for job in edges {
             let candidate = job.out as usize;

@@ -293,17 +293,15 @@ impl Surroundings<'_> {
     /// Position, velocity and spin of the second side; a wall moves about the origin.
     #[inline(always)]
     fn second(&self, pair: &Pair) -> [Row; 3] {
-        match self.wall(pair) {
-            Some(wall) => [
+        if let Some(wall) = self.wall(pair) {
+            return [
                 [0.0; 4],
                 row(wall.motion.velocity, 0.0),
                 row(wall.motion.spin, 0.0),
-            ],
-            None => {
-                let body = &self.bodies[pair.second as usize];
-                [body.position, body.velocity, body.spin]
-            }
+            ];
         }
+        let body = &self.bodies[pair.second as usize];
+        [body.position, body.velocity, body.spin]
     }
 
     /// How the two move relative to each other.
@@ -339,21 +337,21 @@ impl Desk {
         pair: &mut Pair,
     ) {
         let skin = (LIFE * moved).clamp(SKIN.start() * pair.touch, SKIN.end() * pair.touch);
-        pair.slack = match all.wall(pair) {
-            Some(wall) => list_at_wall(all, &wall.surface, skin, pair),
-            None => {
-                let wanted = Wanted {
-                    bodies: [pair.first as usize, pair.second as usize],
-                    axis: pair.memory.axis,
-                    touch: pair.touch,
-                    skin,
-                };
-                let found =
-                    self.search
-                        .run::<N>(processor, &all.geometry, &wanted, &mut pair.memory.near);
-                pair.memory.axis = found.axis;
-                found.slack
-            }
+        pair.slack = if let Some(wall) = all.wall(pair) {
+            list_at_wall(all, &wall.surface, skin, pair)
+        } else {
+            let wanted = Wanted {
+                bodies: [pair.first as usize, pair.second as usize],
+                axis: pair.memory.axis,
+                touch: pair.touch,
+                skin,
+            };
+            let memory = &mut *pair.memory;
+            let found = self
+                .search
+                .run::<N>(processor, &all.geometry, &wanted, &mut memory.near);
+            memory.axis = found.axis;
+            found.slack
         };
         pair.active_slack = -1.0;
     }
@@ -375,21 +373,18 @@ impl Desk {
             &memory.active
         };
         let results = self.results.len();
-        match all.wall(pair) {
-            Some(wall) => {
-                let vertices = all.geometry.vertices_of(pair.first as usize);
-                self.results.extend(list.features.iter().map(|feature| {
-                    let Feature::VertexFace(vertex, _) = feature else {
-                        return Nearest::default();
-                    };
-                    to_wall(&wall.surface, vertices[usize::from(*vertex)])
-                }));
-            }
-            None => {
-                self.jobs.extend(&list.jobs, results as u32);
-                let end = results + list.features.len();
-                self.results.resize(end, Nearest::default());
-            }
+        if let Some(wall) = all.wall(pair) {
+            let vertices = all.geometry.vertices_of(pair.first as usize);
+            self.results.extend(list.features.iter().map(|feature| {
+                let Feature::VertexFace(vertex, _) = feature else {
+                    return Nearest::default();
+                };
+                to_wall(&wall.surface, vertices[usize::from(*vertex)])
+            }));
+        } else {
+            self.jobs.extend(&list.jobs, results as u32);
+            let end = results + list.features.len();
+            self.results.resize(end, Nearest::default());
         }
         let [vx, vy, vz, _] = relative.velocity;
         let [cx, cy, cz, _] = all.bodies[pair.first as usize].position;
