@@ -161,6 +161,7 @@ fn world(shape: Shape, walls: Vec<Surface>) -> World {
         liquid: None,
         law: ContactLaw::HertzMindlin,
         contacts: Vec::new(),
+        polyhedra: None,
         ledger: Ledger::default(),
     }
 }
