@@ -16,6 +16,7 @@ mod report;
 mod series_file;
 mod setting;
 mod summary_file;
+mod velocity_file;
 
 pub use commands_file::read_commands;
 pub use error::HeadlessError;
@@ -26,6 +27,7 @@ pub(crate) use progress::{Progress, spoken};
 pub(crate) use series_file::{SERIES, write_series};
 pub use setting::apply_setting;
 pub(crate) use summary_file::SummaryFile;
+pub(crate) use velocity_file::{VELOCITY, write_velocity};
 
 use crate::scene::Scene;
 use crate::simulation::{

@@ -8,6 +8,7 @@ use super::grains_file::{COLLECTION, extension, write_collection, write_grains};
 use super::profile_files::{FLOW, PROFILE, write_flow, write_profile};
 use super::series_file::{SERIES, write_series};
 use super::summary_file::SummaryFile;
+use super::velocity_file::{VELOCITY, write_velocity};
 use super::{Ending, HeadlessError, Job};
 use crate::measure::{Deposit, Measure, Summary, results, summarise};
 use crate::simulation::{SMALLEST_DROP, Simulation};
@@ -132,7 +133,12 @@ impl<'a> Recorder<'a> {
         if profile.depth.is_empty() {
             return Ok(());
         }
-        self.folder.write(FLOW, |file| write_flow(&profile, file))
+        self.folder.write(FLOW, |file| write_flow(&profile, file))?;
+        let Some(map) = simulation.flow().fastest_since(from) else {
+            return Ok(());
+        };
+        self.folder
+            .write(VELOCITY, |file| write_velocity(map, file))
     }
 
     fn write_profile(&self, simulation: &Simulation) -> Result<(), HeadlessError> {

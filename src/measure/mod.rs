@@ -14,7 +14,8 @@
 //! | `contacts` | coordination number, shares of the pairs of species, largest overlap |
 //! | `energy` | elastic energy and the energy ledger |
 //! | `avalanches` | extrema of θ(t) |
-//! | `flow` | velocity in the cross-section, its profile over depth |
+//! | `flow` | velocity in the cross-section, its profile over depth, its fastest moments |
+//! | `velocity_map` | mean velocities on a grid over the cross-section |
 //! | `reference` | stored dry drums to compare wet ones with |
 //! | `liquid` | bridges, capillary and Galilei number, torque of a drum |
 //! | `column` | the column that collapses: `α_eff`, `μ_p`, the laws of Man et al. 2023 |
@@ -40,6 +41,7 @@ mod series;
 mod summary;
 mod surface;
 mod temperature;
+mod velocity_map;
 
 pub use avalanches::{Avalanche, SMOOTHING_TIME, avalanches};
 pub use collapse::Collapse;
@@ -61,6 +63,7 @@ pub use summary::{
 };
 pub use surface::{MIDDLE_SHARE, SurfaceLine, surface_line};
 pub use temperature::{Temperatures, granular_temperatures};
+pub use velocity_map::{VelocityMap, velocity_map};
 
 use crate::world::World;
 

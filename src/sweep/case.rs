@@ -4,10 +4,10 @@ use super::checkpoint::{self, CaseKey};
 use super::{Case, Sweep};
 use crate::files::write_whole;
 use crate::headless::{
-    FLOW, HeadlessError, PROFILE, SERIES, SUMMARY, SummaryFile, write_flow, write_profile,
-    write_series,
+    FLOW, HeadlessError, PROFILE, SERIES, SUMMARY, SummaryFile, VELOCITY, write_flow,
+    write_profile, write_series, write_velocity,
 };
-use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, results};
+use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, VelocityMap, results};
 use crate::simulation::{Preparation, Prepared, Run, SMALLEST_DROP, Script};
 use crate::solver::{Fault, advise};
 use std::io::{self, Write};
@@ -62,6 +62,8 @@ pub struct Outcome {
     pub series: Series,
     /// Its flowing layer.
     pub flow: FlowProfile,
+    /// Its fastest moment.
+    pub fastest: Option<VelocityMap>,
     /// Hash of its last state.
     pub hash: String,
 }
@@ -187,6 +189,7 @@ fn outcome(case: &Case, run: &Run, ending: CaseEnding) -> Outcome {
         results,
         series: run.series().clone(),
         flow: run.flow().since(from),
+        fastest: run.flow().fastest_since(from).cloned(),
         hash: run.world().hash().to_string(),
     }
 }
@@ -228,12 +231,15 @@ fn write_files(
     write(&folder.join(SERIES), |file| {
         write_series(run.series(), &Measure::of(world), file)
     })?;
-    match Deposit::of(world) {
-        Some(deposit) => write(&folder.join(PROFILE), |file| {
+    if let Some(deposit) = Deposit::of(world) {
+        return write(&folder.join(PROFILE), |file| {
             write_profile(&deposit.height_profile(), file)
-        }),
-        None => write(&folder.join(FLOW), |file| write_flow(&outcome.flow, file)),
+        });
     }
+    write(&folder.join(FLOW), |file| write_flow(&outcome.flow, file))?;
+    outcome.fastest.as_ref().map_or(Ok(()), |map| {
+        write(&folder.join(VELOCITY), |file| write_velocity(map, file))
+    })
 }
 
 /// Writes a file of a sweep, whole or not at all.

@@ -368,6 +368,7 @@ mod tests {
             },
             series,
             flow: FlowProfile::default(),
+            fastest: None,
             hash: "0".repeat(32),
         }
     }

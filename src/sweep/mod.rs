@@ -1,9 +1,9 @@
 //! Variations of a scene, run side by side, and their results set beside each other.
 //!
-//! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`, `series.csv`, and `flow.csv` or a
-//! column's `profile.csv`),
-//! a table of all results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one core. A
-//! sweep that was stopped goes on when it is called again: finished cases are kept, others go on from their checkpoints.
+//! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`, `series.csv`, and `flow.csv`
+//! and `velocity.csv` or a column's `profile.csv`), a table of all results (`table.csv`, `table.md`) and plots with the paper's
+//! laws drawn in. Each case takes one core. A sweep that was stopped goes on when it is called again: finished cases are kept,
+//! others go on from their checkpoints.
 
 mod case;
 mod chart;
@@ -12,6 +12,7 @@ mod column_plots;
 mod plan;
 mod plots;
 mod table;
+mod velocity_plot;
 
 pub use plan::{Case, Variation};
 
@@ -79,6 +80,7 @@ pub fn run(sweep: &Sweep, interrupted: &AtomicBool) -> Result<SweepEnding, Headl
     let outcomes = carry_out(sweep, &cases, &shares, interrupted)?;
     table::write_tables(sweep, &outcomes)?;
     plots::write_plots(sweep, &outcomes)?;
+    velocity_plot::write_velocity_plots(sweep, &outcomes)?;
     print!("{}", table::markdown(sweep, &outcomes));
     let faults = count(&outcomes, CaseEnding::Faulted);
     let stopped = outcomes.len() < cases.len() || count(&outcomes, CaseEnding::Interrupted) > 0;

@@ -15,6 +15,7 @@ use super::profile::SolverProfile;
 use super::results::Results;
 use super::theme::{self, Palette};
 use super::transport::Transport;
+use super::velocity::Velocity;
 use super::{Panel, Request, Sheet, sheets, shortcuts};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
@@ -68,6 +69,7 @@ fn right() -> Vec<Section> {
     vec![
         section(Plots::default(), true),
         section(CollapsePlots::default(), true),
+        section(Velocity::default(), false),
         section(BesidePaper::default(), true),
         section(ColumnBesidePaper, true),
         section(Results::default(), true),

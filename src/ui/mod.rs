@@ -11,7 +11,7 @@
 //! | `shortcuts` | what each key does |
 //! | `menu`, `transport` | menu bar, bar under the picture |
 //! | `about_scene`, `parameters`, `picture`, `profile` | panels on the left |
-//! | `plots`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
+//! | `plots`, `velocity`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
 //! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
 //! | `theme` | every colour, size and font |
@@ -40,6 +40,7 @@ mod symbol;
 mod table;
 pub mod theme;
 mod transport;
+mod velocity;
 
 pub use about_scene::AboutScene;
 pub use collapse_plots::CollapsePlots;
@@ -54,6 +55,7 @@ pub use request::{Request, Sheet};
 pub use results::Results;
 pub use sheets::{scene_error_ui, sheet_ui};
 pub use transport::{Transport, status_ui};
+pub use velocity::Velocity;
 
 use crate::simulation::{Options, Simulation};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};

@@ -31,6 +31,7 @@ mod rig;
 mod settings;
 
 pub use camera::{OrbitCamera, apply_response};
+pub(crate) use colour::round_up;
 pub use colour::species_colour;
 pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
 pub use png::save_png;

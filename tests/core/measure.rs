@@ -11,6 +11,7 @@ mod sample;
 mod series;
 mod surface;
 mod temperature;
+mod velocity_map;
 
 use glam::{DQuat, DVec3};
 use grainfall::scene::ContactLaw;

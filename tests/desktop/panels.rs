@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers, Shape};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use grainfall::measure::Avalanche;
 use grainfall::scene::{LIQUID_CASES, PAPER_VOLUME, Scene};
@@ -641,4 +641,20 @@ fn longest_line(shapes: &[egui::epaint::ClippedShape]) -> usize {
         .map(|clipped| points(&clipped.shape))
         .max()
         .unwrap_or(0)
+}
+
+#[test]
+fn velocities_are_seen_from_the_laboratory_and_from_the_drum() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Velocity map").click();
+    harness.run_steps(12);
+    // At time zero the grains rest while the drum turns at 0.209 rad/s, 20 to 21.5 mm from its axis.
+    harness.get_by_label("Velocity map, up to 0 m/s");
+    harness.get_by_label("Relative to the drum").click();
+    harness.run_steps(4);
+    let map = harness.get_by_label_contains("Velocity map, up to 4.");
+    let label = map.accesskit_node().label().unwrap_or_default();
+    let number = label.trim_start_matches("Velocity map, up to ");
+    let speed: f64 = number.trim_end_matches(" mm/s").parse().unwrap();
+    assert!((4.18..4.51).contains(&speed), "{label}");
 }

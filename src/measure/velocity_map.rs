@@ -1,0 +1,109 @@
+//! Map of the cross-section: the mean velocity of the grains on a square grid over the x–y plane.
+//!
+//! The mean is that of [`mean_velocity`](super::mean_velocity), with the same kernel and reach; a point that no grain
+//! covers, seen along z, has none.
+
+use super::flow::{kernel_reach, weight};
+use crate::world::World;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// Points per reach of the kernel.
+const FINENESS: f64 = 4.0;
+/// Points along a side at most: grains that are strewn wide are mapped more coarsely.
+const MOST_POINTS: f64 = 128.0;
+
+/// Mean velocities at one instant on a square grid over the cross-section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VelocityMap {
+    /// The instant [s].
+    pub time: f64,
+    /// The lowest and leftmost point [m].
+    pub corner: DVec2,
+    /// Distance between neighbouring points [m].
+    pub spacing: f64,
+    /// Points in a row.
+    pub columns: usize,
+    /// Mean velocity at each point, row by row from below [m/s]; none where no grain is.
+    pub velocity: Vec<Option<DVec2>>,
+}
+
+/// Sums over the grains near one point.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    weight: f64,
+    velocity: DVec2,
+    covered: bool,
+}
+
+impl VelocityMap {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.velocity.len() / self.columns.max(1)
+    }
+
+    /// Place of the point in this column and row [m].
+    pub fn point(&self, column: usize, row: usize) -> DVec2 {
+        self.corner + self.spacing * DVec2::new(column as f64, row as f64)
+    }
+
+    /// Velocity at the point in this column and row [m/s].
+    pub fn at(&self, column: usize, row: usize) -> Option<DVec2> {
+        let index = row * self.columns + column;
+        (column < self.columns).then(|| self.velocity.get(index).copied().flatten())?
+    }
+
+    /// The points that have a velocity, with it.
+    pub fn points(&self) -> impl Iterator<Item = (DVec2, DVec2)> {
+        let place = |index| self.point(index % self.columns, index / self.columns);
+        let cells = self.velocity.iter().enumerate();
+        cells.filter_map(move |(index, velocity)| Some((place(index), (*velocity)?)))
+    }
+
+    /// The largest speed of all points [m/s]; 0 without any.
+    pub fn largest_speed(&self) -> f64 {
+        let speeds = self.velocity.iter().flatten().map(|v| v.length());
+        speeds.fold(0.0, f64::max)
+    }
+}
+
+/// The velocities in the cross-section of `world` now, seen from a frame that turns about the z axis at `turning` [rad/s]:
+/// 0 for the laboratory's. None without grains.
+pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
+    let grains = &world.grains;
+    let places = || grains.position.iter().map(|x| x.truncate());
+    let low = places().reduce(DVec2::min)?;
+    let high = places().reduce(DVec2::max)?;
+    let reach = kernel_reach(world);
+    let spacing = (reach / FINENESS).max((high - low).max_element() / MOST_POINTS);
+    // Points lie at whole multiples of the spacing, so that they stand still while the grains move.
+    let first = (low / spacing).floor() - 1.0;
+    let size = (high / spacing).ceil() + 2.0 - first;
+    let mut map = VelocityMap {
+        time: world.time(),
+        corner: first * spacing,
+        spacing,
+        columns: size.x as usize,
+        velocity: Vec::new(),
+    };
+    let mut sums = vec![Sums::default(); map.columns * size.y as usize];
+    for ((place, velocity), &radius) in places().zip(&grains.velocity).zip(&grains.radius) {
+        let velocity = velocity.truncate() - turning * place.perp();
+        let own = (place - map.corner) / spacing;
+        let (from, to) = (own - reach / spacing, own + reach / spacing);
+        let columns = from.x.ceil().max(0.0) as usize..=to.x.min(size.x - 1.0) as usize;
+        for row in from.y.ceil().max(0.0) as usize..=to.y.min(size.y - 1.0) as usize {
+            for column in columns.clone() {
+                let squared = (map.point(column, row) - place).length_squared();
+                let sum = &mut sums[row * map.columns + column];
+                let weight = weight(squared, reach);
+                sum.weight += weight;
+                sum.velocity += weight * velocity;
+                sum.covered |= squared < radius * radius;
+            }
+        }
+    }
+    let mean = |sum: &Sums| sum.covered.then(|| sum.velocity / sum.weight);
+    map.velocity = sums.iter().map(mean).collect();
+    Some(map)
+}
