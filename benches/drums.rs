@@ -1,5 +1,5 @@
-//! Whole steps of the three dry drums of Kasper et al. 2021, per grain and step, on one thread and two; where the time of
-//! a step goes; the neighbour search alone; one contact law alone.
+//! Whole steps of the three drums of Kasper et al. 2021, dry and wet, per grain and step, on one thread and two; where the
+//! time of a step goes; the neighbour search alone; one contact law alone.
 //!
 //! `cargo bench --no-default-features --bench drums`, see `benches/README.md`. Beds are settled once and kept with the
 //! user's own.
@@ -12,11 +12,26 @@ use grainfall::world::{World, build};
 use std::hint::black_box;
 use std::sync::Arc;
 
-const DRUMS: [&str; 3] = ["dry-r3", "dry-r2", "dry-r1.25"];
+const DRY: [&str; 3] = ["dry-r3", "dry-r2", "dry-r1.25"];
+/// Radii of the wet drums, with the liquid of n = 4.
+const WET: [&str; 3] = ["3mm", "2mm", "1.25mm"];
+
+/// The scenes of all drums with their names.
+fn drums() -> impl Iterator<Item = (String, Scene)> {
+    let open = |name: &str| Scene::open(name).expect("a built-in scene");
+    let dry = DRY.map(|name| (name.to_owned(), open(name)));
+    let wet = WET.map(|radius| {
+        let mut scene = open("wet");
+        for (key, value) in [("radius", radius), ("liquid", "4")] {
+            scene.set(key, value).expect("a value that suits");
+        }
+        (format!("wet-r{}", radius.trim_end_matches("mm")), scene)
+    });
+    dry.into_iter().chain(wet)
+}
 
 /// The settled bed of a scene, its drum already turning for a moment.
-fn settled(name: &str) -> World {
-    let scene = Scene::open(name).expect("a built-in scene");
+fn settled(scene: Scene) -> World {
     let step = advise(&scene).time_step;
     let mut preparation = Preparation::new(Arc::new(scene), step, 2, BedStore::user());
     loop {
@@ -33,17 +48,18 @@ fn settled(name: &str) -> World {
     }
 }
 
-/// Whole steps, in calls of 100; throughput is in grains times steps.
+/// Whole steps, in calls of 1000, as runs take them between two samples; throughput is in grains times steps.
 fn steps(criterion: &mut Criterion) {
-    const STEPS: u64 = 100;
+    const STEPS: u64 = 1000;
     let mut group = criterion.benchmark_group("step");
-    for name in DRUMS {
-        let bed = settled(name);
+    group.sample_size(10);
+    for (name, scene) in drums() {
+        let bed = settled(scene);
         group.throughput(Throughput::Elements(STEPS * bed.grains.len() as u64));
         for threads in [1, 2] {
             let mut solver = Solver::new(threads);
             let mut world = bed.clone();
-            group.bench_function(BenchmarkId::new(name, format!("{threads} threads")), |b| {
+            group.bench_function(BenchmarkId::new(&name, format!("{threads} threads")), |b| {
                 b.iter(|| solver.advance(&mut world, STEPS).expect("a stable step"));
             });
             let profile = solver.take_profile();
@@ -62,7 +78,7 @@ fn steps(criterion: &mut Criterion) {
 
 /// Every width of lanes that the processor has: what they gain over the plain twin.
 fn steps_in_lanes(criterion: &mut Criterion) {
-    let bed = settled("dry-r2");
+    let bed = settled(Scene::open("dry-r2").expect("a built-in scene"));
     let mut group = criterion.benchmark_group("step in lanes");
     group.throughput(Throughput::Elements(100 * bed.grains.len() as u64));
     for processor in Processor::all() {
@@ -78,10 +94,10 @@ fn steps_in_lanes(criterion: &mut Criterion) {
 /// A solver that knows nothing takes one step: cell grid and lists, copying in and out, and that step.
 fn neighbour_search(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lists from nothing and one step");
-    for name in DRUMS {
-        let bed = settled(name);
+    for (name, scene) in drums() {
+        let bed = settled(scene);
         group.throughput(Throughput::Elements(bed.grains.len() as u64));
-        group.bench_function(name, |b| {
+        group.bench_function(&name, |b| {
             b.iter_batched(
                 || (Solver::new(1), bed.clone()),
                 |(mut solver, mut world)| {

@@ -71,6 +71,8 @@ const PROFILE_TIME: Duration = Duration::from_millis(500);
 
 /// Wall-clock time a piece of work should take: orders wait for it.
 const PIECE_TIME: Duration = Duration::from_millis(10);
+/// Steps that a piece has at least: taking a state in and giving it back costs as much as a dozen of them.
+const LEAST_STEPS: u64 = 50;
 
 /// A preparation that becomes a run, and the player's state.
 pub struct Engine {
@@ -331,6 +333,7 @@ impl Engine {
             return;
         }
         let fitting = steps as f64 * PIECE_TIME.as_secs_f64() / time.as_secs_f64().max(1e-9);
-        self.piece = (fitting as u64).clamp(1, 4 * self.piece.max(steps));
+        let most = 4 * self.piece.max(steps);
+        self.piece = (fitting as u64).min(most).max(LEAST_STEPS);
     }
 }

@@ -5,7 +5,7 @@
 
 use super::contacts::Pair;
 use super::lanes::{Lanes, Quad, Row, dot, plus, side_by_side, times};
-use super::law::{BridgeConstants, FilmConstants, attraction, contributions, drag};
+use super::law::{BridgeConstants, BridgeKinds, FilmConstants, attraction, contributions, drag};
 use super::row::{row, vector};
 use crate::world::{Bridge, Liquid};
 
@@ -75,8 +75,8 @@ pub struct LiquidForce<N> {
 }
 
 impl BridgeRow {
-    /// The solver's copy of `bridge` between grains of these radii [m].
-    pub fn of(bridge: &Bridge, liquid: &Liquid, radii: (f64, f64)) -> Self {
+    /// The solver's copy of `bridge` between grains of these radii [m], one of several of these `kinds`.
+    pub fn of(bridge: &Bridge, kinds: &mut BridgeKinds, radii: (f64, f64)) -> Self {
         Self {
             state: [
                 bridge.volume,
@@ -85,7 +85,7 @@ impl BridgeRow {
                 bridge.viscous,
             ],
             drag: row(bridge.drag, 0.0),
-            constants: BridgeConstants::of(liquid, radii, bridge.volume).row,
+            constants: kinds.constants(radii, bridge.volume).row,
         }
     }
 

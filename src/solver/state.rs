@@ -6,7 +6,9 @@ use super::bridges::{BridgeRow, LiquidAction, Wetting};
 use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
 use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion, Outcome, Start};
 use super::lanes::Processor;
-use super::law::{FilmConstants, Law, PairConstants, Pairing, contributions, rupture_gap};
+use super::law::{
+    BridgeKinds, FilmConstants, Law, PairConstants, Pairing, contributions, rupture_gap,
+};
 use super::neighbours::{Neighbours, Parts, grain_key, wall_key};
 use super::row::{Row, length_squared, row, vector};
 use super::team::{Shared, share};
@@ -193,6 +195,7 @@ impl State {
     /// Makes the pairs of `world` the listed ones, so that the next refresh keeps all that bridges hold.
     fn adopt_bridges(&mut self, world: &World, liquid: &Liquid) {
         let (mut pairs, mut springs, mut bridges) = (Vec::new(), Vec::new(), Vec::new());
+        let mut kinds = BridgeKinds::of(liquid);
         for contact in &world.contacts {
             let Partner::Grain(partner) = contact.partner else {
                 continue;
@@ -207,7 +210,7 @@ impl State {
             springs.push(row(contact.spring, contact.stiffness));
             let bridge = contact.bridge.as_ref();
             bridges.push(bridge.map_or(BridgeRow::default(), |bridge| {
-                BridgeRow::of(bridge, liquid, radii)
+                BridgeRow::of(bridge, &mut kinds, radii)
             }));
         }
         self.neighbours.adopt(pairs, springs, bridges);

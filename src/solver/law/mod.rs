@@ -11,8 +11,8 @@ mod hooke;
 mod rolling;
 
 pub use bridge::{
-    BridgeConstants, FilmConstants, LARGEST_DRAG, attraction, contributions, drag, rupture_gap,
-    smallest_viscous_gap,
+    BridgeConstants, BridgeKinds, FilmConstants, LARGEST_DRAG, attraction, contributions, drag,
+    rupture_gap, smallest_viscous_gap,
 };
 pub use hertz_mindlin::HertzMindlin;
 pub use hooke::Hooke;
