@@ -343,6 +343,15 @@ impl List {
         self.jobs.clear();
     }
 
+    /// Becomes a copy of `other`, in no more memory than that takes: there are a few of these for every grain.
+    pub fn copy(&mut self, other: &Self) {
+        self.features.clone_from(&other.features);
+        self.jobs.above.clone_from(&other.jobs.above);
+        self.jobs.outlines.clone_from(&other.jobs.outlines);
+        self.jobs.sides.clone_from(&other.jobs.sides);
+        self.jobs.edges.clone_from(&other.jobs.edges);
+    }
+
     /// Becomes the part of `all` that is nearer than `cutoff` [m] by `results`, of which its own move to the front. Returns the
     /// distance of the nearest of the others [m]. `numbers` is room to work in.
     pub fn choose(

@@ -164,6 +164,7 @@ struct Effect {
 #[derive(Default)]
 pub struct Desk {
     search: Search,
+    found: List,
     old_features: Vec<Feature>,
     old_springs: Vec<Row>,
     numbers: Vec<u32>,
@@ -346,10 +347,11 @@ impl Desk {
                 touch: pair.touch,
                 skin,
             };
-            let memory = &mut *pair.memory;
             let found = self
                 .search
-                .run::<N>(processor, &all.geometry, &wanted, &mut memory.near);
+                .run::<N>(processor, &all.geometry, &wanted, &mut self.found);
+            let memory = &mut *pair.memory;
+            memory.near.copy(&self.found);
             memory.axis = found.axis;
             found.slack
         };
@@ -451,9 +453,10 @@ impl Desk {
         std::mem::swap(&mut self.old_springs, &mut memory.springs);
         let results = &mut self.results[span.results..];
         let cutoff = pair.touch + skin;
-        let nearest = memory
-            .active
+        let nearest = self
+            .found
             .choose(&memory.near, results, cutoff, &mut self.numbers);
+        memory.active.copy(&self.found);
         pair.active_slack = nearest - pair.touch;
         memory.springs.clear();
         memory.overlaps.clear();
