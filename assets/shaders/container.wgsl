@@ -13,7 +13,9 @@ struct Look {
     pattern: u32,
     // Distance at which a grid has faded away, in cells; zero for never.
     fade: f32,
-    unused: vec2<f32>,
+    // Radius of the circle that is marked on a floor, in cells.
+    circle: f32,
+    unused: f32,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> look: Look;
@@ -28,6 +30,8 @@ const RIM: u32 = 2u;
 const GRID: u32 = 3u;
 // uv: turns round the axis, place from the inside (0) to the outside (1).
 const HOOP: u32 = 4u;
+// uv: place in cells, from the axis.
+const RINGS: u32 = 5u;
 
 const SPOKES: f32 = 12.0;
 const TURN: f32 = 6.2831853;
@@ -70,6 +74,13 @@ fn grid(place: vec2<f32>) -> f32 {
     return max(0.45 * fine, bold);
 }
 
+fn rings(place: vec2<f32>) -> vec2<f32> {
+    let radius = length(place);
+    let fine = line(from_integer(radius), 0.012);
+    let bold = max(line(5.0 * from_integer(radius / 5.0), 0.02), line(place.x, 0.012));
+    return vec2<f32>(max(0.45 * fine, max(bold, line(place.y, 0.012))), line(radius - look.circle, 0.03));
+}
+
 fn hoop(place: vec2<f32>) -> vec2<f32> {
     let ticks = line(from_integer(place.x * SPOKES * 6.0), 0.05) * step(place.y, 0.3);
     let bold = line(from_integer(place.x * SPOKES), 0.018) * step(place.y, 0.62);
@@ -85,14 +96,13 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
     switch look.pattern {
         case PLATE: { drawn = plate(in.uv); }
         case RIM: { drawn = rim(in.uv); }
-        case GRID: {
-            drawn.x = grid(in.uv);
-            if look.fade > 0.0 {
-                veil = 1.0 - smoothstep(0.25 * look.fade, look.fade, length(in.uv));
-            }
-        }
+        case GRID: { drawn.x = grid(in.uv); }
+        case RINGS: { drawn = rings(in.uv); }
         case HOOP: { drawn = hoop(in.uv); }
         default: {}
+    }
+    if look.fade > 0.0 {
+        veil = 1.0 - smoothstep(0.25 * look.fade, look.fade, length(in.uv));
     }
     let to_eye = normalize(view.world_position - in.world_position.xyz);
     let normal = normalize(in.world_normal) * select(-1.0, 1.0, front);

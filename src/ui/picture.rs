@@ -134,29 +134,31 @@ fn gradient_ui(ui: &mut egui::Ui, map: ColourMap) {
 }
 
 fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
-    let mut on = view.cut.is_some();
-    ui.horizontal(|ui| {
-        let changed = ui
-            .checkbox(&mut on, "Cut across")
-            .on_hover_text("Take away what lies beyond a plane")
-            .changed();
-        if changed {
-            view.cut = on.then_some(Cut {
-                axis: Axis::Z,
-                position: 0.0,
-            });
-        }
-        if let Some(cut) = &mut view.cut {
-            for axis in Axis::ALL {
-                ui.selectable_value(&mut cut.axis, axis, axis.label());
-            }
-        }
-    });
-    let Some(cut) = &mut view.cut else {
+    let across = match view.cut {
+        Some(Cut::Beyond { .. }) => view.cut,
+        _ => Some(Cut::Beyond {
+            axis: Axis::Z,
+            position: 0.0,
+        }),
+    };
+    let (x, z) = world.map_or((0.0, 0.0), middle);
+    choices_ui(
+        ui,
+        "Cut away",
+        &mut view.cut,
+        &[
+            (None, "Nothing"),
+            (across, "Across"),
+            (Some(Cut::Quarter { x, z }), "Quarter"),
+        ],
+    );
+    let Some(Cut::Beyond { axis, position }) = &mut view.cut else {
         return;
     };
-    let extent = world.map_or(-1.0..=1.0, |world| extent(world, cut.axis));
-    let mut shown = cut.position * MILLIMETRES;
+    let axes = Axis::ALL.map(|axis| (axis, axis.label()));
+    choices_ui(ui, "Beyond along", axis, &axes);
+    let extent = world.map_or(-1.0..=1.0, |world| extent(world, *axis));
+    let mut shown = *position * MILLIMETRES;
     let range = extent.start() * MILLIMETRES..=extent.end() * MILLIMETRES;
     let slider = egui::Slider::new(&mut shown, range)
         .suffix(" mm")
@@ -164,7 +166,18 @@ fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
     let response = ui.add(slider);
     response.widget_info(|| WidgetInfo::slider(true, shown, "Cut position"));
     if response.changed() {
-        cut.position = shown / MILLIMETRES;
+        *position = shown / MILLIMETRES;
+    }
+}
+
+/// The upright line, by x and z [m], round which a quarter is cut out.
+fn middle(world: &World) -> (f64, f64) {
+    match world.container.shape {
+        Shape::Box { min, max } => {
+            let middle = 0.5 * (min + max);
+            (middle.x, middle.z)
+        }
+        Shape::Drum { .. } | Shape::Column { .. } | Shape::Planes => (0.0, 0.0),
     }
 }
 

@@ -11,8 +11,8 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Vertical field of view of the perspective [rad].
 const FIELD_OF_VIEW: f32 = 0.5;
-/// Direction of the view that a scene opens with: a little from the right and from above [rad].
-const HOME: (f32, f32) = (0.2, 0.17);
+/// Yaw and pitch of the view that most scenes open with: a little from the right and from above [rad].
+pub(super) const HOME: (f32, f32) = (0.2, 0.17);
 /// Share of the picture that [`OrbitCamera::fit`] leaves free in all.
 const MARGIN: f32 = 0.09;
 
@@ -33,6 +33,8 @@ pub struct OrbitCamera {
     pub viewport: Vec2,
     /// Whether the picture keeps fitting the scene: until a person pans or zooms.
     pub fits: bool,
+    /// Yaw and pitch of the view that the scene opens with [rad].
+    home: (f32, f32),
     /// How often a view was asked for.
     requests: u32,
 }
@@ -47,6 +49,7 @@ impl Default for OrbitCamera {
             projection: ProjectionKind::Perspective,
             viewport: Vec2::new(1280.0, 720.0),
             fits: true,
+            home: HOME,
             requests: 0,
         }
     }
@@ -94,12 +97,20 @@ impl OrbitCamera {
     /// Does what was asked; the picture then fits the scene again.
     pub fn follow(&mut self, request: CameraRequest) {
         match request {
-            CameraRequest::Home => (self.yaw, self.pitch) = HOME,
+            CameraRequest::Home => (self.yaw, self.pitch) = self.home,
             CameraRequest::Fit => {}
             CameraRequest::From(side) => self.look_from(side),
         }
         self.fits = true;
         self.requests = self.requests.wrapping_add(1);
+    }
+
+    /// From now on the scene's view is from `home`, yaw and pitch [rad]; turns there unless a person has turned away.
+    pub(super) fn set_home(&mut self, home: (f32, f32)) {
+        if (self.yaw, self.pitch) == self.home {
+            (self.yaw, self.pitch) = home;
+        }
+        self.home = home;
     }
 
     /// How often [`OrbitCamera::follow`] was called: after each call the scene is measured anew.
@@ -325,6 +336,19 @@ mod tests {
             assert!((rotation * Vec3::X - right).length() < 1e-6, "{side:?}");
             assert!((rotation * Vec3::Y - up).length() < 1e-6, "{side:?}");
         }
+    }
+
+    #[test]
+    fn a_scene_opens_from_its_own_side_unless_somebody_turned() {
+        let mut camera = OrbitCamera::default();
+        camera.set_home((0.6, 0.3));
+        assert_eq!((camera.yaw, camera.pitch), (0.6, 0.3));
+        camera.orbit(Vec2::new(50.0, 0.0));
+        let turned = camera.yaw;
+        camera.set_home(HOME);
+        assert_eq!((camera.yaw, camera.pitch), (turned, 0.3));
+        camera.follow(CameraRequest::Home);
+        assert_eq!((camera.yaw, camera.pitch), HOME);
     }
 
     #[test]

@@ -55,11 +55,38 @@ pub fn outline(world: &World) -> Vec<Vec3> {
                 .collect()
         }
         Shape::Box { min, max } => corners(min.as_vec3(), max.as_vec3()).to_vec(),
-        Shape::Planes | Shape::Column { .. } => surroundings(world)
-            .map_or_else(Vec::new, |(min, max)| {
-                corners(min.as_vec3(), max.as_vec3()).to_vec()
-            }),
+        Shape::Column { radius, height } => column_outline(radius, height),
+        Shape::Planes => surroundings(world).map_or_else(Vec::new, |(min, max)| {
+            corners(min.as_vec3(), max.as_vec3()).to_vec()
+        }),
     }
+}
+
+/// The column as it stands and the floor that it will spread over.
+fn column_outline(radius: f64, height: f64) -> Vec<Vec3> {
+    let front = expected_front(radius, height) as f32;
+    let circle = |radius: f32, y: f32| {
+        (0..64).map(move |i| {
+            let (sin, cos) = (TAU * i as f32 / 64.0).sin_cos();
+            Vec3::new(radius * cos, y, radius * sin)
+        })
+    };
+    circle(front, 0.0)
+        .chain(circle(radius as f32, height as f32))
+        .collect()
+}
+
+/// Radius to which a column on a floor spreads [m], to a fifth or so: run-out over the radius is `α^1.35` for a height of
+/// α radii, and grows with the root of α above 3.5 (after Man et al. 2023).
+fn expected_front(radius: f64, height: f64) -> f64 {
+    let aspect = height / radius;
+    let low = aspect.min(3.5);
+    radius * (1.0 + low.powf(1.35) * (aspect / low).sqrt())
+}
+
+/// Distance between the rings on the floor round a column of this `radius` [m].
+pub(super) fn ring_distance(radius: f64) -> f64 {
+    round_up(radius / 4.0)
 }
 
 /// The box round all grains with some room to move, and what they stand on.
@@ -113,6 +140,11 @@ enum Piece {
     Turning,
     /// Stays where it is.
     Fixed,
+    /// Rises with the tube that is this wall.
+    Tube {
+        /// The wall's index.
+        wall: usize,
+    },
     /// Lies in the plane of a wall.
     Plane {
         /// The wall's index.
@@ -128,7 +160,14 @@ enum Paint {
     /// A pane with lines of this pattern.
     Pane(Pattern),
     /// A floor whose lines fade with distance.
-    Floor,
+    Floor {
+        /// Its lines.
+        pattern: Pattern,
+        /// Cells from the middle to where it has faded away.
+        fade: f32,
+        /// Radius of the circle that is marked, in cells.
+        circle: f32,
+    },
     /// Opaque frame.
     Frame(Pattern),
 }
@@ -141,9 +180,10 @@ enum Pattern {
     Rim = 2,
     Grid = 3,
     Hoop = 4,
+    Rings = 5,
 }
 
-/// Cells from the middle to where a floor has faded away.
+/// Cells from the middle to where a floor with a grid has faded away.
 const FLOOR_CELLS: f32 = 40.0;
 
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
@@ -162,7 +202,8 @@ struct Look {
     mark: Vec4,
     pattern: u32,
     fade: f32,
-    unused: Vec2,
+    circle: f32,
+    unused: f32,
 }
 
 /// Whether a piece is drawn from both sides; part of the pipeline's key.
@@ -284,6 +325,7 @@ fn place(shown: Res<Shown>, mut pieces: Query<(&Piece, &mut Transform)>) {
             Piece::Turning => {
                 Transform::from_rotation(Quat::from_rotation_z(world.container.angle as f32))
             }
+            Piece::Tube { wall } => tube_transform(&world.container, wall),
             Piece::Plane { wall, near } => plane_transform(&world.container, wall, near),
         });
     }
@@ -300,18 +342,26 @@ fn plane_transform(container: &Container, wall: usize, near: DVec3) -> Transform
         .with_rotation(Quat::from_rotation_arc(Vec3::Z, normal.as_vec3()))
 }
 
+/// Where the piece of the tube `wall` is: its lower end at the rim.
+fn tube_transform(container: &Container, wall: usize) -> Transform {
+    match container.walls.get(wall).map(|wall| wall.surface) {
+        Some(Surface::Tube { rim, .. }) => Transform::from_xyz(0.0, rim as f32, 0.0),
+        _ => Transform::IDENTITY,
+    }
+}
+
 fn look(paint: Paint, settings: &ViewSettings) -> Look {
     let scheme = Scheme::of(settings.background);
     let opacity = settings.container_opacity.clamp(0.0, 1.0);
     let with_alpha = |colour: Color, alpha: f32| colour.to_linear().with_alpha(alpha).to_vec4();
-    let (pattern, surface, fade) = match paint {
-        Paint::Pane(pattern) => (pattern, with_alpha(scheme.surface, 0.55 * opacity), 0.0),
-        Paint::Floor => (
-            Pattern::Grid,
-            with_alpha(scheme.surface, 0.45 * opacity),
-            FLOOR_CELLS,
-        ),
-        Paint::Frame(pattern) => (pattern, with_alpha(scheme.frame, 1.0), 0.0),
+    let (pattern, surface) = match paint {
+        Paint::Pane(pattern) => (pattern, with_alpha(scheme.surface, 0.55 * opacity)),
+        Paint::Floor { pattern, .. } => (pattern, with_alpha(scheme.surface, 0.45 * opacity)),
+        Paint::Frame(pattern) => (pattern, with_alpha(scheme.frame, 1.0)),
+    };
+    let (fade, circle) = match paint {
+        Paint::Floor { fade, circle, .. } => (fade, circle),
+        Paint::Pane(_) | Paint::Frame(_) => (0.0, 0.0),
     };
     let frame = matches!(paint, Paint::Frame(_));
     Look {
@@ -320,16 +370,20 @@ fn look(paint: Paint, settings: &ViewSettings) -> Look {
         mark: with_alpha(scheme.mark, if frame { 1.0 } else { opacity.powf(0.3) }),
         pattern: pattern as u32,
         fade,
-        unused: Vec2::ZERO,
+        circle,
+        unused: 0.0,
     }
 }
 
 fn build(world: &World) -> Vec<(Piece, Paint, Mesh)> {
-    match world.container.shape {
+    let mut pieces = match world.container.shape {
         Shape::Drum { radius, width } => drum(radius as f32, width as f32),
         Shape::Box { min, max } => box_panes(min.as_vec3(), max.as_vec3()),
-        Shape::Planes | Shape::Column { .. } => planes(world),
-    }
+        Shape::Column { radius, height } => column_floors(world, radius, height),
+        Shape::Planes => planes(world),
+    };
+    pieces.extend(tubes(world));
+    pieces
 }
 
 /// Both plates and the rim from inside, and a hoop at each end.
@@ -375,19 +429,98 @@ fn box_panes(min: Vec3, max: Vec3) -> Vec<(Piece, Paint, Mesh)> {
 /// A fading floor for each plane.
 fn planes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
     let (min, max) = surroundings(world).unwrap_or((DVec3::ZERO, DVec3::ONE));
-    let near = (min + max) / 2.0;
-    let cell = round_up((max - min).max_element() / 16.0) as f32;
+    let cell = round_up((max - min).max_element() / 16.0);
+    let paint = Paint::Floor {
+        pattern: Pattern::Grid,
+        fade: FLOOR_CELLS,
+        circle: 0.0,
+    };
+    floors(world, (min + max) / 2.0, cell, FLOOR_CELLS, paint)
+}
+
+/// A floor with rings round the axis of a column, the one on which it stood marked.
+fn column_floors(world: &World, radius: f64, height: f64) -> Vec<(Piece, Paint, Mesh)> {
+    let cell = ring_distance(radius);
+    let fade = (2.0 * expected_front(radius, height) / cell) as f32;
+    let paint = Paint::Floor {
+        pattern: Pattern::Rings,
+        fade,
+        circle: (radius / cell) as f32,
+    };
+    floors(world, DVec3::ZERO, cell, fade, paint)
+}
+
+/// A square of `half` cells to each side of the foot of `near` on each plane.
+fn floors(
+    world: &World,
+    near: DVec3,
+    cell: f64,
+    half: f32,
+    paint: Paint,
+) -> Vec<(Piece, Paint, Mesh)> {
+    let cell = cell as f32;
+    let is_plane = |wall: &usize| {
+        let surface = world.container.walls[*wall].surface;
+        matches!(surface, Surface::Plane { .. })
+    };
     (0..world.container.walls.len())
+        .filter(is_plane)
         .map(|wall| {
             let mut builder = Builder::default();
             for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-                let (x, y) = (x * FLOOR_CELLS, y * FLOOR_CELLS);
+                let (x, y) = (x * half, y * half);
                 builder.vertex(Vec3::new(x * cell, y * cell, 0.0), Vec3::Z, [x, y]);
             }
             builder.indices.extend([0, 1, 2, 2, 3, 0]);
-            (Piece::Plane { wall, near }, Paint::Floor, builder.mesh())
+            (Piece::Plane { wall, near }, paint, builder.mesh())
         })
         .collect()
+}
+
+/// Each tube from inside, a little taller than what it holds, and a hoop at each end.
+fn tubes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
+    let height = match world.container.shape {
+        Shape::Column { height, .. } => height,
+        _ => grain_box(world).map_or(1.0, |(min, max)| max.y - min.y),
+    };
+    let height = 1.08 * height as f32;
+    let mut pieces = Vec::new();
+    for (wall, radius) in
+        world
+            .container
+            .walls
+            .iter()
+            .enumerate()
+            .filter_map(|(i, wall)| match wall.surface {
+                Surface::Tube { radius, .. } => Some((i, radius as f32)),
+                _ => None,
+            })
+    {
+        let piece = Piece::Tube { wall };
+        let breadth = 0.5 * HOOP_BREADTH * radius;
+        let hoop = Paint::Frame(Pattern::Plain);
+        pieces.extend([
+            (
+                piece,
+                Paint::Pane(Pattern::Plain),
+                tube(radius, 0.0, height),
+            ),
+            (piece, hoop, tube(radius, 0.0, breadth)),
+            (piece, hoop, tube(radius, height - breadth, height)),
+        ]);
+    }
+    pieces
+}
+
+/// The inside of an upright cylinder between two heights.
+fn tube(radius: f32, low: f32, high: f32) -> Mesh {
+    band(|sin, cos, end| {
+        let y = if end == 0 { low } else { high };
+        (
+            Vec3::new(radius * cos, y, -radius * sin),
+            Vec3::new(-cos, 0.0, sin),
+        )
+    })
 }
 
 /// A disc at `z` whose normal along z is `facing`.

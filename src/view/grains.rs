@@ -1,155 +1,100 @@
-//! The grains: one draw for all of them, exact spheres.
+//! What all grains have in common in the picture, whatever their shape: place, colour, shadow, and what is cut away.
 //!
-//! In: the world shown and how to colour it. Out: one entity whose mesh is a quad per grain; the shader finds centre,
-//! radius and colour in a buffer that is rewritten when the world or the colours change, and raymarches the sphere. So
-//! nothing is done per grain on the processor but filling that buffer. What is cut away is decided in the shader too.
+//! In: the world shown and how to colour it. Out: one buffer with an entry per grain, rewritten when the world or the
+//! colours change, and the legend. Who draws a shape finds its grains in that buffer by their index, so that nothing is
+//! done per grain on the processor but filling it.
 
 use super::occlusion::occlusions;
 use super::{ColourBy, ColourMap, ColourRange, Cut, Shown, ViewSettings, colour};
-use crate::world::World;
+use crate::world::{Polyhedra, Polyhedron, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
-use bevy::camera::visibility::NoFrustumCulling;
-use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};
-use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
-use bevy::render::render_resource::{
-    AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
-};
+use bevy::render::render_resource::ShaderType;
 use bevy::render::storage::ShaderBuffer;
-use bevy::shader::ShaderRef;
 use bytemuck::{Pod, Zeroable};
+use std::f64::consts::PI;
 
-const SHADER: Handle<Shader> = uuid_handle!("6d0f7a0e-64c1-4a53-9c2e-2f6f0a4b5c11");
+const SHADER: Handle<Shader> = uuid_handle!("3f0c5b86-8f0e-4b0c-9a52-5f0d7f7c1e02");
 
-/// Adds the grains' material, their entity and what keeps it up to date.
+/// Adds the buffer and what keeps it up to date.
 pub(super) fn plugin(app: &mut App) {
     load_internal_asset!(
         app,
         SHADER,
-        "../../assets/shaders/grains.wgsl",
+        "../../assets/shaders/grain.wgsl",
         Shader::from_wgsl
     );
-    app.add_plugins(MaterialPlugin::<GrainMaterial>::default())
-        .add_systems(Startup, spawn)
-        .add_systems(
-            Update,
-            (colour_and_place, cut).in_set(super::ViewSystems::Draw),
-        );
+    app.init_resource::<GrainBuffer>()
+        .add_systems(Update, fill.in_set(super::ViewSystems::Fill));
 }
 
-/// A grain as the shader reads it.
+/// The buffer of all grains, in the order of the world.
+#[derive(Resource, Default)]
+pub(super) struct GrainBuffer {
+    /// The buffer; another one whenever the number of grains is another.
+    pub handle: Handle<ShaderBuffer>,
+    count: usize,
+}
+
+/// A grain as the shaders read it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct DrawnGrain {
     centre: [f32; 3],
+    /// For a polyhedron that of the sphere round it.
     radius: f32,
     colour: [f32; 3],
-    /// [`Occlusion`], in its order.
+    /// [`super::occlusion::Occlusion`], in its order.
     hidden_mean: f32,
     hidden_gradient: [f32; 3],
     hidden_quadrupole: [f32; 5],
+    /// From body axes to the world's: x, y, z, w.
+    orientation: [f32; 4],
 }
 
-#[derive(Asset, TypePath, AsBindGroup, Clone)]
-struct GrainMaterial {
-    #[storage(0, read_only)]
-    grains: Handle<ShaderBuffer>,
-    #[uniform(1)]
-    picture: Picture,
+/// The planes beyond all of which everything is cut away, as the shaders read them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+pub(super) struct CutPlanes {
+    /// Normal and distance from the origin of each; every point lies beyond [`EVERYWHERE`], none beyond zeros.
+    planes: [Vec4; 2],
 }
 
-/// What all grains have in common, as the shader reads it.
-#[derive(Clone, Copy, Default, PartialEq, ShaderType)]
-struct Picture {
-    cut_normal: Vec3,
-    cut_offset: f32,
-}
+const EVERYWHERE: Vec4 = Vec4::new(0.0, 0.0, 0.0, f32::MIN);
 
-impl Picture {
-    fn of(cut: Option<Cut>) -> Self {
-        cut.map_or_else(Self::default, |Cut { axis, position }| Self {
-            cut_normal: axis.unit().as_vec3(),
-            cut_offset: position as f32,
-        })
-    }
-}
-
-impl Material for GrainMaterial {
-    fn vertex_shader() -> ShaderRef {
-        SHADER.into()
+impl CutPlanes {
+    pub(super) fn of(cut: Option<Cut>) -> Self {
+        let planes = match cut {
+            None => [Vec4::ZERO; 2],
+            Some(Cut::Beyond { axis, position }) => {
+                [axis.unit().as_vec3().extend(position as f32), EVERYWHERE]
+            }
+            Some(Cut::Quarter { x, z }) => [Vec3::X.extend(x as f32), Vec3::Z.extend(z as f32)],
+        };
+        Self { planes }
     }
 
-    fn fragment_shader() -> ShaderRef {
-        SHADER.into()
-    }
-
-    fn alpha_mode(&self) -> AlphaMode {
-        AlphaMode::AlphaToCoverage
-    }
-
-    fn enable_prepass() -> bool {
-        false
-    }
-
-    fn enable_shadows() -> bool {
-        false
-    }
-
-    fn specialize(
-        _pipeline: &MaterialPipeline,
-        descriptor: &mut RenderPipelineDescriptor,
-        layout: &MeshVertexBufferLayoutRef,
-        _key: MaterialPipelineKey<Self>,
-    ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.primitive.cull_mode = None;
-        descriptor.vertex.buffers = vec![
-            layout
-                .0
-                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0)])?,
-        ];
-        Ok(())
+    /// Whether the point `x` is cut away.
+    fn take_away(&self, x: Vec3) -> bool {
+        let beyond = |plane: &Vec4| plane.truncate().dot(x) > plane.w;
+        self.planes.iter().all(beyond)
     }
 }
 
-/// The entity that draws all grains.
-#[derive(Component)]
-struct DrawnGrains {
-    count: usize,
-}
-
-fn spawn(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<GrainMaterial>>,
-    mut buffers: ResMut<Assets<ShaderBuffer>>,
-) {
-    let material = GrainMaterial {
-        grains: buffers.add(buffer(&[DrawnGrain::zeroed()])),
-        picture: Picture::default(),
-    };
-    commands.spawn((
-        DrawnGrains { count: 1 },
-        Mesh3d(meshes.add(quads(1))),
-        MeshMaterial3d(materials.add(material)),
-        NoFrustumCulling,
-    ));
+/// The shape of grain `i`, unless it is a sphere.
+pub(super) fn polyhedron(polyhedra: Option<&Polyhedra>, i: usize) -> Option<&Polyhedron> {
+    let shape = polyhedra?.shape_of(i);
+    (!shape.faces.is_empty()).then_some(shape)
 }
 
 /// What decides the grains' colours and shadows beside the world.
 type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>);
 
 /// Rewrites the buffer when the world or the colouring is another.
-fn colour_and_place(
+fn fill(
     shown: Res<Shown>,
     mut settings: ResMut<ViewSettings>,
     mut last: Local<Option<Colouring>>,
-    drawn: Single<(
-        &mut DrawnGrains,
-        &mut Mesh3d,
-        &MeshMaterial3d<GrainMaterial>,
-    )>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<GrainMaterial>>,
+    mut drawn: ResMut<GrainBuffer>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
     let colouring = (
@@ -162,48 +107,38 @@ fn colour_and_place(
         return;
     }
     *last = Some(colouring);
-    let (mut drawn, mut mesh, material) = drawn.into_inner();
     let world = shown.world();
     settings.legend = world.and_then(|world| {
         let before = settings.legend.as_ref();
         colour::legend(world, settings.colour_by, settings.range, before)
     });
-    let grains = world.map_or_else(Vec::new, |world| drawn_grains(world, &settings));
-    // A buffer cannot be empty: where there is no grain, one of no size is drawn.
-    let grains = if grains.is_empty() {
-        vec![DrawnGrain::zeroed()]
-    } else {
-        grains
-    };
-    let Some(mut material) = materials.get_mut(&material.0) else {
-        return;
-    };
-    if grains.len() == drawn.count {
-        if let Some(mut buffer) = buffers.get_mut(&material.grains) {
-            buffer.data = Some(bytemuck::cast_slice(&grains).to_vec());
-        }
+    let mut grains = world.map_or_else(Vec::new, |world| drawn_grains(world, &settings));
+    if grains.is_empty() {
+        // A buffer cannot be empty; nobody draws this one.
+        grains.push(DrawnGrain::zeroed());
+    }
+    let bytes = bytemuck::cast_slice(&grains);
+    if grains.len() == drawn.count
+        && let Some(mut buffer) = buffers.get_mut(&drawn.handle)
+    {
+        buffer.data = Some(bytes.to_vec());
     } else {
         drawn.count = grains.len();
-        mesh.0 = meshes.add(quads(grains.len()));
-        material.grains = buffers.add(buffer(&grains));
+        drawn.handle = buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
     }
-}
-
-/// A buffer that holds `grains`.
-fn buffer(grains: &[DrawnGrain]) -> ShaderBuffer {
-    ShaderBuffer::new(
-        bytemuck::cast_slice(grains),
-        RenderAssetUsages::RENDER_WORLD,
-    )
 }
 
 fn drawn_grains(world: &World, settings: &ViewSettings) -> Vec<DrawnGrain> {
     let grains = &world.grains;
+    let polyhedra = world.polyhedra.as_deref();
     let spheres: Vec<(Vec3, f32)> = (0..grains.len())
-        .map(|i| (grains.position[i].as_vec3(), grains.radius[i] as f32))
+        .map(|i| {
+            let radius = polyhedron(polyhedra, i).map_or(grains.radius[i], round_radius);
+            (grains.position[i].as_vec3(), radius as f32)
+        })
         .collect();
-    let picture = Picture::of(settings.cut);
-    let hidden = occlusions(&spheres, |x| picture.cut_normal.dot(x) > picture.cut_offset);
+    let cut = CutPlanes::of(settings.cut);
+    let hidden = occlusions(&spheres, |x| cut.take_away(x));
     let mut drawn = Vec::with_capacity(grains.len());
     colour::colours(
         world,
@@ -215,53 +150,21 @@ fn drawn_grains(world: &World, settings: &ViewSettings) -> Vec<DrawnGrain> {
             let hidden = hidden[i];
             drawn.push(DrawnGrain {
                 centre: spheres[i].0.to_array(),
-                radius: spheres[i].1,
+                radius: grains.radius[i] as f32,
                 colour,
                 hidden_mean: hidden.mean,
                 hidden_gradient: hidden.gradient.to_array(),
                 hidden_quadrupole: hidden.quadrupole,
+                orientation: polyhedra.map_or([0.0, 0.0, 0.0, 1.0], |polyhedra| {
+                    polyhedra.orientation[i].as_quat().to_array()
+                }),
             });
         },
     );
     drawn
 }
 
-/// Tells the shader where the cut is.
-fn cut(
-    settings: Res<ViewSettings>,
-    drawn: Single<&MeshMaterial3d<GrainMaterial>, With<DrawnGrains>>,
-    mut materials: ResMut<Assets<GrainMaterial>>,
-) {
-    let picture = Picture::of(settings.cut);
-    let handle = &drawn.0;
-    if materials
-        .get(handle)
-        .is_some_and(|material| material.picture != picture)
-        && let Some(mut material) = materials.get_mut(handle)
-    {
-        material.picture = picture;
-    }
-}
-
-/// A quad for each of `count` grains; a vertex holds its corner (±1, ±1) and the grain's index.
-fn quads(count: usize) -> Mesh {
-    let mut places = Vec::with_capacity(4 * count);
-    let mut indices = Vec::with_capacity(6 * count);
-    for i in 0..count as u32 {
-        // Exact: below 2^24, more grains than any buffer here holds.
-        let index = i as f32;
-        places.extend([
-            [-1.0, -1.0, index],
-            [1.0, -1.0, index],
-            [1.0, 1.0, index],
-            [-1.0, 1.0, index],
-        ]);
-        indices.extend([0, 1, 2, 2, 3, 0].map(|corner| 4 * i + corner));
-    }
-    Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::RENDER_WORLD,
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
-    .with_inserted_indices(Indices::U32(indices))
+/// Radius of the sphere of the same volume [m].
+fn round_radius(shape: &Polyhedron) -> f64 {
+    (shape.volume * 3.0 / (4.0 * PI)).cbrt()
 }

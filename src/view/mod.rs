@@ -12,7 +12,10 @@
 //! |---|---|
 //! | `settings` | what a person chose to see |
 //! | `colour` | every colour, the legend |
-//! | `grains` | all grains as one draw of exact spheres |
+//! | `grains` | place, colour and shadow of all grains in one buffer |
+//! | `spheres` | spheres as one draw, exact |
+//! | `polyhedra` | polyhedra as a few draws of triangles |
+//! | `facets` | the surface of a rounded polyhedron |
 //! | `occlusion` | the soft shadow in the gaps between grains |
 //! | `container` | drum, box and planes as one-sided panes |
 //! | `camera` | the orbiting eye, without Bevy's entities |
@@ -23,18 +26,22 @@
 mod camera;
 mod colour;
 mod container;
+mod facets;
 mod grains;
 mod occlusion;
 mod overlay;
 mod png;
+mod polyhedra;
 mod rig;
 mod settings;
+mod spheres;
 
 pub use camera::{OrbitCamera, apply_response};
 pub(crate) use colour::round_up;
 pub use colour::species_colour;
 pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
 pub use png::save_png;
+pub use polyhedra::Meshing;
 pub use rig::WorldCamera;
 pub use settings::{
     Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, ProjectionKind,
@@ -59,7 +66,9 @@ pub struct ViewPlugin;
 pub enum ViewSystems {
     /// Takes the newest world.
     Take,
-    /// Turns it into meshes and buffers.
+    /// Writes its grains into their buffer.
+    Fill,
+    /// Turns it into meshes.
     Draw,
 }
 
@@ -74,8 +83,16 @@ impl Plugin for ViewPlugin {
         app.init_resource::<ViewSettings>()
             .init_resource::<OrbitCamera>()
             .init_resource::<Shown>()
-            .configure_sets(Update, (ViewSystems::Take, ViewSystems::Draw).chain())
-            .add_plugins((grains::plugin, container::plugin))
+            .configure_sets(
+                Update,
+                (ViewSystems::Take, ViewSystems::Fill, ViewSystems::Draw).chain(),
+            )
+            .add_plugins((
+                grains::plugin,
+                spheres::plugin,
+                polyhedra::plugin,
+                container::plugin,
+            ))
             .add_systems(Startup, rig::spawn)
             .add_systems(Update, take_newest.in_set(ViewSystems::Take))
             .add_systems(

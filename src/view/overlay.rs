@@ -5,9 +5,11 @@
 
 use super::camera::apply_response;
 use super::colour::{Scheme, species_colour};
+use super::container::ring_distance;
 use super::{ColourMap, Legend, OrbitCamera, ViewSettings};
-use crate::world::World;
+use crate::world::{self, World};
 use bevy::color::{Color, ColorToPacked};
+use bevy::math::{Vec2, Vec3};
 use bevy_egui::egui::{
     Align2, Color32, CornerRadius, FontId, Id, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke,
     StrokeKind, Ui, pos2, vec2,
@@ -62,6 +64,11 @@ pub fn overlay(
     };
     let inner = rect.shrink(INSET);
     if let Some(world) = caption.world {
+        if let world::Shape::Column { radius, .. } = world.container.shape
+            && settings.show_container
+        {
+            ring_labels(&ink, rect, camera, world, radius);
+        }
         clock(
             &ink,
             inner.left_top(),
@@ -103,6 +110,34 @@ fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
             13.0,
             ink.faint,
         );
+    }
+}
+
+/// The distance of every fifth ring on the floor from the axis of a column, to the right before it, where no grains lie.
+fn ring_labels(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, radius: f64) {
+    const LABELS: usize = 8;
+    let step = 5.0 * ring_distance(radius);
+    let (sin, cos) = (camera.yaw + 0.7).sin_cos();
+    let mut beyond = [0; LABELS];
+    for x in &world.grains.position {
+        let ring = (x.x.hypot(x.z) / step) as usize;
+        beyond[ring.min(LABELS - 1)] += 1;
+    }
+    let mut place_before = Pos2::ZERO;
+    for ring in 1..LABELS {
+        let outside: usize = beyond[ring..].iter().sum();
+        let distance = step * ring as f64;
+        let x = distance as f32 * Vec3::new(sin, 0.0, cos);
+        let Some((Vec2 { x, y }, _)) = camera.project(x) else {
+            return;
+        };
+        let place = rect.min + vec2(x, y);
+        if outside * 100 > world.grains.len() || place.distance(place_before) < 32.0 {
+            continue;
+        }
+        place_before = place;
+        let text = length(distance);
+        ink.write(place, Align2::CENTER_CENTER, text, 12.0, ink.faint);
     }
 }
 
@@ -219,16 +254,21 @@ impl ScaleBar {
 
     /// Its length with a unit: `20 mm`.
     pub fn label(&self) -> String {
-        let (factor, unit) = match self.metres {
-            // The limits stand between round lengths, so that rounding decides nothing.
-            m if m < 0.9e-3 => (1e6, "µm"),
-            m if m < 0.09 => (1e3, "mm"),
-            m if m < 0.9 => (1e2, "cm"),
-            m if m < 900.0 => (1.0, "m"),
-            _ => (1e-3, "km"),
-        };
-        format!("{} {unit}", short_number(self.metres * factor))
+        length(self.metres)
     }
+}
+
+/// A round length [m] with a unit.
+fn length(metres: f64) -> String {
+    let (factor, unit) = match metres {
+        // The limits stand between round lengths, so that rounding decides nothing.
+        m if m < 0.9e-3 => (1e6, "µm"),
+        m if m < 0.09 => (1e3, "mm"),
+        m if m < 0.9 => (1e2, "cm"),
+        m if m < 900.0 => (1.0, "m"),
+        _ => (1e-3, "km"),
+    };
+    format!("{} {unit}", short_number(metres * factor))
 }
 
 /// A unit whose numbers are of handy size.

@@ -1,5 +1,6 @@
 //! Bevy's camera entity, which follows [`OrbitCamera`] and fills the free part of the window.
 
+use super::camera::HOME;
 use super::colour::Scheme;
 use super::{OrbitCamera, ProjectionKind, Shown, ViewSettings, container};
 use crate::world::Shape;
@@ -59,6 +60,7 @@ pub(super) fn steer(
         let (shape, walls) = (world.container.shape, world.container.walls.len());
         let of = Some((shape, walls, world.grains.len(), camera.requests()));
         if framed.of != of {
+            camera.set_home(home(shape));
             *framed = Framed {
                 of,
                 outline: container::outline(world),
@@ -69,6 +71,14 @@ pub(super) fn steer(
     if camera.fits && framed.camera.as_ref() != Some(&*camera) && !framed.outline.is_empty() {
         camera.fit(&framed.outline);
         framed.camera = Some(camera.clone());
+    }
+}
+
+/// Yaw and pitch of the view that a scene opens with [rad]: for a column from higher up, so that its front is seen.
+fn home(shape: Shape) -> (f32, f32) {
+    match shape {
+        Shape::Column { .. } => (0.55, 0.3),
+        Shape::Planes | Shape::Box { .. } | Shape::Drum { .. } => HOME,
     }
 }
 

@@ -14,7 +14,7 @@ pub struct ViewSettings {
     pub colour_map: ColourMap,
     /// The numbers at the two ends of the colour map.
     pub range: ColourRange,
-    /// Half of space that is cut away.
+    /// What is cut away.
     pub cut: Option<Cut>,
     /// Whether the container is drawn.
     pub show_container: bool,
@@ -180,13 +180,23 @@ impl Axis {
     }
 }
 
-/// Everything beyond `position` along `axis` is cut away; grains in the plane show their section.
+/// What is cut away; grains in a face of the cut show their section.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cut {
-    /// Normal of the plane, pointing to the side that is cut away.
-    pub axis: Axis,
-    /// Where along the axis [m].
-    pub position: f64,
+pub enum Cut {
+    /// Everything beyond a plane.
+    Beyond {
+        /// Normal of the plane, pointing to the side that is cut away.
+        axis: Axis,
+        /// Where along the axis [m].
+        position: f64,
+    },
+    /// The quarter to the right of one upright plane and before another.
+    Quarter {
+        /// Where the first plane is along x [m].
+        x: f64,
+        /// Where the second plane is along z [m].
+        z: f64,
+    },
 }
 
 /// How depth is shown.

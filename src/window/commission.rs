@@ -5,7 +5,7 @@
 use super::picture::{Canvas, WARM_UP, screenshot};
 use super::{PictureJob, WindowError};
 use crate::simulation::{Simulation, Status};
-use crate::view::save_png;
+use crate::view::{Meshing, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
 use std::num::NonZero;
@@ -65,6 +65,7 @@ pub(super) fn carry_out(
     mut commission: ResMut<Commission>,
     mut simulation: ResMut<Simulation>,
     canvas: Option<Res<Canvas>>,
+    meshing: Res<Meshing>,
     mut cameras: Query<&mut Camera>,
     mut exit: MessageWriter<AppExit>,
     mut commands: Commands,
@@ -100,6 +101,7 @@ pub(super) fn carry_out(
                 Stage::Running(step)
             }
         }
+        Stage::Drawing(_) if !meshing.is_whole() => Stage::Drawing(WARM_UP),
         Stage::Drawing(0) => {
             take(&commission, canvas.as_deref(), &mut commands);
             Stage::Taking

@@ -546,7 +546,7 @@ fn view_settings_change_what_they_name() {
     harness.get_by_label("Fixed").click();
     harness.run_steps(3);
     assert!(matches!(harness.state().view.range, ColourRange::Fixed(..)));
-    harness.get_by_label("Cut across").click();
+    harness.get_by_label("Across").click();
     harness.run_steps(3);
     assert!(harness.state().view.cut.is_some());
     harness.get_by_label("Cut position");

@@ -23,7 +23,7 @@ use grainfall::world::{
 use std::io::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-const SIZE: UVec2 = UVec2::new(640, 360);
+pub const SIZE: UVec2 = UVec2::new(640, 360);
 
 /// One picture at a time: a software driver takes every core.
 static STUDIO: Mutex<()> = Mutex::new(());
@@ -44,13 +44,13 @@ pub fn studio(name: &str) -> Option<MutexGuard<'static, ()>> {
 }
 
 /// A picture and the camera it was taken with.
-struct Photograph {
+pub struct Photograph {
     pixels: Vec<u8>,
-    camera: OrbitCamera,
+    pub camera: OrbitCamera,
 }
 
 impl Photograph {
-    fn at(&self, place: Vec2) -> [u8; 3] {
+    pub fn at(&self, place: Vec2) -> [u8; 3] {
         let (x, y) = (place.x.floor() as usize, place.y.floor() as usize);
         let start = 4 * (y * SIZE.x as usize + x);
         [0, 1, 2].map(|channel| self.pixels[start + channel])
@@ -67,7 +67,7 @@ impl Photograph {
     }
 
     /// Whether a grain covers the pixel.
-    fn covered(&self, place: Vec2) -> bool {
+    pub fn covered(&self, place: Vec2) -> bool {
         self.contrast(place) > 30
     }
 
@@ -81,7 +81,7 @@ impl Photograph {
     }
 }
 
-fn photograph(
+pub fn photograph(
     name: &str,
     world: World,
     set: impl FnOnce(&mut ViewSettings, &mut OrbitCamera),
@@ -122,7 +122,7 @@ fn photograph(
     }
 }
 
-fn world(shape: Shape, walls: Vec<Surface>) -> World {
+pub fn world(shape: Shape, walls: Vec<Surface>) -> World {
     let glass = Material {
         name: "glass".to_owned(),
         youngs_modulus: 63e6,
@@ -268,7 +268,7 @@ fn colours_are_those_of_the_map() {
     }
 }
 
-fn cosine(a: [f32; 3], b: [f32; 3]) -> f32 {
+pub fn cosine(a: [f32; 3], b: [f32; 3]) -> f32 {
     Vec3::from(a).normalize().dot(Vec3::from(b).normalize())
 }
 
@@ -280,7 +280,7 @@ fn cut_takes_the_right_half_away() {
     let positions = five_grains().grains.position;
     let photograph = photograph("cut", five_grains(), |settings, camera| {
         camera.look_from(Side::Front);
-        settings.cut = Some(Cut {
+        settings.cut = Some(Cut::Beyond {
             axis: Axis::X,
             position: 0.0,
         });
@@ -304,7 +304,7 @@ fn section_of_a_cut_grain_is_a_flat_disc() {
     let photograph = photograph("section", five_grains(), |settings, camera| {
         camera.look_from(Side::Front);
         settings.projection = ProjectionKind::Orthographic;
-        settings.cut = Some(Cut {
+        settings.cut = Some(Cut::Beyond {
             axis: Axis::Z,
             position: 0.0,
         });

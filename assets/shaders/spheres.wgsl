@@ -1,30 +1,12 @@
 // Spheres, each raymarched on a quad that just covers its outline: exact outline, depth and section at every size.
 
 #import bevy_pbr::mesh_view_bindings::view
-#import grainfall::light::{matt_light, gloss}
-
-struct Grain {
-    centre: vec3<f32>,
-    radius: f32,
-    colour: vec3<f32>,
-    // Share of the sky that neighbours hide: mean, gradient and quadrupole over the normal.
-    hidden_mean: f32,
-    hidden_gradient: vec3<f32>,
-    hidden_xx: f32,
-    hidden_yy: f32,
-    hidden_xy: f32,
-    hidden_yz: f32,
-    hidden_zx: f32,
-}
-
-struct Picture {
-    // What lies beyond `dot(normal, x) = offset` is cut away; a zero normal cuts nothing.
-    cut_normal: vec3<f32>,
-    cut_offset: f32,
+#import grainfall::grain::{
+    Grain, Cut, orthographic, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> grains: array<Grain>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> picture: Picture;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> cut: Cut;
 
 struct Corner {
     // x, y: which corner, ±1; z: index of the grain.
@@ -50,23 +32,6 @@ struct Painted {
     @builtin(frag_depth) depth: f32,
 }
 
-struct Ray {
-    origin: vec3<f32>,
-    direction: vec3<f32>,
-}
-
-fn orthographic() -> bool {
-    return view.clip_from_view[3][3] == 1.0;
-}
-
-// The ray of sight through a point of the world.
-fn ray_through(x: vec3<f32>) -> Ray {
-    if orthographic() {
-        return Ray(x, -normalize(view.world_from_view[2].xyz));
-    }
-    return Ray(view.world_position, normalize(x - view.world_position));
-}
-
 @vertex
 fn vertex(corner: Corner) -> Covered {
     let index = u32(corner.place.z + 0.5);
@@ -88,7 +53,7 @@ fn vertex(corner: Corner) -> Covered {
         outline = select(0.0, grain.radius * distance * inverseSqrt(tangent), tangent > 0.0);
         pixel *= distance;
     }
-    if dot(picture.cut_normal, grain.centre) - grain.radius > picture.cut_offset {
+    if is_sphere_cut_away(cut, grain.centre, grain.radius) {
         outline = 0.0;
     }
 
@@ -109,6 +74,7 @@ fn handed_over(covered: Covered) -> Grain {
         covered.colour.xyz, covered.colour.w,
         covered.hidden_a.xyz, covered.hidden_a.w,
         covered.hidden_b.x, covered.hidden_b.y, covered.hidden_b.z, covered.hidden_b.w,
+        vec4<f32>(0.0, 0.0, 0.0, 1.0),
     );
 }
 
@@ -128,53 +94,35 @@ fn fragment(covered: Covered) -> Painted {
     let b = dot(away, ray.direction);
     // Beyond the outline, in the soft edge, the ray is taken to touch.
     let half_chord = sqrt(max(b * b - dot(away, away) + grain.radius * grain.radius, 0.0));
-    var t = -b - half_chord;
-    var hit = ray.origin + t * ray.direction;
-    var normal = normalize(hit - grain.centre);
-    let to_eye = -ray.direction;
+    var hit = ray.origin + (-b - half_chord) * ray.direction;
+    let normal = normalize(hit - grain.centre);
 
     var light: vec3<f32>;
-    if dot(picture.cut_normal, hit) > picture.cut_offset {
+    if is_cut_away(cut, hit) {
         // The near side is cut away: the ray goes on to the section, if it meets it within the grain.
-        let approach = -dot(picture.cut_normal, ray.direction);
-        if approach <= 0.0 { discard; }
-        t = (dot(picture.cut_normal, ray.origin) - picture.cut_offset) / approach;
-        if t > -b + half_chord { discard; }
-        hit = ray.origin + t * ray.direction;
-        light = section(grain, hit, covered.pixel * grain.radius);
+        let exit = exit_from_cut(cut, ray);
+        if exit.t > -b + half_chord { discard; }
+        hit = ray.origin + exit.t * ray.direction;
+        light = section_of(grain, hit, exit.plane, covered.pixel * grain.radius);
     } else {
-        light = surface(grain, normal, to_eye);
+        light = surface(grain, normal, -ray.direction);
     }
 
     let clip = view.clip_from_world * vec4<f32>(hit, 1.0);
     return Painted(vec4<f32>(light, coverage), clip.z / clip.w);
 }
 
-// How much of the sky the neighbours leave open where the surface has this normal.
-fn open_sky(grain: Grain, n: vec3<f32>) -> f32 {
-    let squares = grain.hidden_xx * n.x * n.x + grain.hidden_yy * n.y * n.y
-        - (grain.hidden_xx + grain.hidden_yy) * n.z * n.z;
-    let products = grain.hidden_xy * n.x * n.y + grain.hidden_yz * n.y * n.z + grain.hidden_zx * n.z * n.x;
-    let hidden = grain.hidden_mean + dot(grain.hidden_gradient, n) + squares + 2.0 * products;
-    // Three orders blur what a neighbour hides; half as much again brings the depth of a gap back.
-    return clamp(1.0 - 1.5 * hidden, 0.0, 1.0);
-}
-
-// A grain's skin: matt with a soft gloss, darker in the gaps between grains and a little where it turns away.
+// The skin, a little darker where it turns away.
 fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let facing = max(dot(normal, to_eye), 0.0);
     let turned = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
-    let sky = mix(0.16, 1.0, open_sky(grain, normal));
-    let shine = 0.18 * sky * gloss(normal, to_eye);
-    return grain.colour * matt_light(normal) * turned * sky + vec3<f32>(shine);
+    return skin(grain.colour * turned, open_sky(grain, normal), normal, to_eye);
 }
 
-// A flat section with a darker rim.
-fn section(grain: Grain, hit: vec3<f32>, pixel: f32) -> vec3<f32> {
-    let beyond = picture.cut_offset - dot(picture.cut_normal, grain.centre);
-    let section_radius = sqrt(max(grain.radius * grain.radius - beyond * beyond, 0.0));
-    let from_rim = section_radius - length(hit - grain.centre - beyond * picture.cut_normal);
-    let rim = smoothstep(0.0, 0.09 * grain.radius + pixel, from_rim);
-    let pale = mix(grain.colour, vec3<f32>(1.0), 0.12);
-    return mix(grain.colour * 0.35, pale, rim);
+// The section by a plane: a disc.
+fn section_of(grain: Grain, hit: vec3<f32>, plane: vec4<f32>, pixel: f32) -> vec3<f32> {
+    let beyond = plane.w - dot(plane.xyz, grain.centre);
+    let radius = sqrt(max(grain.radius * grain.radius - beyond * beyond, 0.0));
+    let from_rim = radius - length(hit - grain.centre - beyond * plane.xyz);
+    return section(grain.colour, plane.xyz, from_rim, 0.09 * grain.radius + pixel);
 }

@@ -1,0 +1,103 @@
+// What all grains have in common: their entry in the buffer, the ray that sees them, their skin, and what is cut away.
+
+#define_import_path grainfall::grain
+
+#import bevy_pbr::mesh_view_bindings::view
+#import grainfall::light::{matt_light, gloss}
+
+struct Grain {
+    centre: vec3<f32>,
+    radius: f32,
+    colour: vec3<f32>,
+    // Share of the sky that neighbours hide: mean, gradient and quadrupole over the normal.
+    hidden_mean: f32,
+    hidden_gradient: vec3<f32>,
+    hidden_xx: f32,
+    hidden_yy: f32,
+    hidden_xy: f32,
+    hidden_yz: f32,
+    hidden_zx: f32,
+    // From body axes to the world's.
+    orientation: vec4<f32>,
+}
+
+// What lies beyond both planes, `dot(normal, x) > w`, is cut away.
+struct Cut {
+    planes: array<vec4<f32>, 2>,
+}
+
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+}
+
+// Where a ray comes out of what is cut away: the plane it meets there and the distance along the ray.
+struct Exit {
+    plane: vec4<f32>,
+    t: f32,
+}
+
+const NEVER: f32 = 3e38;
+
+fn orthographic() -> bool {
+    return view.clip_from_view[3][3] == 1.0;
+}
+
+// The ray of sight through a point of the world.
+fn ray_through(x: vec3<f32>) -> Ray {
+    if orthographic() {
+        return Ray(x, -normalize(view.world_from_view[2].xyz));
+    }
+    return Ray(view.world_position, normalize(x - view.world_position));
+}
+
+fn is_cut_away(cut: Cut, x: vec3<f32>) -> bool {
+    return dot(cut.planes[0].xyz, x) > cut.planes[0].w && dot(cut.planes[1].xyz, x) > cut.planes[1].w;
+}
+
+// Whether the whole sphere is cut away.
+fn is_sphere_cut_away(cut: Cut, centre: vec3<f32>, radius: f32) -> bool {
+    return dot(cut.planes[0].xyz, centre) - radius > cut.planes[0].w
+        && dot(cut.planes[1].xyz, centre) - radius > cut.planes[1].w;
+}
+
+// The end of what is cut away from a ray; never for a ray that nothing is cut away from.
+fn exit_from_cut(cut: Cut, ray: Ray) -> Exit {
+    var exit = Exit(vec4<f32>(0.0), NEVER);
+    for (var i = 0; i < 2; i++) {
+        let plane = cut.planes[i];
+        let other = cut.planes[1 - i];
+        let approach = -dot(plane.xyz, ray.direction);
+        if approach > 0.0 {
+            let t = (dot(plane.xyz, ray.origin) - plane.w) / approach;
+            let beyond_other = dot(other.xyz, ray.origin + t * ray.direction) >= other.w;
+            if t < exit.t && beyond_other { exit = Exit(plane, t); }
+        }
+    }
+    return exit;
+}
+
+// How much of the sky the neighbours leave open where the surface has this normal.
+fn open_sky(grain: Grain, n: vec3<f32>) -> f32 {
+    let squares = grain.hidden_xx * n.x * n.x + grain.hidden_yy * n.y * n.y
+        - (grain.hidden_xx + grain.hidden_yy) * n.z * n.z;
+    let products = grain.hidden_xy * n.x * n.y + grain.hidden_yz * n.y * n.z + grain.hidden_zx * n.z * n.x;
+    let hidden = grain.hidden_mean + dot(grain.hidden_gradient, n) + squares + 2.0 * products;
+    // Three orders blur what a neighbour hides; half as much again brings the depth of a gap back.
+    return clamp(1.0 - 1.5 * hidden, 0.0, 1.0);
+}
+
+// A grain's skin: matt with a soft gloss, darker in the gaps between grains.
+fn skin(colour: vec3<f32>, sky_open: f32, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let sky = mix(0.16, 1.0, sky_open);
+    let shine = 0.18 * sky * gloss(normal, to_eye);
+    return colour * matt_light(normal) * sky + vec3<f32>(shine);
+}
+
+// A flat section of this normal, `from_rim` inside its rim, which is darker over `breadth`.
+fn section(colour: vec3<f32>, normal: vec3<f32>, from_rim: f32, breadth: f32) -> vec3<f32> {
+    let pale = mix(colour, vec3<f32>(1.0), 0.12);
+    // Half as much light as on skin: a section is a drawing, but the two faces of a quarter differ.
+    let light = 0.5 + 0.5 * matt_light(normal);
+    return light * mix(colour * 0.35, pale, smoothstep(0.0, breadth, from_rim));
+}

@@ -1,0 +1,166 @@
+//! Spheres: one draw for all of them, exact.
+//!
+//! In: the buffer of grains and which of them are spheres. Out: one entity whose mesh is a quad per sphere; the shader
+//! finds the grain in the buffer and raymarches it.
+
+use super::grains::{CutPlanes, GrainBuffer, polyhedron};
+use super::{Shown, ViewSettings};
+use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
+use bevy::camera::visibility::NoFrustumCulling;
+use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};
+use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
+use bevy::prelude::*;
+use bevy::render::render_resource::{
+    AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
+};
+use bevy::render::storage::ShaderBuffer;
+use bevy::shader::ShaderRef;
+
+const SHADER: Handle<Shader> = uuid_handle!("6d0f7a0e-64c1-4a53-9c2e-2f6f0a4b5c11");
+
+/// Adds the spheres' material, their entity and what keeps it up to date.
+pub(super) fn plugin(app: &mut App) {
+    load_internal_asset!(
+        app,
+        SHADER,
+        "../../assets/shaders/spheres.wgsl",
+        Shader::from_wgsl
+    );
+    app.add_plugins(MaterialPlugin::<SphereMaterial>::default())
+        .add_systems(Startup, spawn)
+        .add_systems(Update, update.in_set(super::ViewSystems::Draw));
+}
+
+#[derive(Asset, TypePath, AsBindGroup, Clone)]
+struct SphereMaterial {
+    #[storage(0, read_only)]
+    grains: Handle<ShaderBuffer>,
+    #[uniform(1)]
+    cut: CutPlanes,
+}
+
+impl Material for SphereMaterial {
+    fn vertex_shader() -> ShaderRef {
+        SHADER.into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        SHADER.into()
+    }
+
+    fn alpha_mode(&self) -> AlphaMode {
+        AlphaMode::AlphaToCoverage
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _pipeline: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        _key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        descriptor.primitive.cull_mode = None;
+        descriptor.vertex.buffers = vec![
+            layout
+                .0
+                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0)])?,
+        ];
+        Ok(())
+    }
+}
+
+/// The entity that draws all spheres.
+#[derive(Component)]
+struct Spheres {
+    /// The grains it draws.
+    grains: Vec<u32>,
+}
+
+fn spawn(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<SphereMaterial>>,
+    grains: Res<GrainBuffer>,
+) {
+    commands.spawn((
+        Spheres { grains: Vec::new() },
+        Mesh3d(meshes.add(quads(&[0]))),
+        MeshMaterial3d(materials.add(SphereMaterial {
+            grains: grains.handle.clone(),
+            cut: CutPlanes::default(),
+        })),
+        Visibility::Hidden,
+        NoFrustumCulling,
+    ));
+}
+
+/// Draws the spheres of the world shown, from the present buffer and cut as asked.
+fn update(
+    shown: Res<Shown>,
+    settings: Res<ViewSettings>,
+    grains: Res<GrainBuffer>,
+    drawn: Single<(
+        &mut Spheres,
+        &mut Mesh3d,
+        &MeshMaterial3d<SphereMaterial>,
+        &mut Visibility,
+    )>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<SphereMaterial>>,
+) {
+    let (mut drawn, mut mesh, material, mut visibility) = drawn.into_inner();
+    if shown.is_changed() {
+        let count = shown.world().map_or(0, |world| world.grains.len());
+        let polyhedra = shown.world().and_then(|world| world.polyhedra.as_deref());
+        let spheres = || (0..count).filter(|i| polyhedron(polyhedra, *i).is_none());
+        if !spheres().eq(drawn.grains.iter().map(|i| *i as usize)) {
+            drawn.grains = spheres().map(|i| i as u32).collect();
+            // A mesh cannot be empty.
+            *visibility = if drawn.grains.is_empty() {
+                Visibility::Hidden
+            } else {
+                mesh.0 = meshes.add(quads(&drawn.grains));
+                Visibility::Inherited
+            };
+        }
+    }
+    let cut = CutPlanes::of(settings.cut);
+    if materials
+        .get(&material.0)
+        .is_some_and(|material| material.cut != cut || material.grains != grains.handle)
+        && let Some(mut material) = materials.get_mut(&material.0)
+    {
+        material.cut = cut;
+        material.grains = grains.handle.clone();
+    }
+}
+
+/// A quad for each of the `grains`; a vertex holds its corner (±1, ±1) and the grain's index.
+fn quads(grains: &[u32]) -> Mesh {
+    let mut places = Vec::with_capacity(4 * grains.len());
+    let mut indices = Vec::with_capacity(6 * grains.len());
+    for (i, grain) in (0_u32..).zip(grains) {
+        // Exact: below 2^24, more grains than any buffer here holds.
+        let index = *grain as f32;
+        places.extend([
+            [-1.0, -1.0, index],
+            [1.0, -1.0, index],
+            [1.0, 1.0, index],
+            [-1.0, 1.0, index],
+        ]);
+        indices.extend([0, 1, 2, 2, 3, 0].map(|corner| 4 * i + corner));
+    }
+    Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::RENDER_WORLD,
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
+    .with_inserted_indices(Indices::U32(indices))
+}
