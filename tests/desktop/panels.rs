@@ -12,7 +12,7 @@ use grainfall::simulation::{
 };
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{Curves, Desk, Plots, Request, parameter_ui, scene_error_ui, status_ui, theme};
-use grainfall::view::{CameraRequest, ColourBy, ColourRange, Side, ViewSettings};
+use grainfall::view::{CameraRequest, ColourBy, ColourRange, Cut, Side, ViewSettings};
 use std::time::Duration;
 
 /// A simulation of three grains, which needs no settling, at time zero.
@@ -550,6 +550,13 @@ fn view_settings_change_what_they_name() {
     harness.run_steps(3);
     assert!(harness.state().view.cut.is_some());
     harness.get_by_label("Cut position");
+    harness.get_by_label("Quarter").click();
+    harness.run_steps(3);
+    let quarter = Cut::Quarter { x: 0.0, z: 0.0 };
+    assert_eq!(harness.state().view.cut, Some(quarter));
+    harness.get_by_label("Nothing").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().view.cut, None);
 }
 
 /// Ten thousand samples of a sawtooth, with its avalanches.
