@@ -374,15 +374,18 @@ fn tube_rises_and_shows_what_is_inside() {
                 .at(photograph.camera.project(x).unwrap().0)
                 .map(f32::from)
         };
-        // The hoop at its lower end is a band of one grey, higher than wide, before the grains.
-        let hoops: Vec<f32> = (0..100)
-            .map(|i| 0.0005 * i as f32)
-            .filter(|y| at(0.0, *y) == at(0.003, *y) && at(0.0, *y)[2] > 100.0)
-            .collect();
-        let lowest = hoops.first().copied().unwrap_or(f32::MAX);
-        assert!((lowest - rim).abs() < 1e-3, "{rim}: {hoops:?}");
+        // The hoop at its lower end is a bluish grey, unlike the species' amber and blue.
+        let is_hoop =
+            |[red, green, blue]: [f32; 3]| green > 80.0 && (15.0..60.0).contains(&(blue - red));
+        let heights = (0..300).map(|i| 2e-4 * i as f32);
+        let lowest = heights.clone().find(|y| is_hoop(at(0.0, *y)));
+        // Two pixels: the hoop is no taller than three.
+        assert!(
+            lowest.is_some_and(|y| (y - rim).abs() < 5e-4),
+            "{rim}: {lowest:?}"
+        );
         // Between its hoops one looks through the near side.
-        let seen = at(0.0, 0.02);
+        let seen = at(0.0, 0.034);
         let hue = [0, 1].map(|i| cosine(seen, species_colour(i).map(f32::from)));
         assert!(
             hue[0].max(hue[1]) > 0.9,
