@@ -293,6 +293,9 @@ fn on_axis(temperature: f64, decades: bool) -> f64 {
     }
 }
 
+/// Height of a plot of nothing but zeros, in its unit: less than any measure, and enough to be divided by marks.
+const LEAST_SPAN: f64 = 1e-30;
+
 /// The range that shows all `points` with a little room, at least `smallest` high.
 pub(super) fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
     let values = || points.iter().map(|point| point[1]);
@@ -303,7 +306,7 @@ pub(super) fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f6
     if low > high {
         return 0.0..=smallest.max(1.0);
     }
-    let span = (high - low).max(smallest).max(f64::MIN_POSITIVE);
+    let span = (high - low).max(smallest).max(LEAST_SPAN);
     let middle = 0.5 * (low + high);
     middle - (0.5 + BELOW) * span..=middle + (0.5 + ABOVE) * span
 }
@@ -516,6 +519,20 @@ mod tests {
     fn the_recent_window_follows_the_run_and_starts_with_full_length() {
         assert_eq!(Span::Recent.window(&[0.0, 3.0]), 0.0..=20.0);
         assert_eq!(Span::Recent.window(&[0.0, 50.0]), 30.0..=50.0);
+    }
+
+    #[test]
+    fn a_curve_of_zeros_has_a_few_marks() {
+        // Grains that have not moved yet: no energy at all.
+        let height = height_of(&[[0.0, 0.0], [1.0, 0.0]], 0.0);
+        let bounds = (*height.start(), *height.end());
+        let input = GridInput {
+            bounds,
+            base_step_size: (bounds.1 - bounds.0) / 50.0,
+        };
+        let marks = round_marks(input, 1.0, 0.0);
+        assert!((10..=60).contains(&marks.len()), "{}", marks.len());
+        assert!(marks.iter().any(|mark| mark.value == 0.0));
     }
 
     #[test]
