@@ -1,10 +1,11 @@
 //! The command line: what to open, what to change, and whether a window is wanted.
 //!
-//! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 130 interrupted.
+//! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state than a file states,
+//! 130 interrupted.
 
 use clap::{Args, Parser, Subcommand};
 use grainfall::files::write_whole;
-use grainfall::headless::{self, HeadlessError, Job, apply_setting, read_commands};
+use grainfall::headless::{self, Claim, HeadlessError, Job, Verdict, apply_setting, read_commands};
 use grainfall::scene::{Scene, built_in};
 use grainfall::simulation::{BedStore, Options, ScriptedCommand, make_bed};
 use grainfall::sweep::{self, Sweep, Variation};
@@ -119,6 +120,14 @@ enum Task {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
         jobs: Option<u16>,
     },
+    /// Compute a run again and confirm that it comes to the same state, to the bit
+    Verify {
+        /// A run's summary.json, or a list of changes saved in the window
+        file: PathBuf,
+        /// Threads the solver works on [default: all cores]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
+        threads: Option<u16>,
+    },
     /// Settle a scene's bed and write it to a file
     #[command(hide = true)]
     Bed {
@@ -130,7 +139,8 @@ enum Task {
     },
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 130 interrupted";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state than a file states, \
+                          130 interrupted";
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -146,6 +156,7 @@ fn main() -> ExitCode {
 fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     match arguments.task {
         Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
+        Some(Task::Verify { file, threads }) => return verify(&file, threads),
         Some(task @ Task::Sweep { .. }) => return run_sweep(task),
         None => {}
     }
@@ -300,6 +311,31 @@ fn run_sweep(task: Task) -> Result<u8, HeadlessError> {
     };
     let ending = sweep::run(&sweep, &*interruption()?)?;
     Ok(ending.exit_code())
+}
+
+/// Computes the run of `file` again and says what came out. Returns the exit code.
+fn verify(file: &Path, threads: Option<u16>) -> Result<u8, HeadlessError> {
+    let claim = Claim::read(file)?;
+    let interruption = interruption()?;
+    let stop = || interruption.load(Ordering::Relaxed);
+    let threads = threads.map_or(Options::headless().threads, usize::from);
+    let verdict = claim.verify(threads, BedStore::user(), &stop)?;
+    let (name, steps, time) = (&claim.name, claim.steps, claim.time);
+    let stated = claim.state_hash.as_deref().unwrap_or_default();
+    let found = match &verdict {
+        Verdict::Same => {
+            println!("the same: {name}, state {stated} at t = {time:.6} s, step {steps}");
+            return Ok(verdict.exit_code());
+        }
+        Verdict::Other(found) => format!(
+            "error: {name} comes to state {found} at step {steps}, not to {stated}; the file was written by version {}",
+            claim.version
+        ),
+        Verdict::Faulted(fault) => format!("error: {name} does not come to step {steps}: {fault}"),
+        Verdict::Interrupted => format!("stopped before step {steps}"),
+    };
+    eprintln!("{found}");
+    Ok(verdict.exit_code())
 }
 
 fn write_bed(name: &str, path: &Path) -> Result<u8, HeadlessError> {

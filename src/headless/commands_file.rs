@@ -1,7 +1,7 @@
 //! `--commands FILE`: commands to carry out when their time comes.
 //!
-//! In: a RON or JSON file with a list of `(time or step, command)`, or the `summary.json` of an earlier run, whose commands
-//! are then carried out again. Out: the list, or an error that says where it is wrong.
+//! In: a RON or JSON file with a list of `(time or step, command)`, or the `summary.json` of an earlier run or a list
+//! saved in the window, whose commands are then carried out again. Out: the list, or an error that says where it is wrong.
 
 use super::HeadlessError;
 use crate::simulation::ScriptedCommand;

@@ -4,6 +4,7 @@
 //! `.vtu` per output time, `summary.json`) and an [`Ending`]. The run is moved by the same system as in the window, inline
 //! and as fast as the machine can.
 
+mod claim;
 mod commands_file;
 mod error;
 mod folder;
@@ -18,6 +19,7 @@ mod setting;
 mod summary_file;
 mod velocity_file;
 
+pub use claim::{Claim, Verdict};
 pub use commands_file::read_commands;
 pub use error::HeadlessError;
 pub(crate) use folder::SUMMARY;
@@ -133,6 +135,7 @@ fn options(job: &Job) -> Options {
         speed: f64::INFINITY,
         beds: job.beds.clone(),
         script: job.script.clone(),
+        memory: 0,
     }
 }
 
@@ -165,7 +168,7 @@ fn follow(
         }
         Status::Failed(reason) => return Err(HeadlessError::Input(reason.clone())),
         Status::Faulted(fault) => return Ok(Some(Ending::Faulted(fault.clone()))),
-        Status::Paused | Status::Running => {}
+        Status::Paused | Status::Running | Status::Seeking { .. } => {}
     }
     let Some(world) = simulation.world().cloned() else {
         return Ok(None);

@@ -1,5 +1,6 @@
 //! `summary.json`: what was run, how it ended, what came out.
 
+use super::claim::fingerprint;
 use crate::measure::Summary;
 use crate::scene::Scene;
 use crate::simulation::StampedCommand;
@@ -52,7 +53,26 @@ impl SummaryFile<'_> {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, file: &mut dyn Write) -> io::Result<()> {
-        serde_json::to_writer_pretty(&mut *file, self)?;
+        let commands = self.commands.iter();
+        let fingerprint = fingerprint(
+            self.scene,
+            commands.map(|stamped| (Some(stamped.step), &stamped.command)),
+            self.steps,
+            self.state_hash.as_deref(),
+        );
+        let signed = Signed {
+            summary: self,
+            fingerprint,
+        };
+        serde_json::to_writer_pretty(&mut *file, &signed)?;
         file.write_all(b"\n")
     }
+}
+
+/// A summary with what tells whether it was edited since.
+#[derive(Serialize)]
+struct Signed<'a> {
+    #[serde(flatten)]
+    summary: &'a SummaryFile<'a>,
+    fingerprint: String,
 }

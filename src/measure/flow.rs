@@ -74,6 +74,18 @@ impl FlowHistory {
             .find(|map| map.time >= time.max(0.0).ceil())
     }
 
+    /// Memory that it takes [bytes].
+    pub fn memory(&self) -> usize {
+        let second = |profile: &FlowProfile| {
+            size_of::<FlowProfile>()
+                + profile.depth.len() * (2 * size_of::<f64>() + size_of::<u32>())
+        };
+        let moment =
+            |moment: &FastMoment| size_of::<FastMoment>() + size_of_val(&moment.map.velocity[..]);
+        let seconds: usize = self.seconds.iter().map(second).sum();
+        seconds + self.fastest.iter().map(moment).sum::<usize>()
+    }
+
     /// The profile averaged from the first whole second at or after `time` [s] on.
     pub fn since(&self, time: f64) -> FlowProfile {
         let first = time.max(0.0).ceil() as usize;

@@ -99,6 +99,21 @@ impl Series {
         self.time.partition_point(|&t| t < time)
     }
 
+    /// Becomes the first `len` samples of `other`.
+    pub fn copy_first(&mut self, other: &Self, len: usize) {
+        let len = len.min(other.len());
+        let copy = |own: &mut Vec<f64>, other: &[f64]| {
+            own.clear();
+            own.extend_from_slice(&other[..len]);
+        };
+        self.steps.clear();
+        self.steps.extend_from_slice(&other.steps[..len]);
+        copy(&mut self.time, &other.time);
+        for (own, other) in self.columns.iter_mut().zip(&other.columns) {
+            copy(own, other);
+        }
+    }
+
     /// Keeps the first `len` samples.
     pub fn truncate(&mut self, len: usize) {
         self.steps.truncate(len);

@@ -14,8 +14,18 @@ pub enum Command {
     Step(u64),
     /// Simulated seconds per wall-clock second to aim for; infinity for as fast as the machine can.
     Speed(f64),
-    /// Back to time zero with the settled bed and the present values of the live parameters.
+    /// Start afresh at time zero with the settled bed and the present values of the live parameters.
     Reset,
+    /// Show the run as it was at this step, and hold.
+    Seek(u64),
+    /// Back to the moment of the last change, as if it had not been made.
+    Undo,
+    /// What the last undo took back, as it was.
+    Redo,
+    /// Show the kept run of this index again, and keep the present one.
+    Return(usize),
+    /// Keep the run of this index no longer.
+    Forget(usize),
     /// Give a live parameter a value, in SI units.
     Set {
         /// Which one.
@@ -23,6 +33,21 @@ pub enum Command {
         /// Its new value, in [`super::ParameterInfo::range`].
         value: f64,
     },
+}
+
+impl Command {
+    /// Its name where it moves along the runs instead of changing one.
+    pub(super) fn moving(&self) -> Option<&'static str> {
+        match self {
+            Self::Reset => Some("Reset"),
+            Self::Seek(_) => Some("Seek"),
+            Self::Undo => Some("Undo"),
+            Self::Redo => Some("Redo"),
+            Self::Return(_) => Some("Return"),
+            Self::Forget(_) => Some("Forget"),
+            Self::Play | Self::Pause | Self::Step(_) | Self::Speed(_) | Self::Set { .. } => None,
+        }
+    }
 }
 
 /// A command and the step before which it was carried out.

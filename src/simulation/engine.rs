@@ -4,7 +4,10 @@
 //! how the pieces fall does not show in the trajectory.
 
 use super::preparation::{Preparation, Prepared};
-use super::{Command, ParameterInfo, Run, Script, ScriptedCommand, StampedCommand, Status};
+use super::timeline::{Past, Timeline};
+use super::{
+    Command, CommandError, ParameterInfo, Run, Script, ScriptedCommand, StampedCommand, Status,
+};
 use crate::measure::{FlowHistory, Sample};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
@@ -28,14 +31,16 @@ pub struct Update {
     pub world: Option<Arc<World>>,
     /// The run's live parameters, once it stands at time zero.
     pub parameters: Option<Arc<[ParameterInfo]>>,
-    /// Whether the run went back to time zero, so that samples and commands start afresh.
-    pub restarted: bool,
+    /// Whether another run is the present one, so that samples and commands start afresh.
+    pub switched: bool,
     /// Samples taken.
     pub samples: Vec<Sample>,
     /// The flowing layer up to the last of them.
     pub flow: Option<Arc<FlowHistory>>,
     /// Commands carried out.
     pub commands: Vec<StampedCommand>,
+    /// What lies behind and ahead of the state.
+    pub past: Option<Past>,
     /// How many [`Order::Command`]s were answered since the engine was made.
     pub answered: u64,
     /// What the engine does.
@@ -49,16 +54,17 @@ pub struct Update {
 impl Update {
     /// Adds what came `later`.
     pub fn absorb(&mut self, later: Self) {
-        if later.restarted {
+        if later.switched {
             self.samples.clear();
             self.commands.clear();
-            self.restarted = true;
+            self.switched = true;
         }
         self.world = later.world.or(self.world.take());
         self.parameters = later.parameters.or(self.parameters.take());
         self.samples.extend(later.samples);
         self.flow = later.flow.or(self.flow.take());
         self.commands.extend(later.commands);
+        self.past = later.past.or(self.past.take());
         self.answered = later.answered;
         self.status = later.status.or(self.status.take());
         self.profile = later.profile.or(self.profile.take());
@@ -74,6 +80,9 @@ const PIECE_TIME: Duration = Duration::from_millis(10);
 /// Steps that a piece has at least: taking a state in and giving it back costs as much as a dozen of them.
 const LEAST_STEPS: u64 = 50;
 
+/// Commands that come sooner after each other belong to one change: a drag, or a button that sets several parameters.
+const ONE_CHANGE: Duration = Duration::from_millis(400);
+
 /// A preparation that becomes a run, and the player's state.
 pub struct Engine {
     stage: Stage,
@@ -86,7 +95,12 @@ pub struct Engine {
     /// Steps of a piece.
     piece: u64,
     script: Vec<ScriptedCommand>,
+    /// Memory for keyframes [bytes].
+    memory: usize,
+    /// Commands that come before the run stands, or while it is on the way to another moment.
     waiting: Vec<Command>,
+    /// When a parameter was last set.
+    changed: Option<Instant>,
     fault: Option<Fault>,
     news: Update,
     told: Told,
@@ -95,7 +109,7 @@ pub struct Engine {
 
 enum Stage {
     Preparing(Box<Preparation>),
-    Ready(Box<Run>),
+    Ready(Box<Timeline>),
     /// There is no run, as the status says.
     Failed(Status),
 }
@@ -116,10 +130,11 @@ struct Told {
 }
 
 impl Engine {
-    /// An engine that makes a run of `preparation` and carries out `script` by itself.
+    /// An engine that makes a run of `preparation`, carries out `script` by itself and holds keyframes in `memory` bytes.
     pub fn new(
         preparation: Preparation,
         script: Vec<ScriptedCommand>,
+        memory: usize,
         autoplay: bool,
         speed: f64,
     ) -> Self {
@@ -136,7 +151,9 @@ impl Engine {
             hold: u64::MAX,
             piece: 8,
             script,
+            memory,
             waiting: Vec::new(),
+            changed: None,
             fault: None,
             news: Update::default(),
             told: Told::default(),
@@ -149,9 +166,7 @@ impl Engine {
         match order {
             Order::Tick(passed) => self.grant(passed),
             Order::Hold(step) => self.hold = step.unwrap_or(u64::MAX),
-            Order::Command(command) if matches!(self.stage, Stage::Preparing(_)) => {
-                self.waiting.push(command);
-            }
+            Order::Command(command) if self.must_wait(&command) => self.waiting.push(command),
             Order::Command(command) => self.carry_out(command),
         }
     }
@@ -160,7 +175,7 @@ impl Engine {
     pub fn is_busy(&self) -> bool {
         match &self.stage {
             Stage::Preparing(_) => true,
-            Stage::Ready(run) => run.world().clock.step < self.goal(),
+            Stage::Ready(timeline) => timeline.run().world().clock.step < self.goal(timeline),
             Stage::Failed(_) => false,
         }
     }
@@ -172,7 +187,7 @@ impl Engine {
                 Ok(Prepared::NotYet) => {}
                 Ok(Prepared::Ready(run)) => {
                     let warnings = preparation.warnings().to_vec();
-                    self.begin(run, warnings);
+                    self.begin(*run, warnings);
                 }
                 Err(fault) => self.stage = Stage::Failed(Status::Faulted(fault)),
             },
@@ -186,27 +201,36 @@ impl Engine {
         let mut update = std::mem::take(&mut self.news);
         self.news.answered = update.answered;
         update.status = Some(self.status());
-        let Stage::Ready(run) = &mut self.stage else {
+        let Stage::Ready(timeline) = &mut self.stage else {
             return update;
         };
-        let (series, commands) = (run.series(), run.commands());
+        let news = timeline.take_news();
+        if news.switched {
+            update.switched = true;
+            self.told = Told::default();
+        }
+        let record = timeline.record();
+        let (series, commands) = (&record.series, record.history.commands());
         update.samples = (self.told.samples..series.len())
             .filter_map(|index| series.get(index))
             .collect();
-        update.flow = (!update.samples.is_empty()).then(|| run.flow().clone());
+        let flowed = news.arrived || !update.samples.is_empty();
+        update.flow = flowed.then(|| record.flow.clone());
         update.commands = commands[self.told.commands..].to_vec();
-        let step = run.world().clock.step;
-        if update.restarted || self.told.step != Some(step) || !update.commands.is_empty() {
-            update.world = Some(Arc::new(run.world().clone()));
+        let world = timeline.run().world();
+        let step = world.clock.step;
+        let moved = self.told.step != Some(step) || !update.commands.is_empty();
+        let on_the_way = timeline.destination().is_some();
+        if news.switched || news.arrived || (moved && !on_the_way) {
+            update.world = Some(Arc::new(world.clone()));
+            self.told.step = Some(step);
         }
-        self.told = Told {
-            step: Some(step),
-            samples: series.len(),
-            commands: commands.len(),
-        };
+        self.told.samples = series.len();
+        self.told.commands = commands.len();
+        update.past = Some(timeline.past());
         if self.profiled.elapsed() > PROFILE_TIME {
             self.profiled = Instant::now();
-            update.profile = Some(run.take_profile()).filter(|profile| profile.steps > 0);
+            update.profile = Some(timeline.take_profile()).filter(|profile| profile.steps > 0);
         }
         update
     }
@@ -218,6 +242,9 @@ impl Engine {
                 stage: preparation.name().into(),
                 progress: preparation.progress(),
             },
+            (Stage::Ready(timeline), _) if timeline.destination().is_some() => Status::Seeking {
+                progress: timeline.progress(),
+            },
             (Stage::Ready(_), Some(fault)) => Status::Faulted(fault.clone()),
             (Stage::Ready(_), None) if self.mode == Mode::Paused => Status::Paused,
             (Stage::Ready(_), None) => Status::Running,
@@ -225,21 +252,37 @@ impl Engine {
     }
 
     /// The step to reach before the next order.
-    fn goal(&self) -> u64 {
-        let goal = match self.mode {
-            Mode::Paused => 0,
-            Mode::Running => self.target,
-            Mode::Stepping { until } => until,
+    fn goal(&self, timeline: &Timeline) -> u64 {
+        let goal = match (timeline.destination(), self.mode) {
+            (Some(destination), _) => destination,
+            (None, Mode::Paused) => 0,
+            (None, Mode::Running) => self.target,
+            (None, Mode::Stepping { until }) => until,
         };
         goal.min(self.hold)
     }
 
+    /// Whether `command` has no meaning before the run stands where it was asked to go.
+    fn must_wait(&self, command: &Command) -> bool {
+        match &self.stage {
+            Stage::Preparing(_) => true,
+            Stage::Ready(timeline) => {
+                let acts_on_the_moment = matches!(
+                    command,
+                    Command::Play | Command::Step(_) | Command::Set { .. }
+                );
+                timeline.destination().is_some() && acts_on_the_moment
+            }
+            Stage::Failed(_) => false,
+        }
+    }
+
     /// Lets the run go on by what `passed` wall-clock time is worth.
     fn grant(&mut self, passed: Duration) {
-        let (Stage::Ready(run), Mode::Running) = (&self.stage, self.mode) else {
+        let (Stage::Ready(timeline), Mode::Running) = (&mut self.stage, self.mode) else {
             return;
         };
-        let clock = &run.world().clock;
+        let clock = timeline.run().world().clock;
         if self.speed.is_infinite() {
             self.target = u64::MAX;
             return;
@@ -248,82 +291,124 @@ impl Engine {
         let steps = (self.owed / clock.time_step).floor();
         self.owed -= steps * clock.time_step;
         self.target = clock.step + steps as u64;
+        if timeline.destination().is_none() {
+            timeline.skip_towards(self.target);
+        }
     }
 
-    fn begin(&mut self, mut run: Box<Run>, warnings: Vec<String>) {
+    fn begin(&mut self, run: Run, warnings: Vec<String>) {
         self.news.warnings.extend(warnings);
         let script = std::mem::take(&mut self.script);
-        let scheduled = Script::new(&script, &run.world().clock)
+        let clock = run.world().clock;
+        self.news.parameters = Some(run.parameters().clone());
+        let mut timeline = Timeline::new(run, self.memory);
+        let scheduled = Script::new(&script, &clock)
             .map_err(|error| error.to_string())
-            .and_then(|script| run.schedule(script).map_err(|error| error.to_string()));
+            .and_then(|script| timeline.schedule(script).map_err(|error| error.to_string()));
         if let Err(reason) = scheduled {
             self.stage = Stage::Failed(Status::Failed(reason));
             return;
         }
-        self.news.parameters = Some(run.parameters().clone());
-        self.stage = Stage::Ready(run);
+        self.stage = Stage::Ready(Box::new(timeline));
+        self.carry_out_waiting();
+    }
+
+    /// Carries out what waited, as far as it need not wait on.
+    fn carry_out_waiting(&mut self) {
         for command in std::mem::take(&mut self.waiting) {
-            self.carry_out(command);
+            self.order(Order::Command(command));
         }
     }
 
     fn carry_out(&mut self, command: Command) {
         self.news.answered += 1;
-        let Stage::Ready(run) = &mut self.stage else {
+        let Stage::Ready(timeline) = &mut self.stage else {
             return;
         };
-        if let Err(refusal) = run.apply(command.clone()) {
-            self.news.warnings.push(refusal.to_string());
-            return;
-        }
-        let step = run.world().clock.step;
         match command {
-            Command::Play => self.play(Mode::Running, step),
-            Command::Pause => self.play(Mode::Paused, step),
+            Command::Play => self.play(Mode::Running),
+            Command::Pause => {
+                timeline.stop();
+                self.carry_out_waiting();
+                self.play(Mode::Paused);
+            }
             Command::Step(steps) => {
-                let until = step.saturating_add(steps);
-                self.play(Mode::Stepping { until }, step);
+                let until = timeline.run().world().clock.step.saturating_add(steps);
+                self.play(Mode::Stepping { until });
             }
             Command::Speed(speed) => {
                 self.speed = speed;
-                self.play(self.mode, step);
+                self.play(self.mode);
             }
             Command::Reset => {
-                self.told = Told::default();
-                self.news.restarted = true;
+                let refused = timeline.reset().err();
                 let mode = match self.mode {
                     Mode::Running if self.fault.is_none() => Mode::Running,
                     _ => Mode::Paused,
                 };
-                self.play(mode, step);
+                self.play(mode);
+                self.tell(refused);
             }
-            Command::Set { .. } => {}
+            Command::Set { .. } => {
+                let joins = (self.changed).is_some_and(|changed| changed.elapsed() < ONE_CHANGE);
+                self.changed = Some(Instant::now());
+                let refused = timeline.change(command, joins).err();
+                self.tell(refused);
+            }
+            Command::Seek(step) => self.travel(|timeline| timeline.seek(step)),
+            Command::Undo => self.travel(Timeline::undo),
+            Command::Redo => self.travel(Timeline::redo),
+            Command::Return(index) => self.travel(|timeline| timeline.take_up(index)),
+            Command::Forget(index) => timeline.forget(index),
         }
     }
 
-    /// Goes on in `mode` from `step`, forgetting what earlier ticks granted and what went wrong.
-    fn play(&mut self, mode: Mode, step: u64) {
+    /// Says why a command was refused.
+    fn tell(&mut self, refused: Option<CommandError>) {
+        let refusal = refused.map(|refusal| refusal.to_string());
+        self.news.warnings.extend(refusal);
+    }
+
+    /// Sets out for another moment and holds there.
+    fn travel(&mut self, set_out: impl FnOnce(&mut Timeline)) {
+        if let Stage::Ready(timeline) = &mut self.stage {
+            set_out(timeline);
+        }
+        self.changed = None;
+        self.play(Mode::Paused);
+    }
+
+    /// Goes on in `mode` from here, forgetting what earlier ticks granted and what went wrong.
+    fn play(&mut self, mode: Mode) {
         self.mode = mode;
-        self.target = step;
+        self.target = 0;
         self.owed = 0.0;
         self.fault = None;
     }
 
     fn advance_run(&mut self) {
-        let goal = self.goal();
-        let Stage::Ready(run) = &mut self.stage else {
+        let Stage::Ready(timeline) = &self.stage else {
             return;
         };
-        let from = run.world().clock.step;
+        let goal = self.goal(timeline);
+        let Stage::Ready(timeline) = &mut self.stage else {
+            return;
+        };
+        let from = timeline.run().world().clock.step;
         let to = goal.min(from.saturating_add(self.piece));
+        let travelled = timeline.destination().is_some();
         let started = Instant::now();
-        let outcome = run.advance_to(to);
+        let outcome = timeline.advance_to(to);
+        let arrived = travelled && timeline.destination().is_none();
         self.adapt(to.saturating_sub(from), started.elapsed());
         if let Err(fault) = outcome {
             self.mode = Mode::Paused;
             self.fault = Some(fault);
         } else if matches!(self.mode, Mode::Stepping { until } if until <= to) {
             self.mode = Mode::Paused;
+        }
+        if arrived {
+            self.carry_out_waiting();
         }
     }
 

@@ -8,8 +8,9 @@ use super::driver::Driver;
 use super::engine::{Engine, Order, Update};
 use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
+use super::timeline::Past;
 use super::{Command, Parameter, ScriptedCommand, StampedCommand};
-use crate::measure::{Avalanche, FlowHistory, Measure, Series, avalanches};
+use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile, TimeStepAdvice, advise};
 use crate::world::World;
@@ -39,7 +40,12 @@ pub struct Options {
     pub beds: BedStore,
     /// Commands carried out by themselves when their time comes.
     pub script: Vec<ScriptedCommand>,
+    /// Memory for states to come back to [bytes]; without any, an earlier moment is computed from time zero.
+    pub memory: usize,
 }
+
+/// Memory for states to come back to in a window [bytes].
+const WINDOW_MEMORY: usize = 1 << 30;
 
 /// Who moves a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,15 +66,17 @@ impl Options {
             speed: 1.0,
             beds: BedStore::user(),
             script: Vec::new(),
+            memory: WINDOW_MEMORY,
         }
     }
 
-    /// Without a window: inline, all cores, as fast as the machine can.
+    /// Without a window: inline, all cores, as fast as the machine can; nobody goes back.
     pub fn headless() -> Self {
         Self {
             driver: DriverKind::Inline,
             threads: available_threads(),
             speed: f64::INFINITY,
+            memory: 0,
             ..Self::window()
         }
     }
@@ -94,6 +102,11 @@ pub enum Status {
         /// How far it has come, 0 … 1.
         progress: f32,
     },
+    /// It is on the way to the moment that was asked for.
+    Seeking {
+        /// How much of the way is done, 0 … 1.
+        progress: f32,
+    },
     /// It holds.
     Paused,
     /// It goes on.
@@ -117,10 +130,16 @@ pub struct Simulation {
     flow: Arc<FlowHistory>,
     avalanches: Avalanches,
     commands: Vec<StampedCommand>,
+    past: Past,
+    /// How often [`Simulation::commands`] became another list.
+    revision: u64,
+    /// The step asked for and not yet reached.
+    sought: Option<u64>,
     /// Values asked for and not yet carried out.
     asked: BTreeMap<Parameter, f64>,
-    /// Commands sent so far.
+    /// Commands sent so far, and those of them that were taken up.
     sent: u64,
+    answered: u64,
     status: Status,
     profile: Profile,
     rate: Rate,
@@ -144,8 +163,12 @@ impl Simulation {
             flow: Arc::default(),
             avalanches: Avalanches::default(),
             commands: Vec::new(),
+            past: Past::default(),
+            revision: 0,
+            sought: None,
             asked: BTreeMap::new(),
             sent: 0,
+            answered: 0,
             status: Status::Preparing {
                 stage: "starting".into(),
                 progress: 0.0,
@@ -182,9 +205,38 @@ impl Simulation {
         self.generation
     }
 
-    /// The samples so far, one every [`super::SAMPLE_INTERVAL`].
+    /// The samples of the present run so far, one every [`super::SAMPLE_INTERVAL`]; those after the state shown too.
     pub fn series(&self) -> &Series {
         &self.series
+    }
+
+    /// The last sample at or before the state shown.
+    pub fn sample(&self) -> Option<Sample> {
+        let step = self.world.as_ref()?.clock.step;
+        let steps = self.series.steps();
+        let samples = steps.partition_point(|&sampled| sampled <= step);
+        self.series.get(samples.checked_sub(1)?)
+    }
+
+    /// What lies behind and ahead of the state shown.
+    pub fn past(&self) -> &Past {
+        &self.past
+    }
+
+    /// The step that is shown, or the one that was asked for and is still on its way.
+    pub fn step(&self) -> u64 {
+        let shown = || self.world.as_ref().map_or(0, |world| world.clock.step);
+        self.sought.unwrap_or_else(shown)
+    }
+
+    /// Changes whenever [`Simulation::commands`] is another list.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether the state shown is not the newest of the present run.
+    pub fn looks_back(&self) -> bool {
+        self.step() < self.past.end.step
     }
 
     /// The flowing layer so far.
@@ -222,10 +274,16 @@ impl Simulation {
                 self.asked.insert(parameter.clone(), *value);
             }
             Command::Speed(speed) => self.speed = *speed,
+            Command::Seek(step) => self.sought = Some(*step),
             _ => {}
         }
         self.sent += 1;
         self.order(Order::Command(command));
+    }
+
+    /// Whether every command that was sent has been taken up.
+    pub fn has_answered(&self) -> bool {
+        self.answered == self.sent
     }
 
     /// Lets the run go no further than `step` for now, or as far as it will.
@@ -233,7 +291,7 @@ impl Simulation {
         self.order(Order::Hold(step));
     }
 
-    /// The commands carried out since time zero.
+    /// The commands carried out in the present run since time zero; those after the state shown too.
     pub fn commands(&self) -> &[StampedCommand] {
         &self.commands
     }
@@ -289,22 +347,30 @@ impl Simulation {
     }
 
     fn take(&mut self, update: Update) {
-        if update.restarted {
+        if update.switched {
             self.series.truncate(0);
             self.flow = Arc::default();
             self.commands.clear();
             self.avalanches = Avalanches::default();
+        }
+        if update.switched || !update.commands.is_empty() {
+            self.revision += 1;
         }
         for sample in update.samples {
             self.series.push(sample);
         }
         self.flow = update.flow.unwrap_or(self.flow.clone());
         self.commands.extend(update.commands);
+        self.past = update.past.unwrap_or(std::mem::take(&mut self.past));
         self.warnings.extend(update.warnings);
-        if update.answered == self.sent {
+        self.answered = update.answered;
+        if self.has_answered() {
             self.asked.clear();
         }
         self.status = update.status.unwrap_or(self.status.clone());
+        if self.has_answered() && !matches!(self.status, Status::Seeking { .. }) {
+            self.sought = None;
+        }
         self.parameters = update.parameters.unwrap_or(self.parameters.clone());
         self.profile = update.profile.unwrap_or(std::mem::take(&mut self.profile));
         if self.status != Status::Running {
@@ -324,7 +390,13 @@ fn drive(scene: Arc<Scene>, time_step: f64, options: Options) -> std::io::Result
     let kind = options.driver;
     let make = move || {
         let preparation = Preparation::new(scene, time_step, options.threads, options.beds);
-        Engine::new(preparation, options.script, options.autoplay, options.speed)
+        Engine::new(
+            preparation,
+            options.script,
+            options.memory,
+            options.autoplay,
+            options.speed,
+        )
     };
     match kind {
         DriverKind::Inline => Ok(Driver::inline(make())),

@@ -10,6 +10,8 @@
 //! | `parameter`, `relabel` | the numbers that can change while a run goes on, and how they change a world |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `run` | the trajectory, samples, snapshots |
+//! | `timeline` | runs as something to hold: seek, branch, undo |
+//! | `history`, `keyframes` | what tells runs apart and what is known of them; states to come back to |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
 //! | `engine`, `driver` | who moves a run on, in short pieces, inline or on a thread |
 //! | `front`, `plugin` | what the outside sees, and the Bevy system that ticks it |
@@ -19,6 +21,8 @@ mod command;
 mod driver;
 mod engine;
 mod front;
+mod history;
+mod keyframes;
 mod parameter;
 mod plugin;
 mod preparation;
@@ -26,12 +30,15 @@ mod relabel;
 mod run;
 mod script;
 mod settling;
+mod timeline;
 
 pub use bed::BedStore;
 pub use command::{Command, Parameter, StampedCommand};
 pub use front::{DriverKind, Options, SMALLEST_DROP, Simulation, Status};
+pub use history::{History, Moment, Record};
 pub use parameter::{DisplayUnit, ParameterInfo};
 pub use plugin::{SimulationPlugin, SimulationSystems, advance_simulation};
 pub use preparation::{Preparation, Prepared, make_bed};
 pub use run::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
 pub use script::{Script, ScriptError, ScriptedCommand};
+pub use timeline::{Changed, Past, Timeline};

@@ -72,6 +72,20 @@ impl Preparation {
         })
     }
 
+    /// Does all that is left, unless `stop` says to leave it; the run at time zero then.
+    ///
+    /// # Errors
+    /// The solver's [`Fault`] while the grains settle.
+    pub fn go_through(&mut self, stop: &dyn Fn() -> bool) -> Result<Option<Run>, Fault> {
+        loop {
+            match self.advance()? {
+                Prepared::Ready(run) => return Ok(Some(*run)),
+                Prepared::NotYet if stop() => return Ok(None),
+                Prepared::NotYet => {}
+            }
+        }
+    }
+
     /// What is being done, for people.
     pub fn name(&self) -> &'static str {
         match self.stage {

@@ -31,15 +31,31 @@ pub struct Run {
     next_sample: u64,
 }
 
-/// Where a run stood: all it takes to go on from there.
+/// Where a run stood: all it takes to go on from there, together with the run's commands and samples until then.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     world: World,
     commands: usize,
-    script: Script,
     samples: usize,
     flow: Arc<FlowHistory>,
     next_sample: u64,
+}
+
+impl Snapshot {
+    /// Steps taken then.
+    pub fn step(&self) -> u64 {
+        self.world.clock.step
+    }
+
+    /// Commands carried out until then.
+    pub fn commands(&self) -> usize {
+        self.commands
+    }
+
+    /// Memory that it takes [bytes].
+    pub fn memory(&self) -> usize {
+        self.world.memory() + self.flow.memory()
+    }
 }
 
 /// A run as a file can keep it: all it takes to go on in another process, to the same bits.
@@ -146,19 +162,32 @@ impl Run {
         for command in script.commands() {
             check(&self.parameters, &self.world, command)?;
         }
-        self.script = script;
-        self.carry_out_due();
+        self.follow(script);
         Ok(())
     }
 
-    /// Carries out `command` now and keeps it. What concerns the player alone (play, pause, step, speed) is only kept.
+    /// Carries out `script`, which was checked, from here on instead of what was scheduled.
+    pub(super) fn follow(&mut self, script: Script) {
+        self.script = script;
+        self.carry_out_due();
+    }
+
+    /// Carries out `command` now and keeps it. What concerns the player alone (play, pause, step, seek …) is passed over.
     ///
     /// # Errors
     /// A [`CommandError`] when the scene has no such parameter or the value is out of its range; nothing changes then.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
-        check(&self.parameters, &self.world, &command)?;
+        self.check(&command)?;
         self.carry_out(command);
         Ok(())
+    }
+
+    /// Whether `command` can be carried out.
+    ///
+    /// # Errors
+    /// The [`CommandError`] that [`Run::apply`] would answer with.
+    pub fn check(&self, command: &Command) -> Result<(), CommandError> {
+        check(&self.parameters, &self.world, command)
     }
 
     /// Advances to `step`, sampling on the way; does nothing when that step is past.
@@ -205,21 +234,34 @@ impl Run {
         Snapshot {
             world: self.world.clone(),
             commands: self.commands.len(),
-            script: self.script.clone(),
             samples: self.series.len(),
             flow: self.flow.clone(),
             next_sample: self.next_sample,
         }
     }
 
-    /// Goes back to a `snapshot` of this run, forgetting what came after it.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
+    /// Goes to a `snapshot` of a run of the same scene that had these `commands` and this `series` then or later; what
+    /// it forgets after them is up to the caller to schedule.
+    pub fn restore(&mut self, snapshot: &Snapshot, commands: &[StampedCommand], series: &Series) {
         self.world.clone_from(&snapshot.world);
-        self.commands.truncate(snapshot.commands);
-        self.script.clone_from(&snapshot.script);
-        self.series.truncate(snapshot.samples);
+        self.commands.clear();
+        let kept = snapshot.commands.min(commands.len());
+        self.commands.extend_from_slice(&commands[..kept]);
+        self.series.copy_first(series, snapshot.samples);
+        self.script = Script::default();
         self.flow.clone_from(&snapshot.flow);
         self.next_sample = snapshot.next_sample;
+    }
+
+    /// Goes to time zero, before any command.
+    pub fn restart(&mut self) {
+        self.world.clone_from(&self.bed);
+        self.commands.clear();
+        self.script = Script::default();
+        self.series.truncate(0);
+        self.flow = Arc::default();
+        self.next_sample = 0;
+        self.take_due_sample();
     }
 
     fn carry_out_due(&mut self) {
@@ -232,21 +274,17 @@ impl Run {
         match command {
             Command::Reset => self.reset(),
             Command::Set { parameter, value } => self.set(&parameter, value),
-            kept => self.keep(kept),
+            _ => {}
         }
     }
 
     fn set(&mut self, parameter: &Parameter, value: f64) {
         let parameter = parameter::canonical(parameter, &self.world.materials);
         parameter::write(&parameter, value, &self.scene, &mut self.world);
-        self.keep(Command::Set { parameter, value });
-    }
-
-    fn keep(&mut self, command: Command) {
         self.commands.push(StampedCommand {
             step: self.world.clock.step,
             time: self.world.time(),
-            command,
+            command: Command::Set { parameter, value },
         });
     }
 
@@ -258,13 +296,7 @@ impl Run {
             .map(|info| info.parameter.clone())
             .map(|parameter| (parameter.read(&self.world), parameter))
             .collect();
-        self.world.clone_from(&self.bed);
-        self.commands.clear();
-        self.script = Script::default();
-        self.series.truncate(0);
-        self.flow = Arc::default();
-        self.next_sample = 0;
-        self.take_due_sample();
+        self.restart();
         for (value, parameter) in present {
             let Some(value) = value.filter(|_| value != parameter.read(&self.world)) else {
                 continue;

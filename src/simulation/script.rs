@@ -37,11 +37,11 @@ pub enum ScriptError {
     /// An entry's time is no time.
     #[error("command {0}: `time` is {1}; expected a number of seconds from 0 on")]
     BadTime(usize, f64),
-    /// An entry starts the run afresh.
+    /// An entry moves along the run instead of changing it.
     #[error(
-        "command {0} is Reset, which a list cannot hold: the list of a run starts at its last reset"
+        "command {0} is {1}, which a list cannot hold: it holds what was changed between time zero and the end"
     )]
-    Reset(usize),
+    NoChange(usize, &'static str),
 }
 
 impl Script {
@@ -52,8 +52,8 @@ impl Script {
     pub fn new(commands: &[ScriptedCommand], clock: &Clock) -> Result<Self, ScriptError> {
         let mut due = Vec::with_capacity(commands.len());
         for (index, entry) in commands.iter().enumerate() {
-            if entry.command == Command::Reset {
-                return Err(ScriptError::Reset(index + 1));
+            if let Some(name) = entry.command.moving() {
+                return Err(ScriptError::NoChange(index + 1, name));
             }
             due.push((entry.due(index + 1, clock)?, entry.command.clone()));
         }
@@ -61,6 +61,19 @@ impl Script {
         Ok(Self {
             commands: due.into(),
         })
+    }
+
+    /// The script of `commands` in order of their steps.
+    pub(super) fn in_order(commands: impl Iterator<Item = (u64, Command)>) -> Self {
+        Self {
+            commands: commands.collect(),
+        }
+    }
+
+    /// What is due after `step`.
+    pub(super) fn after(&self, step: u64) -> impl Iterator<Item = (u64, Command)> {
+        let later = move |entry: &&(u64, Command)| entry.0 > step;
+        self.commands.iter().filter(later).cloned()
     }
 
     /// What is still to be carried out.

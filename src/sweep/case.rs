@@ -8,7 +8,7 @@ use crate::headless::{
     write_profile, write_series, write_velocity,
 };
 use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, VelocityMap, results};
-use crate::simulation::{Preparation, Prepared, Run, SMALLEST_DROP, Script};
+use crate::simulation::{Preparation, Run, SMALLEST_DROP, Script};
 use crate::solver::{Fault, advise};
 use std::io::{self, Write};
 use std::path::Path;
@@ -130,23 +130,16 @@ fn prepared(
     let name = &case.name;
     let scene = Arc::new(case.scene.clone());
     let mut preparation = Preparation::new(scene, case.time_step, 1, sweep.beds.clone());
-    let mut run = loop {
-        match preparation.advance() {
-            Ok(Prepared::Ready(run)) => break run,
-            Ok(Prepared::NotYet) if stop() => return Ok(None),
-            Ok(Prepared::NotYet) => {}
-            Err(fault) => {
-                return Err(HeadlessError::Input(format!(
-                    "{name}: the bed cannot settle: {fault}"
-                )));
-            }
-        }
-    };
     let refuse = |reason: String| HeadlessError::Input(format!("{name}: {reason}"));
+    let settled = preparation.go_through(stop);
+    let settled = settled.map_err(|fault| refuse(format!("the bed cannot settle: {fault}")))?;
+    let Some(mut run) = settled else {
+        return Ok(None);
+    };
     let script =
         Script::new(&case.script, &run.world().clock).map_err(|e| refuse(e.to_string()))?;
     run.schedule(script).map_err(|e| refuse(e.to_string()))?;
-    Ok(Some(*run))
+    Ok(Some(run))
 }
 
 fn advance(

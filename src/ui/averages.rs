@@ -17,6 +17,7 @@ pub struct Averages {
 /// What a summary was made of.
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
+    run: u32,
     samples: usize,
     from: f64,
 }
@@ -31,6 +32,7 @@ impl Averages {
             SAMPLES_BETWEEN_SUMMARIES
         };
         let key = Key {
+            run: simulation.past().number,
             samples: series.len() / between,
             from,
         };

@@ -1,12 +1,15 @@
 //! What panels ask for, fulfilled: the only place that changes the run, opens scenes and writes pictures for them.
 
 use super::{Desk, OpenWith, Purpose, Request, Requests};
+use crate::headless::Claim;
 use crate::scene::Scene;
 use crate::simulation::{Options, Simulation};
 use crate::view::{ViewSettings, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::io;
+use std::path::{Path, PathBuf};
 
 /// Fulfils every request in the order in which it was made.
 pub fn fulfil_requests(
@@ -33,6 +36,16 @@ pub fn fulfil_requests(
                 commands
                     .spawn(Screenshot::primary_window())
                     .observe(save_to(path));
+            }
+            Request::ChooseChanges => desk.path_dialog.ask(Purpose::Changes),
+            Request::SaveChanges(path) => {
+                if let Some(simulation) = &simulation {
+                    desk.notify(said(
+                        "The list of changes",
+                        &path,
+                        save_changes(simulation, &path),
+                    ));
+                }
             }
             Request::Show(sheet) => desk.show_sheet(sheet),
             Request::Quit => {
@@ -69,12 +82,23 @@ fn open(
 /// Writes the picture that was taken to `path` and says so.
 fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, ResMut<Desk>) {
     move |captured, mut desk| {
-        let shown = path.display();
-        match save_png(&captured.image, &path) {
-            Ok(()) => desk.notify(format!("Saved {shown}")),
-            Err(reason) => desk.notify(format!(
-                "The picture cannot be written to {shown}: {reason}"
-            )),
-        }
+        desk.notify(said("The picture", &path, save_png(&captured.image, &path)));
+    }
+}
+
+/// Writes the changes of the present run to `path`, with what leads to the state shown.
+fn save_changes(simulation: &Simulation, path: &Path) -> io::Result<()> {
+    let world = simulation.world();
+    let world = world.ok_or_else(|| io::Error::other("there is no run yet"))?;
+    let scene = simulation.scene();
+    Claim::of(&scene.title, scene, simulation.commands(), world).write(path)
+}
+
+/// What to tell a person about a file that was to be written.
+fn said(what: &str, path: &Path, written: Result<(), impl Display>) -> String {
+    let shown = path.display();
+    match written {
+        Ok(()) => format!("Saved {shown}"),
+        Err(reason) => format!("{what} cannot be written to {shown}: {reason}"),
     }
 }

@@ -1,12 +1,15 @@
 //! The front and the kinetic energy of a collapsing column over the same time, with its peak and its rest marked.
 //!
-//! In: columns of samples. Out: two plots that always show the same time.
+//! In: columns of samples. Out: two plots that always show the same time, and the moment that a person clicks on.
 
 use super::decimate::decimate;
-use super::plots::{Curve, Span, changes, curve_ui, height_of, size_of_plots};
+use super::plots::{
+    Curve, Span, changes, clicked_time, curve_ui, height_of, kept_lines, seek, seen, shown,
+    shown_ui, size_of_plots,
+};
 use super::theme::Palette;
 use super::{Panel, Request, is_column, number};
-use crate::measure::{Collapse, Measure};
+use crate::measure::{Collapse, Measure, Series};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Stroke};
@@ -44,12 +47,14 @@ impl Panel for CollapsePlots {
         ui: &mut egui::Ui,
         simulation: &Simulation,
         _view: &mut ViewSettings,
-        _out: &mut Vec<Request>,
+        out: &mut Vec<Request>,
     ) {
         ui.horizontal_wrapped(|ui| self.span.choice_ui(ui));
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
-        let window = self.span.window(simulation.series().time());
+        let window = self
+            .span
+            .window(simulation.series().time(), shown(simulation));
         let marks = Marks::of(simulation, palette);
         let curves = [
             front(simulation, &window, columns, palette),
@@ -57,6 +62,8 @@ impl Panel for CollapsePlots {
         ];
         for curve in curves {
             let response = curve_ui(ui, curve, &window, height, |plot| marks.ui(plot));
+            let clicked = clicked_time(&response, &window);
+            out.extend(clicked.and_then(|time| seek(simulation, time)));
             self.span.follow_pointer(&response, &window);
         }
     }
@@ -71,14 +78,18 @@ fn front(
     let series = simulation.series();
     let values = series.column(Measure::FrontRadius);
     let points = decimate(series.time(), window, columns, |k| MILLIMETRES * values[k]);
+    let kept = kept_lines(&simulation.past().kept, window, columns, |series, k| {
+        MILLIMETRES * series.column(Measure::FrontRadius)[k]
+    });
     let latest = values.last().copied().unwrap_or(f64::NAN);
     Curve {
         id: "front",
         title: "Front radius R [mm]",
         latest: number::fixed(MILLIMETRES * latest, 2),
         colour: palette.angle,
-        height: height_of(&points, SMALLEST_FRONT_SPAN),
+        height: height_of(seen(&points, &kept), SMALLEST_FRONT_SPAN),
         points,
+        kept,
         decades: false,
         unit: "mm",
     }
@@ -91,18 +102,22 @@ fn energy(
     palette: Palette,
 ) -> Curve {
     let series = simulation.series();
-    let translation = series.column(Measure::TranslationalEnergy);
-    let rotation = series.column(Measure::RotationalEnergy);
-    let value = |k: usize| MICROJOULES * (translation[k] + rotation[k]);
-    let points = decimate(series.time(), window, columns, value);
-    let latest = series.len().checked_sub(1).map_or(f64::NAN, value);
+    let value = |series: &Series, k: usize| {
+        let translation = series.column(Measure::TranslationalEnergy)[k];
+        MICROJOULES * (translation + series.column(Measure::RotationalEnergy)[k])
+    };
+    let points = decimate(series.time(), window, columns, |k| value(series, k));
+    let kept = kept_lines(&simulation.past().kept, window, columns, value);
+    let last = series.len().checked_sub(1);
+    let latest = last.map_or(f64::NAN, |last| value(series, last));
     Curve {
         id: "energy",
         title: "Kinetic energy per grain [µJ]",
         latest: number::short(latest),
         colour: palette.temperature,
-        height: height_of(&points, 0.0),
+        height: height_of(seen(&points, &kept), 0.0),
         points,
+        kept,
         decades: false,
         unit: "µJ",
     }
@@ -112,6 +127,7 @@ fn energy(
 struct Marks {
     palette: Palette,
     changes: Vec<f64>,
+    shown: Option<f64>,
     collapse: Option<Collapse>,
 }
 
@@ -120,6 +136,7 @@ impl Marks {
         Self {
             palette,
             changes: changes(simulation),
+            shown: shown(simulation),
             collapse: Collapse::of(simulation.series()),
         }
     }
@@ -132,6 +149,9 @@ impl Marks {
         };
         for time in &self.changes {
             plot.vline(line("parameter changed", *time, self.palette.change));
+        }
+        if let Some(time) = self.shown {
+            shown_ui(plot, time, self.palette);
         }
         let Some(collapse) = &self.collapse else {
             return;

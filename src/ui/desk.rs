@@ -3,7 +3,9 @@
 //! In: the simulation and the view's settings. Out: requests, and what is left free for the picture. Needs no Bevy app.
 
 use super::about_scene::AboutScene;
+use super::badge::Badge;
 use super::beside_paper::BesidePaper;
+use super::changes::Changes;
 use super::collapse_plots::CollapsePlots;
 use super::column_beside_paper::ColumnBesidePaper;
 use super::menu::{Shown, menu_ui};
@@ -37,6 +39,7 @@ pub struct Desk {
     left: Vec<Section>,
     right: Vec<Section>,
     transport: Transport,
+    badge: Badge,
     shown: Shown,
     recent: Vec<String>,
     /// Choosing a file.
@@ -59,6 +62,7 @@ fn left() -> Vec<Section> {
     vec![
         section(AboutScene, true),
         section(Parameters, true),
+        section(Changes::default(), true),
         section(Picture, false),
         section(SolverProfile, false),
     ]
@@ -89,6 +93,7 @@ impl Default for Desk {
             left: left(),
             right: right(),
             transport: Transport,
+            badge: Badge::default(),
             shown: Shown {
                 left: true,
                 right: true,
@@ -113,10 +118,7 @@ impl Desk {
         out: &mut Vec<Request>,
     ) {
         theme::show(root.ctx(), view.background);
-        out.extend(shortcuts::pressed(
-            root.ctx(),
-            simulation.map(Simulation::status),
-        ));
+        out.extend(shortcuts::pressed(root.ctx(), simulation));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
             self.sides_ui(root, simulation, view, out);
@@ -175,9 +177,16 @@ impl Desk {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let title = simulation.map_or("", |simulation| &simulation.scene().title);
+        let (recent, shown, badge) = (&self.recent, &mut self.shown, &mut self.badge);
         egui::Panel::top("menu").show(root, |ui| {
-            menu_ui(ui, title, &self.recent, &mut self.shown, view, out);
+            let past = simulation.map(Simulation::past);
+            menu_ui(ui, past, recent, shown, view, out, |ui| {
+                if let Some(simulation) = simulation {
+                    badge.ui(ui, simulation);
+                    let title = RichText::new(&simulation.scene().title).weak();
+                    ui.add(egui::Label::new(title).truncate());
+                }
+            });
         });
     }
 

@@ -3,8 +3,9 @@
 use super::shortcuts::SHORTCUTS;
 use super::{Request, Sheet};
 use crate::scene::built_in;
+use crate::simulation::{Command, Past};
 use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
-use bevy_egui::egui::{self, RichText};
+use bevy_egui::egui;
 
 /// Which of the side panels are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,25 +16,25 @@ pub struct Shown {
     pub right: bool,
 }
 
-/// Draws the menu bar, with `title` at its right end.
+/// Draws the menu bar, and from its right end leftwards what `rest` draws.
 pub fn menu_ui(
     ui: &mut egui::Ui,
-    title: &str,
+    past: Option<&Past>,
     recent: &[String],
     shown: &mut Shown,
     view: &mut ViewSettings,
     out: &mut Vec<Request>,
+    rest: impl FnOnce(&mut egui::Ui),
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_ui(ui, recent, out));
+        ui.menu_button("Edit", |ui| edit_ui(ui, past, out));
         ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
         ui.menu_button("Help", |ui| {
             item_ui(ui, "Shortcuts", Request::Show(Sheet::Shortcuts), out);
             item_ui(ui, "About Grainfall", Request::Show(Sheet::About), out);
         });
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.add(egui::Label::new(RichText::new(title).weak()).truncate());
-        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), rest);
     });
 }
 
@@ -52,9 +53,30 @@ fn file_ui(ui: &mut egui::Ui, recent: &[String], out: &mut Vec<Request>) {
         });
     });
     ui.separator();
+    item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
     item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
     ui.separator();
     item_ui(ui, "Quit", Request::Quit, out);
+}
+
+fn edit_ui(ui: &mut egui::Ui, past: Option<&Past>, out: &mut Vec<Request>) {
+    let turns = [
+        (
+            "Undo",
+            Command::Undo,
+            past.is_some_and(|past| past.undo.is_some()),
+        ),
+        (
+            "Redo",
+            Command::Redo,
+            past.is_some_and(|past| past.redo.is_some()),
+        ),
+    ];
+    for (name, command, enabled) in turns {
+        ui.add_enabled_ui(enabled, |ui| {
+            item_ui(ui, name, Request::Command(command), out)
+        });
+    }
 }
 
 fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &mut Vec<Request>) {

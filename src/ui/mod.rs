@@ -9,8 +9,9 @@
 //! | `desk` | the register of panels, where they stand, what lies over them |
 //! | `request`, `carry_out` | what panels ask for, and how it is fulfilled |
 //! | `shortcuts` | what each key does |
-//! | `menu`, `transport` | menu bar, bar under the picture |
-//! | `about_scene`, `parameters`, `picture`, `profile` | panels on the left |
+//! | `menu`, `transport`, `scrub` | menu bar, bar under the picture, the timeline in it |
+//! | `badge` | whether the run can be trusted, and why |
+//! | `about_scene`, `parameters`, `changes`, `picture`, `profile` | panels on the left |
 //! | `plots`, `velocity`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
 //! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
@@ -19,8 +20,10 @@
 
 mod about_scene;
 mod averages;
+mod badge;
 mod beside_paper;
 mod carry_out;
+mod changes;
 mod collapse_plots;
 mod column_beside_paper;
 mod decimate;
@@ -34,6 +37,7 @@ mod plots;
 mod profile;
 mod request;
 mod results;
+mod scrub;
 mod sheets;
 mod shortcuts;
 mod symbol;
@@ -43,6 +47,7 @@ mod transport;
 mod velocity;
 
 pub use about_scene::AboutScene;
+pub use badge::{Check, Level, checks};
 pub use collapse_plots::CollapsePlots;
 pub use column_beside_paper::ColumnBesidePaper;
 pub use desk::Desk;

@@ -7,7 +7,7 @@ use super::Request;
 use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
 use bevy_egui::egui::{self, Id, Key, Modal};
 use rfd::{AsyncFileDialog, FileHandle};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// A dialog that ends sooner than this without a file was never seen by a person.
@@ -20,6 +20,19 @@ pub enum Purpose {
     Scene,
     /// Where a picture of the window goes.
     Picture,
+    /// Where the list of changes goes.
+    Changes,
+}
+
+impl Purpose {
+    /// How the name of a file for it ends.
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Scene => "ron",
+            Self::Picture => "png",
+            Self::Changes => "json",
+        }
+    }
 }
 
 /// A choice of a file, if one is being made.
@@ -55,6 +68,7 @@ impl Purpose {
         match self {
             Self::Scene => "Open a scene",
             Self::Picture => "Save a picture of the window",
+            Self::Changes => "Save the list of changes",
         }
     }
 
@@ -62,20 +76,23 @@ impl Purpose {
         match self {
             Self::Scene => "Path of the scene file, or name of a built-in scene",
             Self::Picture => "Path of the PNG file",
+            Self::Changes => "Path of the JSON file",
         }
     }
 
     fn suggestion(self) -> String {
         match self {
             Self::Scene => String::new(),
-            Self::Picture => default_picture().display().to_string(),
+            Self::Picture => free_name("grainfall", self.extension()),
+            Self::Changes => free_name("changes", self.extension()),
         }
     }
 
     fn request(self, path: PathBuf) -> Request {
         match self {
             Self::Scene => Request::Open(path.display().to_string()),
-            Self::Picture => Request::SavePicture(path.with_extension("png")),
+            Self::Picture => Request::SavePicture(path.with_extension(self.extension())),
+            Self::Changes => Request::SaveChanges(path.with_extension(self.extension())),
         }
     }
 }
@@ -150,6 +167,10 @@ async fn ask_system(purpose: Purpose) -> Answered {
             let dialog = dialog.add_filter("Pictures", &["png"]);
             dialog.set_file_name("grainfall.png").save_file().await
         }
+        Purpose::Changes => {
+            let dialog = dialog.add_filter("Lists of changes", &["json"]);
+            dialog.set_file_name("changes.json").save_file().await
+        }
     };
     Answered {
         file,
@@ -180,7 +201,7 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
         ui.horizontal(|ui| {
             let verb = match typed.purpose {
                 Purpose::Scene => "Open",
-                Purpose::Picture => "Save",
+                Purpose::Picture | Purpose::Changes => "Save",
             };
             let filled = !typed.text.trim().is_empty();
             let done = ui.add_enabled(filled, egui::Button::new(verb)).clicked();
@@ -198,10 +219,10 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
 }
 
 /// `grainfall-1.png` in the working folder, or the next number that is free.
-fn default_picture() -> PathBuf {
-    let name = |number| PathBuf::from(format!("grainfall-{number}.png"));
-    (1..1000)
-        .map(name)
-        .find(|path| !path.exists())
-        .unwrap_or_else(|| name(1000))
+fn free_name(name: &str, extension: &str) -> String {
+    let numbered = |number| format!("{name}-{number}.{extension}");
+    let free = (1..1000)
+        .map(numbered)
+        .find(|name| !Path::new(name).exists());
+    free.unwrap_or_else(|| numbered(1000))
 }

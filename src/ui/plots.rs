@@ -1,13 +1,14 @@
 //! Surface angle θ(t) and granular temperature Tg(t) over the same time, with avalanches and changes marked.
 //!
-//! In: columns of samples. Out: two plots that cost the same however long the run is. Which part of the run is in view
-//! is kept here, not in the plots, so both always show the same time and fit their height to what they show.
+//! In: columns of samples, of the present run and of those kept beside it. Out: two plots that cost the same however long
+//! the run is, and the moment that a person clicks on. Which part of the run is in view is kept here, not in the plots, so
+//! both always show the same time and fit their height to what they show.
 
 use super::decimate::decimate;
-use super::theme::Palette;
+use super::theme::{Palette, dash};
 use super::{Panel, Request, is_column, number};
-use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE};
-use crate::simulation::{Command, Simulation};
+use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE, Series};
+use crate::simulation::{Command, Record, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
 use egui_plot::{
@@ -15,6 +16,7 @@ use egui_plot::{
     PlotBounds, PlotPoint, PlotUi, Points, Text, VLine,
 };
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 /// Length of the window that follows the run [s].
 const RECENT: f64 = 20.0;
@@ -22,6 +24,8 @@ const RECENT: f64 = 20.0;
 const SHORTEST: f64 = 0.2;
 /// Columns of pixels between two labels of avalanches at least.
 const BETWEEN_LABELS: f64 = 46.0;
+/// A click this near to the start of an avalanche means it, in points.
+const NEAR: f64 = 7.0;
 /// How far above its avalanche's start a label stands, as a share of the plot's height.
 const LABEL_LIFT: f64 = 0.035;
 /// Room below and above a curve, as shares of its height; labels stand above.
@@ -70,7 +74,14 @@ pub struct Curves<'a> {
     pub avalanches: &'a [Avalanche],
     /// When parameters were changed [s], ascending.
     pub changes: &'a [f64],
+    /// Runs that were left for others.
+    pub kept: &'a [Arc<Record>],
+    /// The moment shown [s], where it is not the newest.
+    pub shown: Option<f64>,
 }
+
+/// The line of a run that was left for another, with its name.
+pub(super) type KeptLine = (String, Vec<[f64; 2]>);
 
 /// One plot over time.
 pub(super) struct Curve {
@@ -84,6 +95,8 @@ pub(super) struct Curve {
     pub colour: Color32,
     /// Its line.
     pub points: Vec<[f64; 2]>,
+    /// The lines of runs kept beside it, with their names.
+    pub kept: Vec<KeptLine>,
     /// The range of the vertical axis.
     pub height: RangeInclusive<f64>,
     /// Whether its numbers are powers of ten.
@@ -97,6 +110,7 @@ struct Marks<'a> {
     palette: Palette,
     avalanches: &'a [Avalanche],
     changes: Vec<f64>,
+    shown: Option<f64>,
     /// Time between two labels at least [s].
     between_labels: f64,
 }
@@ -124,28 +138,56 @@ impl Panel for Plots {
         ui: &mut egui::Ui,
         simulation: &Simulation,
         _view: &mut ViewSettings,
-        _out: &mut Vec<Request>,
+        out: &mut Vec<Request>,
     ) {
         let series = simulation.series();
         let changes = changes(simulation);
-        self.curves_ui(
-            ui,
-            &Curves {
-                time: series.time(),
-                angle: series.column(Measure::SurfaceAngle),
-                temperature: series.column(Measure::GranularTemperature),
-                avalanches: simulation.avalanches(),
-                changes: &changes,
-            },
-        );
+        let curves = Curves {
+            time: series.time(),
+            angle: series.column(Measure::SurfaceAngle),
+            temperature: series.column(Measure::GranularTemperature),
+            avalanches: simulation.avalanches(),
+            changes: &changes,
+            kept: &simulation.past().kept,
+            shown: shown(simulation),
+        };
+        let clicked = self.curves_ui(ui, &curves);
+        out.extend(clicked.and_then(|time| seek(simulation, time)));
     }
 }
 
-/// When parameters were changed [s], ascending.
+/// When parameters were changed [s], ascending: once for each change, however many values it took.
 pub(super) fn changes(simulation: &Simulation) -> Vec<f64> {
-    let commands = simulation.commands().iter();
-    let changes = commands.filter(|stamped| matches!(stamped.command, Command::Set { .. }));
-    changes.map(|stamped| stamped.time).collect()
+    let (past, commands) = (simulation.past(), simulation.commands());
+    let times = past
+        .changes
+        .iter()
+        .filter_map(|first| Some(commands.get(*first)?.time));
+    times.collect()
+}
+
+/// The moment shown [s], where it is not the newest.
+pub(super) fn shown(simulation: &Simulation) -> Option<f64> {
+    let time_step = simulation.world()?.clock.time_step;
+    simulation
+        .looks_back()
+        .then(|| simulation.step() as f64 * time_step)
+}
+
+/// The request to show the moment at `time` [s].
+pub(super) fn seek(simulation: &Simulation, time: f64) -> Option<Request> {
+    let time_step = simulation.world()?.clock.time_step;
+    let step = (time.max(0.0) / time_step).round() as u64;
+    Some(Request::Command(Command::Seek(step)))
+}
+
+/// A mark at the moment shown.
+pub(super) fn shown_ui(plot: &mut PlotUi, time: f64, palette: Palette) {
+    plot.vline(
+        VLine::new("shown", time)
+            .stroke(Stroke::new(2.0, palette.warning))
+            .allow_hover(false),
+    );
 }
 
 /// Height of a plot and number of its columns of pixels in `ui`.
@@ -156,12 +198,12 @@ pub(super) fn size_of_plots(ui: &egui::Ui) -> (f32, usize) {
 }
 
 impl Plots {
-    /// Draws `curves` and the choice of what part of them is in view.
-    pub fn curves_ui(&mut self, ui: &mut egui::Ui, curves: &Curves) {
+    /// Draws `curves` and the choice of what part of them is in view; returns the time that was clicked on [s].
+    pub fn curves_ui(&mut self, ui: &mut egui::Ui, curves: &Curves) -> Option<f64> {
         self.choice_ui(ui);
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
-        let window = self.span.window(curves.time);
+        let window = self.span.window(curves.time, curves.shown);
         let marks = Marks::within(curves, &window, columns, palette);
         let angle = angle_curve(curves, &window, columns, palette);
         let first = curve_ui(ui, angle, &window, height, |plot| marks.angle_ui(plot));
@@ -170,9 +212,13 @@ impl Plots {
         let second = curve_ui(ui, temperature, &window, height, |plot| {
             marks.temperature_ui(plot, decades);
         });
+        let mut clicked = None;
         for response in [first, second] {
+            let near = |time| near_avalanche(time, curves.avalanches, &response, &window);
+            clicked = clicked.or(clicked_time(&response, &window).map(near));
             self.span.follow_pointer(&response, &window);
         }
+        clicked
     }
 
     fn choice_ui(&mut self, ui: &mut egui::Ui) {
@@ -198,12 +244,14 @@ impl Span {
         }
     }
 
-    /// The part of the run in view [s].
-    pub fn window(self, time: &[f64]) -> RangeInclusive<f64> {
+    /// The part of the run in view [s]: where it follows the run, the moment `shown` is in it.
+    pub fn window(self, time: &[f64], shown: Option<f64>) -> RangeInclusive<f64> {
         let start = time.first().copied().unwrap_or(0.0);
         let end = time.last().copied().unwrap_or(0.0);
+        let in_view = |shown: f64| end.min(shown + 0.5 * RECENT);
+        let recent = shown.map_or(end, in_view);
         match self {
-            Self::Recent => (end - RECENT).max(start)..=end.max(start + RECENT),
+            Self::Recent => (recent - RECENT).max(start)..=recent.max(start + RECENT),
             Self::All => start..=end.max(start + 1.0),
             Self::Chosen(from, to) => from..=to,
         }
@@ -229,6 +277,34 @@ impl Span {
     }
 }
 
+/// The time that was clicked on [s].
+pub(super) fn clicked_time(response: &egui::Response, window: &RangeInclusive<f64>) -> Option<f64> {
+    let pointer = response
+        .interact_pointer_pos()
+        .filter(|_| response.clicked())?;
+    let from_left = f64::from(pointer.x - response.rect.left());
+    Some(window.start() + from_left * per_point(response, window))
+}
+
+/// Time that a point of the width of a plot stands for [s].
+fn per_point(response: &egui::Response, window: &RangeInclusive<f64>) -> f64 {
+    (window.end() - window.start()) / f64::from(response.rect.width().max(1.0))
+}
+
+/// The start of the avalanche that is [`NEAR`] to `time` [s], else that time.
+fn near_avalanche(
+    time: f64,
+    avalanches: &[Avalanche],
+    response: &egui::Response,
+    window: &RangeInclusive<f64>,
+) -> f64 {
+    let reach = NEAR * per_point(response, window);
+    let starts = avalanches.iter().map(|avalanche| avalanche.start);
+    let near = starts.filter(|start| (start - time).abs() < reach);
+    let nearest = near.min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()));
+    nearest.unwrap_or(time)
+}
+
 fn angle_curve(
     curves: &Curves,
     window: &RangeInclusive<f64>,
@@ -237,13 +313,17 @@ fn angle_curve(
 ) -> Curve {
     let points = decimate(curves.time, window, columns, |i| curves.angle[i] * DEGREES);
     let latest = curves.angle.last().copied().unwrap_or(f64::NAN) * DEGREES;
+    let kept = kept_lines(curves.kept, window, columns, |series, i| {
+        series.column(Measure::SurfaceAngle)[i] * DEGREES
+    });
     Curve {
         id: "angle",
         title: "Surface angle θ [°]",
         latest: number::fixed(latest, 2),
         colour: palette.angle,
-        height: height_of(&points, SMALLEST_ANGLE_SPAN),
+        height: height_of(seen(&points, &kept), SMALLEST_ANGLE_SPAN),
         points,
+        kept,
         decades: false,
         unit: "°",
     }
@@ -260,23 +340,51 @@ fn temperature_curve(
     let points = decimate(curves.time, window, columns, |i| {
         on_axis(curves.temperature[i], decades)
     });
+    let kept = kept_lines(curves.kept, window, columns, |series, i| {
+        on_axis(series.column(Measure::GranularTemperature)[i], decades)
+    });
     // The threshold is always in view, and zero where it has a place.
-    let seen: Vec<[f64; 2]> = (points.iter().copied())
-        .chain([
-            [0.0, threshold],
-            [0.0, if decades { threshold } else { 0.0 }],
-        ])
-        .collect();
+    let always = [
+        [0.0, threshold],
+        [0.0, if decades { threshold } else { 0.0 }],
+    ];
+    let all = seen(&points, &kept).chain(&always);
     Curve {
         id: "temperature",
         title: "Granular temperature Tg [m²/s²]",
         latest: number::short(curves.temperature.last().copied().unwrap_or(f64::NAN)),
         colour: palette.temperature,
-        height: height_of(&seen, if decades { SMALLEST_DECADES } else { 0.0 }),
+        height: height_of(all, if decades { SMALLEST_DECADES } else { 0.0 }),
         points,
+        kept,
         decades,
         unit: "m²/s²",
     }
+}
+
+/// The lines of kept runs in view, where `value` is taken of their samples.
+pub(super) fn kept_lines(
+    kept: &[Arc<Record>],
+    window: &RangeInclusive<f64>,
+    columns: usize,
+    value: impl Fn(&Series, usize) -> f64,
+) -> Vec<KeptLine> {
+    let line = |record: &Arc<Record>| {
+        let series = &record.series;
+        let points = decimate(series.time(), window, columns, |i| value(series, i));
+        (format!("Run {}", record.number), points)
+    };
+    kept.iter().map(line).collect()
+}
+
+/// All points of a curve and of those kept beside it.
+pub(super) fn seen<'a>(
+    points: &'a [[f64; 2]],
+    kept: &'a [KeptLine],
+) -> impl Iterator<Item = &'a [f64; 2]> {
+    points
+        .iter()
+        .chain(kept.iter().flat_map(|(_, points)| points))
 }
 
 /// Where a temperature [m²/s²] stands on its axis.
@@ -297,12 +405,13 @@ fn on_axis(temperature: f64, decades: bool) -> f64 {
 const LEAST_SPAN: f64 = 1e-30;
 
 /// The range that shows all `points` with a little room, at least `smallest` high.
-pub(super) fn height_of(points: &[[f64; 2]], smallest: f64) -> RangeInclusive<f64> {
-    let values = || points.iter().map(|point| point[1]);
-    let (low, high) = (
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(f64::NEG_INFINITY, f64::max),
-    );
+pub(super) fn height_of<'a>(
+    points: impl Iterator<Item = &'a [f64; 2]>,
+    smallest: f64,
+) -> RangeInclusive<f64> {
+    let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| {
+        (low.min(point[1]), high.max(point[1]))
+    });
     if low > high {
         return 0.0..=smallest.max(1.0);
     }
@@ -319,7 +428,8 @@ pub(super) fn curve_ui<'a>(
     height: f32,
     marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
 ) -> egui::Response {
-    let grid = Palette::of(ui.visuals()).grid;
+    let palette = Palette::of(ui.visuals());
+    let kept = curve.kept;
     egui::Sides::new().shrink_left().truncate().show(
         ui,
         |ui| ui.label(RichText::new(curve.title).strong()),
@@ -337,7 +447,7 @@ pub(super) fn curve_ui<'a>(
         .height(height)
         .width(ui.available_width() - ROOM_AT_THE_RIGHT)
         .show_crosshair(false)
-        .grid_color(grid)
+        .grid_color(palette.grid)
         .x_grid_spacer(|input| round_marks(input, SPARSE_X, 0.0))
         .y_grid_spacer(move |input| {
             let finest = if decades { 1.0 } else { 0.0 };
@@ -365,10 +475,31 @@ pub(super) fn curve_ui<'a>(
         .label_formatter(move |hover| Some(hover_label(hover, decades, unit)));
     let shown = plot.show(ui, move |plot| {
         plot.set_plot_bounds(bounds);
+        for (index, (name, points)) in kept.into_iter().enumerate() {
+            kept_ui(plot, index, &name, points, palette.kept);
+        }
         plot.line(line);
         marks(plot);
     });
     shown.response
+}
+
+/// A kept run as a dashed line with its name at the end.
+fn kept_ui(plot: &mut PlotUi, index: usize, name: &str, points: Vec<[f64; 2]>, colour: Color32) {
+    let Some([time, value]) = points.last().copied() else {
+        return;
+    };
+    plot.line(
+        Line::new(name, points)
+            .color(colour)
+            .width(1.2)
+            .style(LineStyle::Dashed {
+                length: dash(index),
+            }),
+    );
+    let label = RichText::new(name).small().color(colour);
+    let end = time.min(plot.plot_bounds().max()[0]);
+    plot.text(Text::new(name, PlotPoint::new(end, value), label).anchor(Align2::RIGHT_BOTTOM));
 }
 
 /// Grid lines at round numbers at least `finest` apart, `sparse` times as far apart as the plot would have them at the
@@ -452,12 +583,13 @@ impl<'a> Marks<'a> {
             palette,
             avalanches: &curves.avalanches[first.min(end)..end],
             changes,
+            shown: curves.shown,
             between_labels: BETWEEN_LABELS * apart,
         }
     }
 
     fn angle_ui(&self, plot: &mut PlotUi) {
-        self.changes_ui(plot);
+        self.moments_ui(plot);
         let points = |ends: fn(&Avalanche) -> [f64; 2]| -> Vec<[f64; 2]> {
             self.avalanches.iter().map(ends).collect()
         };
@@ -492,7 +624,7 @@ impl<'a> Marks<'a> {
     }
 
     fn temperature_ui(&self, plot: &mut PlotUi, decades: bool) {
-        self.changes_ui(plot);
+        self.moments_ui(plot);
         plot.hline(
             HLine::new("flowing above", on_axis(NON_RIGID_TEMPERATURE, decades))
                 .stroke(Stroke::new(1.2, self.palette.threshold))
@@ -500,7 +632,11 @@ impl<'a> Marks<'a> {
         );
     }
 
-    fn changes_ui(&self, plot: &mut PlotUi) {
+    /// When something was changed, and the moment shown.
+    fn moments_ui(&self, plot: &mut PlotUi) {
+        if let Some(time) = self.shown {
+            shown_ui(plot, time, self.palette);
+        }
         for time in &self.changes {
             plot.vline(
                 VLine::new("parameter changed", *time)
@@ -517,8 +653,9 @@ mod tests {
 
     #[test]
     fn the_recent_window_follows_the_run_and_starts_with_full_length() {
-        assert_eq!(Span::Recent.window(&[0.0, 3.0]), 0.0..=20.0);
-        assert_eq!(Span::Recent.window(&[0.0, 50.0]), 30.0..=50.0);
+        assert_eq!(Span::Recent.window(&[0.0, 3.0], None), 0.0..=20.0);
+        assert_eq!(Span::Recent.window(&[0.0, 50.0], None), 30.0..=50.0);
+        assert_eq!(Span::Recent.window(&[0.0, 50.0], Some(25.0)), 15.0..=35.0);
     }
 
     #[test]
@@ -544,6 +681,8 @@ mod tests {
             temperature: &[],
             avalanches: &[],
             changes: &changes,
+            kept: &[],
+            shown: None,
         };
         let palette = Palette::of(&egui::Visuals::dark());
         let marks = Marks::within(&curves, &(0.0..=20.0), 400, palette);

@@ -1,15 +1,12 @@
-//! Where the solver's time goes, why the time step is what it is, and what has been asked of the run.
+//! Where the solver's time goes and why the time step is what it is.
 
 use super::table::{Row, table_ui};
 use super::theme::Palette;
 use super::{Panel, Request, number};
-use crate::simulation::{Command, ParameterInfo, Simulation, StampedCommand};
+use crate::simulation::Simulation;
 use crate::solver::{Profile, Stage, TimeStepAdvice};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, Sense, WidgetInfo, WidgetType, vec2};
-
-/// Commands shown, the latest ones.
-const COMMANDS_SHOWN: usize = 100;
 
 /// The panel of the solver's profile.
 #[derive(Default)]
@@ -29,7 +26,6 @@ impl Panel for SolverProfile {
     ) {
         profile_ui(ui, simulation.profile());
         advice_ui(ui, simulation.advice());
-        commands_ui(ui, simulation.commands(), simulation.parameters());
         let warnings = simulation.warnings();
         if !warnings.is_empty() {
             ui.label(RichText::new("Warnings").strong());
@@ -119,44 +115,5 @@ pub fn advice_ui(ui: &mut egui::Ui, advice: &TimeStepAdvice) {
     );
     if let Some(binding) = advice.limits.first() {
         ui.add(egui::Label::new(RichText::new(&binding.reason).weak().small()).wrap());
-    }
-}
-
-fn commands_ui(ui: &mut egui::Ui, commands: &[StampedCommand], parameters: &[ParameterInfo]) {
-    ui.add_space(4.0);
-    ui.label(RichText::new(format!("Commands ({})", commands.len())).strong())
-        .on_hover_text("A run is its scene, its seed and these commands.");
-    let shown = commands.iter().rev().take(COMMANDS_SHOWN);
-    table_ui(
-        ui,
-        shown.map(|stamped| Row {
-            name: describe(&stamped.command, parameters),
-            value: format!("{:.3} s", stamped.time),
-            hint: format!("before step {}", stamped.step + 1),
-        }),
-    );
-}
-
-/// A command in words: `friction glass – drum 0.25`.
-fn describe(command: &Command, parameters: &[ParameterInfo]) -> String {
-    match command {
-        Command::Play => "play".into(),
-        Command::Pause => "pause".into(),
-        Command::Step(1) => "one step".into(),
-        Command::Step(steps) => format!("{steps} steps"),
-        Command::Speed(speed) if speed.is_infinite() => "speed: as fast as it goes".into(),
-        Command::Speed(speed) => format!("speed {speed}×"),
-        Command::Reset => "reset".into(),
-        Command::Set { parameter, value } => {
-            match parameters.iter().find(|info| info.parameter == *parameter) {
-                Some(info) => format!(
-                    "{} {} {}",
-                    info.label,
-                    number::short(value * info.display.factor),
-                    info.display.name
-                ),
-                None => format!("{parameter} {value}"),
-            }
-        }
     }
 }

@@ -16,6 +16,10 @@ pub enum Request {
     ChooseScene,
     /// Open this scene: a file's path or a built-in scene's name.
     Open(String),
+    /// Let the person choose where the list of changes goes.
+    ChooseChanges,
+    /// Write the changes of the present run to this file.
+    SaveChanges(PathBuf),
     /// Let the person choose where the picture of the window goes.
     ChoosePicture,
     /// Write a picture of the window to this PNG file.

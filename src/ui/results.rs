@@ -98,8 +98,7 @@ impl Panel for Results {
         _view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        let series = simulation.series();
-        let Some(sample) = series.last() else {
+        let Some(sample) = simulation.sample() else {
             ui.weak("Numbers appear with the first sample.");
             return;
         };

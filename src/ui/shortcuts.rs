@@ -1,8 +1,8 @@
 //! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from it.
 
-use super::transport::{allows, play_or_pause};
+use super::transport::{allows, play_or_pause, step_back};
 use super::{Request, Sheet};
-use crate::simulation::{Command, Status};
+use crate::simulation::{Command, Simulation};
 use crate::view::{CameraRequest, Side};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
 
@@ -17,6 +17,8 @@ pub struct Shortcut {
 
 enum Action {
     PlayOrPause,
+    StepBack,
+    ToTheNewest,
     Ask(Request),
 }
 
@@ -26,6 +28,10 @@ const fn key(key: Key) -> KeyboardShortcut {
 
 const fn ctrl(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
 
 const fn look_from(side: Side) -> Action {
@@ -45,8 +51,29 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: Action::Ask(Request::Command(Command::Step(1))),
     },
     Shortcut {
+        keys: &[key(Key::Comma), key(Key::ArrowLeft)],
+        name: "One time step back",
+        action: Action::StepBack,
+    },
+    Shortcut {
+        keys: &[key(Key::End)],
+        name: "The newest state",
+        action: Action::ToTheNewest,
+    },
+    // Before the shorter one, which would take its keys.
+    Shortcut {
+        keys: &[ctrl_shift(Key::Z), ctrl(Key::Y)],
+        name: "Redo",
+        action: Action::Ask(Request::Command(Command::Redo)),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::Z)],
+        name: "Undo",
+        action: Action::Ask(Request::Command(Command::Undo)),
+    },
+    Shortcut {
         keys: &[key(Key::R)],
-        name: "Back to time zero",
+        name: "Start afresh",
         action: Action::Ask(Request::Command(Command::Reset)),
     },
     Shortcut {
@@ -124,6 +151,8 @@ impl Shortcut {
     pub fn keys(&self, ctx: &egui::Context) -> String {
         let name = |key: &KeyboardShortcut| match key.logical_key {
             Key::Period => ".".to_owned(),
+            Key::Comma => ",".to_owned(),
+            Key::ArrowLeft => "←".to_owned(),
             Key::ArrowRight => "→".to_owned(),
             _ => ctx.format_shortcut(key),
         };
@@ -144,24 +173,27 @@ impl Shortcut {
         })
     }
 
-    /// What it asks for while the run is in `status`.
-    fn request(&self, status: Option<&Status>) -> Option<Request> {
-        match &self.action {
-            Action::PlayOrPause => play_or_pause(status?).map(Request::Command),
-            Action::Ask(Request::Command(command)) if !allows(status?, command) => None,
-            Action::Ask(request) => Some(request.clone()),
-        }
+    /// What it asks for, if `simulation` allows it now.
+    fn request(&self, simulation: Option<&Simulation>) -> Option<Request> {
+        let command = match &self.action {
+            Action::Ask(Request::Command(command)) => command.clone(),
+            Action::Ask(request) => return Some(request.clone()),
+            Action::PlayOrPause => play_or_pause(simulation?.status())?,
+            Action::StepBack => step_back(simulation?)?,
+            Action::ToTheNewest => Command::Seek(simulation?.past().end.step),
+        };
+        allows(simulation?.status(), &command).then_some(Request::Command(command))
     }
 }
 
 /// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet lies over the window.
-pub fn pressed(ctx: &egui::Context, status: Option<&Status>) -> Vec<Request> {
+pub fn pressed(ctx: &egui::Context, simulation: Option<&Simulation>) -> Vec<Request> {
     let covered = ctx.memory(|memory| memory.top_modal_layer().is_some());
     if covered || ctx.egui_wants_keyboard_input() {
         return Vec::new();
     }
     let pressed = SHORTCUTS.iter().filter(|shortcut| shortcut.is_pressed(ctx));
     pressed
-        .filter_map(|shortcut| shortcut.request(status))
+        .filter_map(|shortcut| shortcut.request(simulation))
         .collect()
 }

@@ -27,6 +27,8 @@ pub struct Palette {
     pub minimum: Color32,
     /// When somebody changed a parameter.
     pub change: Color32,
+    /// Runs that were left for another.
+    pub kept: Color32,
     /// Lines behind a plot.
     pub grid: Color32,
     /// Bars, one per stage of a step.
@@ -55,6 +57,7 @@ const DARK: Palette = Palette {
     maximum: Color32::from_rgb(0xFF, 0xD5, 0x7A),
     minimum: Color32::from_rgb(0x5F, 0xD3, 0xA8),
     change: Color32::from_rgb(0x8B, 0x7B, 0xC8),
+    kept: Color32::from_rgb(0xB4, 0xBD, 0xC9),
     grid: Color32::from_rgb(0x3B, 0x45, 0x54),
     stages: [
         Color32::from_rgb(0x6C, 0xB8, 0xF6),
@@ -75,6 +78,7 @@ const LIGHT: Palette = Palette {
     maximum: Color32::from_rgb(0xA8, 0x6B, 0x00),
     minimum: Color32::from_rgb(0x0B, 0x7D, 0x59),
     change: Color32::from_rgb(0x6A, 0x56, 0xB5),
+    kept: Color32::from_rgb(0x6B, 0x74, 0x80),
     grid: Color32::from_rgb(0xC9, 0xD0, 0xD9),
     stages: [
         Color32::from_rgb(0x2F, 0x86, 0xCB),
@@ -87,6 +91,12 @@ const LIGHT: Palette = Palette {
     error_fill: Color32::from_rgb(0xFB, 0xE4, 0xE2),
     veil: Color32::from_rgba_premultiplied(0x90, 0x98, 0xA0, 0xA8),
 };
+
+/// Length of the dashes of the kept run of `index` on plots, in points, by which kept runs are told apart.
+pub fn dash(index: usize) -> f32 {
+    const LENGTHS: [f32; 4] = [9.0, 4.0, 16.0, 2.0];
+    LENGTHS[index % LENGTHS.len()]
+}
 
 /// Surfaces and text of one of the two looks.
 struct Surfaces {

@@ -1,6 +1,7 @@
-//! The bar under the picture: play, pause, single step, reset, speed, simulated time; how far a bed is prepared; what
-//! went wrong and what to do.
+//! The bar under the picture: the timeline; play, pause, single step, reset, speed, simulated time; how far a bed is
+//! prepared or a moment is away; what went wrong and what to do.
 
+use super::scrub::timeline_ui;
 use super::theme::Palette;
 use super::{Request, number};
 use crate::simulation::{Command, Simulation, Status};
@@ -20,8 +21,9 @@ impl Transport {
     /// Draws the bar.
     pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let status = simulation.status();
+        timeline_ui(ui, simulation, out);
         ui.horizontal_wrapped(|ui| {
-            buttons_ui(ui, status, out);
+            buttons_ui(ui, simulation, out);
             speed_ui(ui, simulation.speed(), out);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 clock_ui(ui, simulation);
@@ -35,8 +37,11 @@ impl Transport {
 /// Whether `command` means anything while the run is in `status`.
 pub fn allows(status: &Status, command: &Command) -> bool {
     match status {
-        Status::Running | Status::Paused => true,
-        Status::Faulted(_) => *command == Command::Reset,
+        Status::Running | Status::Paused | Status::Seeking { .. } => true,
+        Status::Faulted(_) => matches!(
+            command,
+            Command::Reset | Command::Seek(_) | Command::Undo | Command::Redo | Command::Return(_)
+        ),
         Status::Preparing { .. } | Status::Failed(_) => false,
     }
 }
@@ -44,13 +49,20 @@ pub fn allows(status: &Status, command: &Command) -> bool {
 /// What the one button for both and the space key ask for: pause while it goes on, else play where that is possible.
 pub fn play_or_pause(status: &Status) -> Option<Command> {
     let command = match status {
-        Status::Running => Command::Pause,
+        Status::Running | Status::Seeking { .. } => Command::Pause,
         _ => Command::Play,
     };
     allows(status, &command).then_some(command)
 }
 
-fn buttons_ui(ui: &mut egui::Ui, status: &Status, out: &mut Vec<Request>) {
+/// What a step back shows: the step before the one shown, where there is one.
+pub fn step_back(simulation: &Simulation) -> Option<Command> {
+    let before = Command::Seek(simulation.step().checked_sub(1)?);
+    allows(simulation.status(), &before).then_some(before)
+}
+
+fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let status = simulation.status();
     let mut button =
         |ui: &mut egui::Ui, face: &str, name: &str, hint: &str, command: Option<Command>| {
             let face = RichText::new(face).size(19.0);
@@ -67,9 +79,18 @@ fn buttons_ui(ui: &mut egui::Ui, status: &Status, out: &mut Vec<Request>) {
     let allowed = |command| Some(command).filter(|command| allows(status, command));
     let (face, name, hint) = match status {
         Status::Running => ("⏸", "Pause", "Pause (Space)"),
+        Status::Seeking { .. } => ("⏸", "Pause", "Stop on the way (Space)"),
+        _ if simulation.looks_back() => ("▶", "Play", "See what followed (Space)"),
         _ => ("▶", "Play", "Play (Space)"),
     };
     button(ui, face, name, hint, play_or_pause(status));
+    button(
+        ui,
+        "⏴",
+        "Step back",
+        "The time step before (, or ←)",
+        step_back(simulation),
+    );
     button(
         ui,
         "⏭",
@@ -81,7 +102,7 @@ fn buttons_ui(ui: &mut egui::Ui, status: &Status, out: &mut Vec<Request>) {
         ui,
         "⏮",
         "Reset",
-        "Back to time zero with the settled bed and the present parameters (R)",
+        "Start afresh with the settled bed and the present parameters; the run is kept (R)",
         allowed(Command::Reset),
     );
 }
@@ -155,21 +176,18 @@ fn warnings_ui(ui: &mut egui::Ui, warnings: &[String]) {
 pub fn status_ui(ui: &mut egui::Ui, status: &Status, time_step: f64, out: &mut Vec<Request>) {
     match status {
         Status::Running | Status::Paused => {}
+        Status::Seeking { progress } => {
+            progress_ui(ui, "Going to the moment asked for", "On the way", *progress);
+        }
         Status::Preparing { stage, progress } => {
-            let text = format!("{} · {:.0} %", number::capitalised(stage), 100.0 * progress);
-            let bar = egui::ProgressBar::new(*progress)
-                .text(text)
-                .desired_height(24.0);
-            let response = ui.add(bar);
-            response.widget_info(|| {
-                let mut info =
-                    WidgetInfo::labeled(WidgetType::ProgressIndicator, true, "Preparing the bed");
-                info.value = Some(f64::from(*progress));
-                info
-            });
+            let text = number::capitalised(stage);
+            progress_ui(ui, &text, "Preparing the bed", *progress);
         }
         Status::Faulted(fault) => message_ui(ui, "The run stopped", &fault.to_string(), |ui| {
             ui.label(remedy(time_step));
+            if ui.button("Undo the last change").clicked() {
+                out.push(Request::Command(Command::Undo));
+            }
             if ui.button("Back to time zero").clicked() {
                 out.push(Request::Command(Command::Reset));
             }
@@ -180,10 +198,23 @@ pub fn status_ui(ui: &mut egui::Ui, status: &Status, time_step: f64, out: &mut V
     }
 }
 
+fn progress_ui(ui: &mut egui::Ui, text: &str, name: &str, progress: f32) {
+    let text = format!("{text} · {:.0} %", 100.0 * progress);
+    let bar = egui::ProgressBar::new(progress)
+        .text(text)
+        .desired_height(24.0);
+    let response = ui.add(bar);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(WidgetType::ProgressIndicator, true, name);
+        info.value = Some(f64::from(progress));
+        info
+    });
+}
+
 /// What a person can do about a fault of a run with steps of `time_step` [s].
 fn remedy(time_step: f64) -> String {
     format!(
-        "What to do: go back to time zero and undo the last change of a parameter; if it stops again, give the scene half \
+        "What to do: undo the last change of a parameter, or go back to time zero; if it stops again, give the scene half \
          the time step, `time_step: Given({:.1e})`.",
         0.5 * time_step
     )

@@ -34,7 +34,7 @@ pub struct Velocity {
 
 /// A map with what it was made of.
 struct Drawn {
-    step: u64,
+    generation: u64,
     relative: bool,
     map: VelocityMap,
 }
@@ -66,7 +66,7 @@ impl Panel for Velocity {
             ui.checkbox(&mut self.relative, "Relative to the drum")
                 .on_hover_text("Takes out the drum's own turning: what rests in the drum is dark");
         }
-        self.renew(world);
+        self.renew(world, simulation.generation());
         let Some(drawn) = &self.latest else {
             ui.weak("There are no grains.");
             return;
@@ -86,10 +86,10 @@ impl Panel for Velocity {
 }
 
 impl Velocity {
-    /// Makes the map of `world`, unless it is the one that is kept.
-    fn renew(&mut self, world: &World) {
-        let step = world.clock.step;
-        let suits = |drawn: &Drawn| drawn.step == step && drawn.relative == self.relative;
+    /// Makes the map of `world`, the state of this `generation`, unless it is the one that is kept.
+    fn renew(&mut self, world: &World, generation: u64) {
+        let suits =
+            |drawn: &Drawn| drawn.generation == generation && drawn.relative == self.relative;
         if self.latest.as_ref().is_some_and(suits) {
             return;
         }
@@ -99,7 +99,7 @@ impl Velocity {
             0.0
         };
         self.latest = velocity_map(world, turning).map(|map| Drawn {
-            step,
+            generation,
             relative: self.relative,
             map,
         });

@@ -21,7 +21,7 @@ impl fmt::Debug for StateHash {
 }
 
 impl World {
-    /// Hash of all that moves: clock, grains, contacts with their histories, the container's angle.
+    /// Hash of all that moves: clock, grains, contacts with their histories, polyhedra's orientations, the container's angle.
     pub fn hash(&self) -> StateHash {
         let mut hasher = blake3::Hasher::new();
         let mut number = |x: f64| {
@@ -69,6 +69,20 @@ impl World {
                 grains.liquid_loss[i].into_iter().for_each(&mut number);
             }
             number(self.ledger.ruptures as f64);
+        }
+        if let Some(polyhedra) = &self.polyhedra {
+            for (turn, momentum) in polyhedra
+                .orientation
+                .iter()
+                .zip(&polyhedra.angular_momentum)
+            {
+                turn.to_array().into_iter().for_each(&mut number);
+                vectors(&mut number, [*momentum]);
+            }
+            for contact in &polyhedra.features {
+                number(contact.overlap);
+                vectors(&mut number, [contact.spring]);
+            }
         }
         StateHash(hasher.finalize())
     }

@@ -12,6 +12,7 @@ mod hash;
 mod ledger;
 mod liquid;
 mod material;
+mod memory;
 mod mixture;
 mod packing;
 mod polyhedra;

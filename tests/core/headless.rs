@@ -199,6 +199,84 @@ fn summary_plays_its_run_again() {
 }
 
 #[test]
+fn verify_computes_a_run_again_and_confirms_its_state() {
+    let place = Place::new();
+    let summary = place.run_small_drum("out", &["--set", "drum-speed=3 rpm", "--set", "count=60"]);
+    let output = place.run(&["verify", "out/summary.json", "--threads", "2"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(said.starts_with("the same"), "{said}");
+    assert!(
+        said.contains(summary["state_hash"].as_str().unwrap()),
+        "{said}"
+    );
+}
+
+#[test]
+fn verify_refuses_what_was_edited_or_states_nothing() {
+    let place = Place::new();
+    place.run_small_drum("out", &[]);
+    let whole = fs::read_to_string(place.path("out/summary.json")).unwrap();
+    let hash = summary(&place.path("out"))["state_hash"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    let zeros = "0".repeat(hash.len());
+    let cases = [
+        (
+            whole.replace("\"friction\": 0.4", "\"friction\": 0.3"),
+            "fingerprint",
+        ),
+        (whole.replace(&hash, &zeros), "fingerprint"),
+        (
+            whole.replace(&format!("\"{hash}\""), "null"),
+            "states no state",
+        ),
+        (whole[..whole.len() / 2].to_owned(), "expected"),
+        ("[]".to_owned(), "expected"),
+    ];
+    for (content, expected) in cases {
+        assert_ne!(content, whole, "{expected}");
+        place.write("edited.json", &content);
+        let output = place.run(&["verify", "edited.json"]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(expected), "{message}");
+        assert_eq!(message.matches("error: ").count(), 1, "{message}");
+    }
+    let missing = place.run(&["verify", "nothing.json"]);
+    assert_eq!(missing.status.code(), Some(2));
+}
+
+#[test]
+fn claim_of_a_state_that_the_run_does_not_come_to_is_not_confirmed() {
+    use grainfall::headless::{Claim, Verdict};
+    use grainfall::simulation::BedStore;
+    let scene = grainfall::scene::Scene::open("bouncing-grain").unwrap();
+    let run = || crate::run::prepared(&scene, 1, BedStore::none()).0;
+    let (mut honest, mut other) = (run(), run());
+    let drop = crate::run::set(grainfall::simulation::Parameter::Gravity, 3.0);
+    other.apply(drop).unwrap();
+    for run in [&mut honest, &mut other] {
+        run.advance_to(400).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("claim.json");
+    let verdict = |commands, world| {
+        Claim::of("grain", &scene, commands, world)
+            .write(&path)
+            .unwrap();
+        let claim = Claim::read(&path).unwrap();
+        claim.verify(1, BedStore::none(), &|| false).unwrap()
+    };
+    assert_eq!(verdict(honest.commands(), honest.world()), Verdict::Same);
+    assert_eq!(verdict(other.commands(), other.world()), Verdict::Same);
+    let wrong = verdict(&[], other.world());
+    assert_eq!(wrong, Verdict::Other(honest.world().hash()));
+    assert_eq!(wrong.exit_code(), 4);
+}
+
+#[test]
 fn later_run_clears_the_files_of_an_earlier_one() {
     let place = Place::new();
     place.run_small_drum("out", &[]);

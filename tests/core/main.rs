@@ -6,5 +6,6 @@ mod run;
 mod scene;
 mod solver;
 mod sweep;
+mod timeline;
 mod vtk;
 mod world;

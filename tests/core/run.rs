@@ -17,7 +17,7 @@ fn scene(name: &str) -> Scene {
     Scene::open(name).unwrap()
 }
 
-fn prepared(scene: &Scene, threads: usize, beds: BedStore) -> (Run, Vec<String>) {
+pub fn prepared(scene: &Scene, threads: usize, beds: BedStore) -> (Run, Vec<String>) {
     let time_step = advise(scene).time_step;
     let mut preparation = Preparation::new(Arc::new(scene.clone()), time_step, threads, beds);
     loop {
@@ -28,7 +28,7 @@ fn prepared(scene: &Scene, threads: usize, beds: BedStore) -> (Run, Vec<String>)
 }
 
 /// Beds shared by the tests that are not about settling.
-fn shared_beds() -> BedStore {
+pub fn shared_beds() -> BedStore {
     BedStore::at(concat!(env!("CARGO_TARGET_TMPDIR"), "/beds"))
 }
 
@@ -36,15 +36,15 @@ fn run_of(scene: &Scene) -> Run {
     prepared(scene, 1, shared_beds()).0
 }
 
-fn set(parameter: Parameter, value: f64) -> Command {
+pub fn set(parameter: Parameter, value: f64) -> Command {
     Command::Set { parameter, value }
 }
 
-fn friction(value: f64) -> Command {
+pub fn friction(value: f64) -> Command {
     set(Parameter::Friction("glass".into(), "glass".into()), value)
 }
 
-fn bits(series: &Series) -> Vec<(u64, Vec<u64>)> {
+pub fn bits(series: &Series) -> Vec<(u64, Vec<u64>)> {
     (0..series.len())
         .map(|index| series.get(index).unwrap())
         .map(|sample| (sample.step, sample.values.map(f64::to_bits).to_vec()))
@@ -96,7 +96,8 @@ fn restored_run_continues_bit_for_bit() {
         bits(run.series()),
         run.commands().to_vec(),
     );
-    run.restore(&snapshot);
+    let (commands_then, series_then) = (run.commands().to_vec(), run.series().clone());
+    run.restore(&snapshot, &commands_then, &series_then);
     assert_eq!(run.commands().len(), 1, "later commands are forgotten");
     run.advance_to(1500).unwrap();
     run.apply(set(Parameter::DrumSpeed, 0.5)).unwrap();
@@ -229,7 +230,7 @@ fn scripts_that_cannot_be_played_are_refused() {
     );
     assert_eq!(
         refused(&[entry(Some(0), None, Command::Reset)]),
-        ScriptError::Reset(1)
+        ScriptError::NoChange(1, "Reset")
     );
 }
 
@@ -404,6 +405,7 @@ fn opened(scene: Scene, driver: DriverKind) -> Simulation {
         speed: f64::INFINITY,
         beds: shared_beds(),
         script: Vec::new(),
+        memory: 0,
     };
     Simulation::open(scene, options)
 }

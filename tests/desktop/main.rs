@@ -2,5 +2,6 @@
 
 mod panels;
 mod polyhedra;
+mod timeline;
 mod view;
 mod window;

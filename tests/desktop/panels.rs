@@ -57,11 +57,11 @@ fn wet() -> Simulation {
 }
 
 /// The three grains, prepared.
-fn prepared() -> Simulation {
+pub fn prepared() -> Simulation {
     ready(three_grains())
 }
 
-fn ready(mut simulation: Simulation) -> Simulation {
+pub fn ready(mut simulation: Simulation) -> Simulation {
     for _ in 0..1000 {
         simulation.tick(Duration::from_millis(16));
         if !matches!(simulation.status(), Status::Preparing { .. }) {
@@ -72,15 +72,15 @@ fn ready(mut simulation: Simulation) -> Simulation {
 }
 
 /// A window with all panels, without a picture.
-struct Window {
+pub struct Window {
     desk: Desk,
-    simulation: Simulation,
+    pub simulation: Simulation,
     view: ViewSettings,
-    asked: Vec<Request>,
+    pub asked: Vec<Request>,
 }
 
 impl Window {
-    fn of(simulation: Simulation) -> Harness<'static, Self> {
+    pub fn of(simulation: Simulation) -> Harness<'static, Self> {
         let window = Self {
             desk: Desk::default(),
             simulation,
@@ -107,7 +107,7 @@ impl Window {
     }
 }
 
-fn commands(asked: &[Request]) -> Vec<Command> {
+pub fn commands(asked: &[Request]) -> Vec<Command> {
     let command = |request: &Request| match request {
         Request::Command(command) => Some(command.clone()),
         _ => None,
@@ -115,11 +115,11 @@ fn commands(asked: &[Request]) -> Vec<Command> {
     asked.iter().filter_map(command).collect()
 }
 
-fn friction() -> Parameter {
+pub fn friction() -> Parameter {
     Parameter::Friction("glass".into(), "glass".into())
 }
 
-fn set(parameter: Parameter, value: f64) -> Command {
+pub fn set(parameter: Parameter, value: f64) -> Command {
     Command::Set { parameter, value }
 }
 
@@ -596,6 +596,8 @@ impl Sawtooth {
             temperature: &self.temperature,
             avalanches: &self.avalanches,
             changes: &[3.0, 3.01, 190.0],
+            kept: &[],
+            shown: None,
         }
     }
 }
@@ -607,7 +609,7 @@ fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
     let mut plots = Plots::default();
     let mut harness = Harness::builder()
         .with_size([width, 500.0])
-        .build_ui(move |ui| plots.curves_ui(ui, &data.curves()));
+        .build_ui(move |ui| assert_eq!(plots.curves_ui(ui, &data.curves()), None));
     harness.run_steps(2);
     harness.get_by_label("All").click();
     harness.run_steps(3);
@@ -628,8 +630,10 @@ fn plots_without_samples_draw_nothing_and_do_not_fail() {
         temperature: &[],
         avalanches: &[],
         changes: &[],
+        kept: &[],
+        shown: None,
     };
-    let mut harness = Harness::new_ui(move |ui| plots.curves_ui(ui, &empty));
+    let mut harness = Harness::new_ui(move |ui| assert_eq!(plots.curves_ui(ui, &empty), None));
     harness.run_steps(3);
     harness.get_by_label("Surface angle θ [°]");
 }

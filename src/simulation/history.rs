@@ -1,0 +1,187 @@
+//! What a run was: the changes made to it, in order, and what was measured.
+//!
+//! The trajectory of a scene is fixed by the changes that were made, each before its step. So a [`History`] tells one run
+//! from another, and a [`Place`] says where a state lies among all runs there have been: the same place, the same bits.
+
+use super::{Run, Script, StampedCommand};
+use crate::measure::{FlowHistory, Series};
+use std::sync::Arc;
+
+/// The changes of a run, in order.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    commands: Vec<StampedCommand>,
+    /// For each command a hash of it and of all before it.
+    keys: Vec<blake3::Hash>,
+    /// Index of the first command of each change: a drag or a button may take several.
+    changes: Vec<usize>,
+}
+
+/// Where a state lies: after how many commands of which history, at which step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    commands: usize,
+    key: blake3::Hash,
+    step: u64,
+}
+
+impl Place {
+    /// Steps taken there.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+}
+
+impl History {
+    /// The commands carried out, in order.
+    pub fn commands(&self) -> &[StampedCommand] {
+        &self.commands
+    }
+
+    /// Index of the first command of each change.
+    pub fn changes(&self) -> &[usize] {
+        &self.changes
+    }
+
+    /// Adds `command`, which is part of the change before it where it `joins`.
+    pub fn push(&mut self, command: StampedCommand, joins: bool) {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.key(self.commands.len()).as_bytes());
+        let entry = (command.step, &command.command);
+        hasher.update(&postcard::to_stdvec(&entry).unwrap_or_default());
+        if !joins || self.changes.is_empty() {
+            self.changes.push(self.commands.len());
+        }
+        self.keys.push(hasher.finalize());
+        self.commands.push(command);
+    }
+
+    /// Forgets all but the first `commands`.
+    pub fn truncate(&mut self, commands: usize) {
+        self.commands.truncate(commands);
+        self.keys.truncate(commands);
+        self.changes.retain(|first| *first < commands);
+    }
+
+    /// The place after the first `commands`, at `step`.
+    pub fn place(&self, commands: usize, step: u64) -> Place {
+        Place {
+            commands,
+            key: self.key(commands),
+            step,
+        }
+    }
+
+    /// Whether a run with this history comes through `place`, if it goes on long enough.
+    pub fn passes(&self, place: &Place) -> bool {
+        let next = self.commands.get(place.commands);
+        place.commands <= self.commands.len()
+            && self.key(place.commands) == place.key
+            && next.is_none_or(|next| next.step >= place.step)
+    }
+
+    fn key(&self, commands: usize) -> blake3::Hash {
+        let last = commands.checked_sub(1).and_then(|last| self.keys.get(last));
+        last.copied()
+            .unwrap_or(blake3::Hash::from_bytes([0; blake3::OUT_LEN]))
+    }
+}
+
+/// All that is known of a run from time zero to its end so far.
+#[derive(Clone, Debug, Default)]
+pub struct Record {
+    /// Which of all runs it is, counted from 1.
+    pub number: u32,
+    /// What was changed.
+    pub history: History,
+    /// The samples taken.
+    pub series: Series,
+    /// The flowing layer.
+    pub flow: Arc<FlowHistory>,
+    /// Its last step so far.
+    pub end: Moment,
+    /// Commands that were given beforehand; those after the end are still to come.
+    pub plan: Script,
+}
+
+/// A step and its time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// Steps taken.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+}
+
+impl Record {
+    /// The record of `run`, which is at its end, as the one of this `number`, all of its commands one change.
+    pub fn of(run: &Run, number: u32) -> Self {
+        let mut record = Self {
+            number,
+            ..Self::default()
+        };
+        record.follow(run, true);
+        record
+    }
+
+    /// Takes in what is new of `run`, which is at the record's end or beyond; new commands are part of the last change
+    /// where they `join`.
+    pub fn follow(&mut self, run: &Run, join: bool) {
+        for command in &run.commands()[self.history.commands.len()..] {
+            self.history.push(command.clone(), join);
+        }
+        let samples = run.series();
+        for sample in (self.series.len()..samples.len()).filter_map(|index| samples.get(index)) {
+            self.series.push(sample);
+        }
+        self.flow.clone_from(run.flow());
+        self.end = Moment::of(run);
+    }
+
+    /// The beginning of another run, of this `number`: this record up to `end`, where its first `commands` were carried
+    /// out.
+    #[must_use]
+    pub fn until(&self, commands: usize, end: Moment, number: u32) -> Self {
+        let mut record = self.clone();
+        record.number = number;
+        record.history.truncate(commands);
+        let samples = (record.series.steps()).partition_point(|step| *step <= end.step);
+        record.series.truncate(samples);
+        record.end = end;
+        record
+    }
+
+    /// The place of its end.
+    pub fn end_place(&self) -> Place {
+        self.history
+            .place(self.history.commands.len(), self.end.step)
+    }
+
+    /// Whether all of it is also part of `other`.
+    pub fn is_part_of(&self, other: &Self) -> bool {
+        self.end.step <= other.end.step && other.history.passes(&self.end_place())
+    }
+
+    /// Whether the run went on after its last change.
+    pub fn went_on(&self) -> bool {
+        let last = self.history.commands.last().map_or(0, |last| last.step);
+        self.end.step > last
+    }
+
+    /// What is still to be carried out after the first `commands`, if the run goes on beyond the record's end.
+    pub fn rest(&self, commands: usize) -> Script {
+        let recorded = self.history.commands[commands.min(self.history.commands.len())..].iter();
+        let recorded = recorded.map(|stamped| (stamped.step, stamped.command.clone()));
+        Script::in_order(recorded.chain(self.plan.after(self.end.step)))
+    }
+}
+
+impl Moment {
+    /// Where `run` is now.
+    pub fn of(run: &Run) -> Self {
+        Self {
+            step: run.world().clock.step,
+            time: run.world().time(),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! States along all runs there have been, kept within a budget of memory, so that any moment can be come back to without
+//! going there from time zero.
+//!
+//! A keyframe is taken wherever some work was done since the last. Where the budget is spent, every second one goes and the
+//! next are taken half as often: keyframes stay evenly spread over the work, however long a run becomes.
+
+use super::Snapshot;
+use super::history::{History, Place};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Work between two keyframes at first: repeating it is felt as at once.
+const FIRST_SPACING: Duration = Duration::from_millis(50);
+/// Most of the work's time that taking keyframes may cost, as one part in so many.
+const SHARE_OF_TIME: u32 = 50;
+/// Most keyframes kept, however small they are.
+const MOST: usize = 4096;
+
+/// The keyframes kept.
+pub struct Keyframes {
+    list: Vec<Keyframe>,
+    memory: usize,
+    budget: usize,
+    spacing: Duration,
+    /// Work done since the last keyframe was taken or passed.
+    work: Duration,
+}
+
+struct Keyframe {
+    place: Place,
+    snapshot: Arc<Snapshot>,
+    memory: usize,
+}
+
+impl Keyframes {
+    /// None yet, within `budget` [bytes].
+    pub fn new(budget: usize) -> Self {
+        Self {
+            list: Vec::new(),
+            memory: 0,
+            budget,
+            spacing: FIRST_SPACING,
+            work: Duration::ZERO,
+        }
+    }
+
+    /// Memory that they take [bytes].
+    pub fn memory(&self) -> usize {
+        self.memory
+    }
+
+    /// Notes that so much `work` was done; says whether a keyframe is due.
+    pub fn after(&mut self, work: Duration) -> bool {
+        self.work += work;
+        self.work >= self.spacing
+    }
+
+    /// Notes that work starts anew from a keyframe.
+    pub fn restart(&mut self) {
+        self.work = Duration::ZERO;
+    }
+
+    /// Keeps the `snapshot` that `take` takes at `place`, unless there is one; what it costs spaces the next.
+    pub fn keep(&mut self, place: Place, take: impl FnOnce() -> Snapshot) {
+        self.restart();
+        if self.budget == 0 || self.list.iter().any(|keyframe| keyframe.place == place) {
+            return;
+        }
+        let started = std::time::Instant::now();
+        let snapshot = Arc::new(take());
+        self.spacing = self.spacing.max(SHARE_OF_TIME * started.elapsed());
+        let memory = snapshot.memory();
+        if memory > self.budget {
+            return;
+        }
+        while self.memory + memory > self.budget || self.list.len() >= MOST {
+            self.thin();
+        }
+        self.memory += memory;
+        self.list.push(Keyframe {
+            place,
+            snapshot,
+            memory,
+        });
+    }
+
+    /// The last state at or before `step` of the run with `history`.
+    pub fn nearest(&self, history: &History, step: u64) -> Option<&Arc<Snapshot>> {
+        let on_the_way =
+            |keyframe: &&Keyframe| keyframe.place.step() <= step && history.passes(&keyframe.place);
+        let kept = self.list.iter().filter(on_the_way);
+        kept.max_by_key(|keyframe| (keyframe.place.step(), keyframe.snapshot.commands()))
+            .map(|keyframe| &keyframe.snapshot)
+    }
+
+    fn thin(&mut self) {
+        let mut index = 0;
+        self.list.retain(|_| {
+            index += 1;
+            index % 2 == 0
+        });
+        self.memory = self.list.iter().map(|keyframe| keyframe.memory).sum();
+        self.spacing *= 2;
+    }
+}

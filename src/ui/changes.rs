@@ -1,0 +1,205 @@
+//! What was changed and when, and the runs that were left for others.
+//!
+//! In: the simulation. Out: requests to show a moment, to take up or to forget a run, to save the list.
+
+use super::theme::{Palette, dash};
+use super::{Panel, Request, number};
+use crate::simulation::{Command, Parameter, Record, Simulation};
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText, ScrollArea};
+use std::collections::BTreeMap;
+
+/// Height of the list of changes before it scrolls, in points.
+const LIST_HEIGHT: f32 = 170.0;
+
+/// The panel.
+#[derive(Default)]
+pub struct Changes {
+    rows: Vec<Row>,
+    /// The revision of the commands that the rows were made of.
+    revision: u64,
+}
+
+/// One change in words.
+struct Row {
+    step: u64,
+    time: f64,
+    text: String,
+}
+
+impl Panel for Changes {
+    fn title(&self) -> &'static str {
+        "Changes and runs"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        if self.revision != simulation.revision() {
+            self.revision = simulation.revision();
+            self.rows = rows(simulation);
+        }
+        if self.rows.is_empty() {
+            ui.weak("What you change is listed here, and can be taken back with Ctrl+Z.");
+        } else {
+            self.list_ui(ui, simulation, out);
+            let save = ui.button("Save the list…").on_hover_text(
+                "A file that repeats this run without a window: --no-render --commands FILE",
+            );
+            if save.clicked() {
+                out.push(Request::ChooseChanges);
+            }
+        }
+        kept_ui(ui, simulation, out);
+    }
+}
+
+impl Changes {
+    fn list_ui(&self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+        let shown = simulation.step();
+        ScrollArea::vertical()
+            .id_salt("changes")
+            .max_height(LIST_HEIGHT)
+            .stick_to_bottom(true)
+            .show(ui, |ui| {
+                for row in &self.rows {
+                    let text = format!("{} s  {}", number::fixed(row.time, 2), row.text);
+                    let coloured = if row.step <= shown {
+                        RichText::new(&text)
+                    } else {
+                        RichText::new(&text).weak().italics()
+                    };
+                    let line = egui::Button::new(coloured).frame(false).truncate();
+                    let hint = if row.step <= shown {
+                        "Show this moment"
+                    } else {
+                        "Comes after the moment shown. Show this moment"
+                    };
+                    if ui
+                        .add(line)
+                        .on_hover_text(format!("{text}\n{hint}"))
+                        .clicked()
+                    {
+                        out.push(Request::Command(Command::Seek(row.step)));
+                    }
+                }
+            });
+    }
+}
+
+/// The changes of the present run in words.
+fn rows(simulation: &Simulation) -> Vec<Row> {
+    let commands = simulation.commands();
+    let changes = &simulation.past().changes;
+    let ends = changes.iter().skip(1).copied().chain([commands.len()]);
+    let mut values: BTreeMap<&Parameter, f64> = BTreeMap::new();
+    let mut rows = Vec::new();
+    for (first, end) in changes.iter().copied().zip(ends) {
+        let Some(change) = commands.get(first..end) else {
+            break;
+        };
+        let mut set: BTreeMap<&Parameter, (Option<f64>, f64)> = BTreeMap::new();
+        for stamped in change {
+            if let Command::Set { parameter, value } = &stamped.command {
+                let before = values.insert(parameter, *value);
+                set.entry(parameter).or_insert((before, *value)).1 = *value;
+            }
+        }
+        let texts = set
+            .into_iter()
+            .map(|(parameter, (from, to))| in_words(parameter, from, to, simulation));
+        if let Some(stamped) = change.first() {
+            rows.push(Row {
+                step: stamped.step,
+                time: stamped.time,
+                text: texts.collect::<Vec<_>>().join(", "),
+            });
+        }
+    }
+    rows
+}
+
+/// `friction glass – glass 0.4 → 0.2`; from the scene's value where it had not been changed before.
+fn in_words(parameter: &Parameter, from: Option<f64>, to: f64, simulation: &Simulation) -> String {
+    let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
+    let from = from.or(info.map(|info| info.default));
+    let display = parameter.display();
+    let shown = |value: f64| number::short(value * display.factor);
+    let from = from.map_or(String::new(), shown);
+    let unit = display.name;
+    let space = if unit.is_empty() { "" } else { " " };
+    format!(
+        "{} {from} → {}{space}{unit}",
+        name(parameter, simulation),
+        shown(to)
+    )
+}
+
+/// What people call `parameter`.
+pub fn name(parameter: &Parameter, simulation: &Simulation) -> String {
+    let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
+    info.map_or_else(|| parameter.to_string(), |info| info.label.clone())
+}
+
+/// The runs that were left for others.
+fn kept_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let past = simulation.past();
+    if past.kept.is_empty() {
+        return;
+    }
+    ui.add_space(4.0);
+    ui.label(RichText::new(format!("Beside the present run, run {}", past.number)).strong());
+    let palette = Palette::of(ui.visuals());
+    for (index, record) in past.kept.iter().enumerate() {
+        ui.horizontal(|ui| {
+            sample_ui(ui, dash(index), palette.kept);
+            let name = format!("Run {}", record.number);
+            ui.label(&name).on_hover_text(describe(record, simulation));
+            ui.weak(format!("to {} s", number::fixed(record.end.time, 2)));
+            let buttons = [
+                ("Show", "Take this run up again", Command::Return(index)),
+                ("Forget", "Keep this run no longer", Command::Forget(index)),
+            ];
+            for (verb, hint, command) in buttons {
+                let response = ui.small_button(verb).on_hover_text(hint);
+                let label = format!("{verb} {}", name.to_lowercase());
+                response.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &label)
+                });
+                if response.clicked() {
+                    out.push(Request::Command(command));
+                }
+            }
+        });
+    }
+}
+
+/// The last change of a kept run, by which one knows it again.
+fn describe(record: &Record, simulation: &Simulation) -> String {
+    let last = record.history.commands().last();
+    let Some((stamped, Command::Set { parameter, value })) =
+        last.map(|stamped| (stamped, &stamped.command))
+    else {
+        return "Nothing was changed in it.".into();
+    };
+    let display = parameter.display();
+    format!(
+        "Its last change: {} {} {} at {} s",
+        name(parameter, simulation),
+        number::short(value * display.factor),
+        display.name,
+        number::fixed(stamped.time, 2)
+    )
+}
+
+/// A piece of the line that stands for a kept run on the plots.
+fn sample_ui(ui: &mut egui::Ui, dash: f32, colour: egui::Color32) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 14.0), egui::Sense::hover());
+    let ends = [rect.left_center(), rect.right_center()];
+    let line = egui::Shape::dashed_line(&ends, egui::Stroke::new(1.6, colour), dash, 0.6 * dash);
+    ui.painter().extend(line);
+}

@@ -1,0 +1,250 @@
+//! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and without a GPU.
+
+use crate::panels::{Window, commands, friction, prepared, ready, set};
+use bevy_egui::egui::accesskit::Role;
+use bevy_egui::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use grainfall::measure::{Avalanche, Measure, Sample};
+use grainfall::scene::TimeStep;
+use grainfall::simulation::{BedStore, Command, DriverKind, Options, Record, Simulation, Status};
+use grainfall::ui::{Curves, Level, Plots, Request, checks};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Carries `command` out, and what it takes.
+fn carried_out(simulation: &mut Simulation, command: Command) {
+    simulation.send(command);
+    for _ in 0..10_000 {
+        simulation.tick(Duration::from_millis(16));
+        if simulation.has_answered() && *simulation.status() == Status::Paused {
+            return;
+        }
+    }
+    panic!("still {:?}", simulation.status());
+}
+
+/// Three grains that fell 2000 steps, with the friction changed halfway.
+fn changed() -> Simulation {
+    let mut simulation = prepared();
+    for command in [
+        Command::Step(1000),
+        set(friction(), 0.25),
+        Command::Step(1000),
+    ] {
+        carried_out(&mut simulation, command);
+    }
+    assert_eq!(simulation.past().end.step, 2000);
+    simulation
+}
+
+/// What was asked for last.
+fn asked(harness: &mut Harness<'_, Window>) -> Vec<Command> {
+    harness.run_steps(2);
+    commands(&std::mem::take(&mut harness.state_mut().asked))
+}
+
+#[test]
+fn the_timeline_asks_for_the_moment_it_is_dragged_to() {
+    let mut harness = Window::of(changed());
+    let line = harness
+        .get_by_role_and_label(Role::Slider, "Moment shown")
+        .rect();
+    let at = |share: f32| egui::pos2(egui::lerp(line.x_range(), share), line.center().y);
+    harness.drag_at(at(0.5));
+    let moments = asked(&mut harness);
+    let Some(Command::Seek(step)) = moments.last().cloned() else {
+        panic!("{moments:?}");
+    };
+    // Half of 2000 steps, as exactly as a pixel of the line allows.
+    assert!(step.abs_diff(1000) < 20, "{step}");
+    carried_out(&mut harness.state_mut().simulation, Command::Seek(step));
+    assert!(
+        asked(&mut harness).is_empty(),
+        "a resting pointer asks for nothing"
+    );
+}
+
+#[test]
+fn an_earlier_moment_is_said_to_be_one_and_the_newest_is_one_click_away() {
+    let mut simulation = changed();
+    carried_out(&mut simulation, Command::Seek(500));
+    let mut harness = Window::of(simulation);
+    harness.get_by_label("To the newest").click();
+    assert_eq!(asked(&mut harness), [Command::Seek(2000)]);
+    harness.key_press(Key::End);
+    assert_eq!(asked(&mut harness), [Command::Seek(2000)]);
+    harness.get_by_label("Step back").click();
+    assert_eq!(asked(&mut harness), [Command::Seek(499)]);
+    harness.key_press(Key::ArrowLeft);
+    assert_eq!(asked(&mut harness), [Command::Seek(499)]);
+    carried_out(&mut harness.state_mut().simulation, Command::Seek(2000));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("To the newest").is_none());
+}
+
+#[test]
+fn undo_and_redo_are_there_when_they_mean_something() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Undo").click();
+    assert!(asked(&mut harness).is_empty(), "nothing was changed");
+
+    harness.state_mut().simulation = changed();
+    harness.run_steps(2);
+    harness.get_by_label("Undo").click();
+    assert_eq!(asked(&mut harness), [Command::Undo]);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    assert_eq!(asked(&mut harness), [Command::Undo]);
+    let simulation = &mut harness.state_mut().simulation;
+    carried_out(simulation, Command::Undo);
+    assert_eq!(simulation.value(&friction()), 0.40);
+    assert_eq!(simulation.past().end.step, 1000);
+    harness.run_steps(2);
+    harness.get_by_label("Redo").click();
+    assert_eq!(asked(&mut harness), [Command::Redo]);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(asked(&mut harness), [Command::Redo]);
+}
+
+#[test]
+fn changes_are_listed_with_time_and_values_and_lead_to_their_moments() {
+    let mut harness = Window::of(changed());
+    harness
+        .get_by_label_contains("friction glass – glass 0.4000 → 0.2500")
+        .click();
+    assert_eq!(asked(&mut harness), [Command::Seek(1000)]);
+    harness.get_by_label("Save the list…").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::ChooseChanges]);
+}
+
+#[test]
+fn runs_that_were_left_can_be_taken_up_and_forgotten() {
+    let mut simulation = changed();
+    for command in [Command::Seek(500), set(friction(), 0.9), Command::Step(10)] {
+        carried_out(&mut simulation, command);
+    }
+    assert_eq!(simulation.past().kept.len(), 1);
+    let mut harness = Window::of(simulation);
+    harness.get_by_label("Show run 1").click();
+    assert_eq!(asked(&mut harness), [Command::Return(0)]);
+    harness.get_by_label("Forget run 1").click();
+    assert_eq!(asked(&mut harness), [Command::Forget(0)]);
+}
+
+#[test]
+fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
+    let time: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 0.02).collect();
+    let angle = vec![0.4; time.len()];
+    let avalanche = Avalanche {
+        start: 10.0,
+        end: 10.5,
+        theta_m: 0.45,
+        theta_r: 0.40,
+    };
+    let mut left = Record {
+        number: 1,
+        ..Record::default()
+    };
+    for sample in 0..100 {
+        left.series.push(Sample {
+            step: sample,
+            time: 0.1 * sample as f64,
+            values: [0.3; Measure::COUNT],
+        });
+    }
+    let kept = [Arc::new(left)];
+    let (time, angle, kept) = (&time, &angle, &kept);
+    let mut plots = Plots::default();
+    let mut harness = Harness::builder().with_size([600.0, 500.0]).build_ui_state(
+        move |ui, clicked: &mut Vec<f64>| {
+            let curves = Curves {
+                time,
+                angle,
+                temperature: angle,
+                avalanches: std::slice::from_ref(&avalanche),
+                changes: &[],
+                kept,
+                shown: Some(4.0),
+            };
+            clicked.extend(plots.curves_ui(ui, &curves));
+        },
+        Vec::new(),
+    );
+    harness.run_steps(3);
+    let title = harness.get_by_label("Surface angle θ [°]").rect();
+    // Between the labels of the axis on the left and the right edge lie 20 s.
+    let right = 600.0 - 8.0 - 14.0;
+    let click = |harness: &mut Harness<'_, Vec<f64>>, x: f32| {
+        let place = egui::pos2(x, title.bottom() + 50.0);
+        harness.hover_at(place);
+        harness.run_steps(1);
+        harness.drag_at(place);
+        harness.run_steps(1);
+        harness.drop_at(place);
+        harness.run_steps(2);
+        harness.state_mut().pop().expect("a moment was clicked on")
+    };
+    let (early, late) = (
+        click(&mut harness, 0.35 * right),
+        click(&mut harness, 0.9 * right),
+    );
+    let per_point = (late - early) / f64::from(0.55 * right);
+    let at = |time: f64| (0.9 * right) - ((late - time) / per_point) as f32;
+    assert_eq!(click(&mut harness, at(10.0) + 3.0), 10.0);
+    let off = click(&mut harness, at(10.0) + 12.0);
+    assert!((off - 10.0 - 12.0 * per_point).abs() < 1e-3, "{off}");
+}
+
+#[test]
+fn the_badge_says_by_word_and_mark_that_a_run_is_sound_and_shows_its_numbers() {
+    let mut harness = Window::of(changed());
+    harness.get_by_label_contains("Trust: Sound").click();
+    harness.run_steps(3);
+    for label in [
+        "Time step",
+        "Largest overlap",
+        "Energy residual",
+        "Grains lost",
+    ] {
+        harness.get_by_label(label);
+    }
+    let hash = harness
+        .state()
+        .simulation
+        .world()
+        .map(|world| world.hash().to_string());
+    harness.get_by_label(&hash.expect("there is a state"));
+}
+
+#[test]
+fn the_badge_names_a_time_step_beyond_its_limit_and_a_remedy() {
+    let mut scene = prepared().scene().clone();
+    let limit = prepared().advice().limits[0].time_step;
+    for (factor, level) in [
+        (0.5, Level::Good),
+        (1.5, Level::Doubtful),
+        (2.5, Level::Bad),
+    ] {
+        scene.time_step = TimeStep::Given(factor * limit);
+        let options = Options {
+            driver: DriverKind::Inline,
+            threads: 1,
+            autoplay: false,
+            beds: BedStore::none(),
+            ..Options::window()
+        };
+        let simulation = ready(Simulation::open(scene.clone(), options));
+        let step = checks(&simulation)
+            .into_iter()
+            .find(|check| check.name == "time step");
+        assert_eq!(step.map(|check| check.level), Some(level), "{factor}");
+        let harness = Window::of(simulation);
+        let word = match level {
+            Level::Good => "Trust: Sound",
+            Level::Doubtful => "Trust: Doubtful. Time step",
+            Level::Bad => "Trust: Not to be trusted. Time step",
+        };
+        harness.get_by_label_contains(word);
+    }
+}
