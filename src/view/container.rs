@@ -62,9 +62,9 @@ pub fn outline(world: &World) -> Vec<Vec3> {
     }
 }
 
-/// The column as it stands and the floor that it will spread over.
+/// The column as it stands and the floor that it will spread over, with some room for grains that roll on alone.
 fn column_outline(radius: f64, height: f64) -> Vec<Vec3> {
-    let front = expected_front(radius, height) as f32;
+    let front = 1.2 * expected_front(radius, height) as f32;
     let circle = |radius: f32, y: f32| {
         (0..64).map(move |i| {
             let (sin, cos) = (TAU * i as f32 / 64.0).sin_cos();
