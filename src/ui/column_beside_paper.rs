@@ -78,7 +78,7 @@ fn comparisons(column: &Column, collapse: &Collapse) -> [Comparison; 3] {
     [
         comparison(
             "run-out",
-            "Run-out ℛ, over α_eff",
+            "Run-out (R∞ − Ri)/Ri, over α_eff",
             "α_eff^1.35, α_eff^0.5 above 3.5",
             run_out_law,
             Some(column.run_out(collapse.front)),

@@ -54,7 +54,7 @@ const COLLAPSE: [(&str, &str); 12] = [
     ),
     ("particle friction μ_p", "Particle friction μ_p"),
     ("solid fraction φ_i", "Solid fraction φ_i"),
-    ("run-out ℛ", "Run-out ℛ"),
+    ("run-out ℛ", "Run-out"),
     ("H_∞/R_i", "Height H_∞/R_i"),
     ("V_cone/V_init", "Cone volume V_cone/V_init"),
     ("peak energy", "Peak energy per grain"),
