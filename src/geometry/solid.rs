@@ -163,12 +163,14 @@ impl Solid {
     }
 
     /// The solid moved by `shift` [m].
+    #[must_use]
     pub fn moved(mut self, shift: DVec3) -> Self {
         self.vertices.iter_mut().for_each(|x| *x += shift);
         self
     }
 
     /// The solid turned about the origin.
+    #[must_use]
     pub fn turned(mut self, turn: DQuat) -> Self {
         self.vertices.iter_mut().for_each(|x| *x = turn * *x);
         self
@@ -182,6 +184,7 @@ impl Solid {
     }
 
     /// The part of it that lies in `other` too.
+    #[must_use]
     pub fn common_part(&self, other: &Self) -> Self {
         let mut part = self.clone();
         for face in 0..other.faces.len() {
@@ -283,6 +286,7 @@ impl Solid {
     }
 
     /// The solid with corners that nearly coincide made one; faces that lose their area so vanish.
+    #[must_use]
     pub fn merged(mut self) -> Self {
         let same = (SAME_CORNER * self.size).powi(2);
         let mut kept: Vec<u16> = Vec::new();
@@ -317,10 +321,9 @@ impl Solid {
         for &v in self.faces.iter().flatten() {
             renamed[usize::from(v)] = 0;
         }
-        let mut next = 0;
-        for name in renamed.iter_mut().filter(|name| **name == 0) {
+        let used = renamed.iter_mut().filter(|name| **name == 0);
+        for (name, next) in used.zip(0..) {
             *name = next;
-            next += 1;
         }
         let mut old = 0;
         self.vertices.retain(|_| {

@@ -253,7 +253,7 @@ impl Scene {
             cells.cell_count(&self.container),
             cells.grain_count(&self.container),
         );
-        if grains >= 1 && grains <= MOST_POLYHEDRA && all <= CELLS_PER_GRAIN * MOST_POLYHEDRA {
+        if (1..=MOST_POLYHEDRA).contains(&grains) && all <= CELLS_PER_GRAIN * MOST_POLYHEDRA {
             return Ok(());
         }
         Err(Problem::new(

@@ -91,7 +91,6 @@ impl SceneShape {
     /// The solid before it is rounded, its centroid at the origin; none of a sphere, nor of points in one plane.
     pub fn solid(&self) -> Option<Solid> {
         let solid = match self {
-            Self::Sphere => return None,
             Self::Box { size, .. } => Solid::cuboid(-0.5 * *size, 0.5 * *size),
             Self::Tetrahedron { edge, .. } => Solid::hull(&tetrahedron(*edge))?,
             Self::Prism {
@@ -100,9 +99,8 @@ impl SceneShape {
                 height,
                 ..
             } if *sides <= MOST_SIDES => Solid::hull(&prism(*sides, *edge, *height))?,
-            Self::Prism { .. } => return None,
             Self::Hull { points, .. } if points.len() <= MOST_POINTS => Solid::hull(points)?,
-            Self::Hull { .. } => return None,
+            Self::Sphere | Self::Prism { .. } | Self::Hull { .. } => return None,
         };
         let centroid = solid.moments().centroid;
         Some(solid.moved(-centroid))
