@@ -74,7 +74,7 @@ fn edit_ui(ui: &mut egui::Ui, past: Option<&Past>, out: &mut Vec<Request>) {
     ];
     for (name, command, enabled) in turns {
         ui.add_enabled_ui(enabled, |ui| {
-            item_ui(ui, name, Request::Command(command), out)
+            item_ui(ui, name, Request::Command(command), out);
         });
     }
 }

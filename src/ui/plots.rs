@@ -661,7 +661,7 @@ mod tests {
     #[test]
     fn a_curve_of_zeros_has_a_few_marks() {
         // Grains that have not moved yet: no energy at all.
-        let height = height_of(&[[0.0, 0.0], [1.0, 0.0]], 0.0);
+        let height = height_of([[0.0, 0.0], [1.0, 0.0]].iter(), 0.0);
         let bounds = (*height.start(), *height.end());
         let input = GridInput {
             bounds,
