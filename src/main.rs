@@ -6,7 +6,7 @@
 use clap::{Args, Parser, Subcommand};
 use grainfall::files::write_whole;
 use grainfall::headless::{self, Claim, HeadlessError, Job, Verdict, apply_setting, read_commands};
-use grainfall::scene::{Scene, built_in};
+use grainfall::scene::{Scene, StoredCells, built_in};
 use grainfall::simulation::{BedStore, Options, ScriptedCommand, make_bed};
 use grainfall::sweep::{self, Sweep, Variation};
 use std::error::Error;
@@ -128,6 +128,17 @@ enum Task {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
         threads: Option<u16>,
     },
+    /// Cut a scene's Voronoi cells to grains and write them to a file, for `packing` in scenes
+    Pack {
+        /// A scene file, or the name of a built-in scene
+        scene: String,
+        /// Change a value, as in a single run: height=10cm, solid-fraction=0.55
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// The file
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
     /// Settle a scene's bed and write it to a file
     #[command(hide = true)]
     Bed {
@@ -157,6 +168,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     match arguments.task {
         Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
         Some(Task::Verify { file, threads }) => return verify(&file, threads),
+        Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
         Some(task @ Task::Sweep { .. }) => return run_sweep(task),
         None => {}
     }
@@ -343,7 +355,24 @@ fn write_bed(name: &str, path: &Path) -> Result<u8, HeadlessError> {
     let threads = Options::headless().threads;
     let bed = make_bed(&scene, threads)
         .map_err(|fault| HeadlessError::Input(format!("the bed cannot settle: {fault}")))?;
-    write_whole(path, |file| file.write_all(&bed)).map_err(|source| HeadlessError::Write {
+    write_file(path, &bed)
+}
+
+fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, HeadlessError> {
+    let mut scene = Scene::open(name)?;
+    for setting in settings {
+        if apply_setting(&mut scene, setting)?.is_some() {
+            return Err(HeadlessError::Input(format!(
+                "--set {setting}: changes nothing about the grains' places and shapes"
+            )));
+        }
+    }
+    let grains = headless::pack(&scene)?;
+    write_file(path, &StoredCells::encode(&grains))
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> Result<u8, HeadlessError> {
+    write_whole(path, |file| file.write_all(bytes)).map_err(|source| HeadlessError::Write {
         path: path.to_owned(),
         source,
     })?;

@@ -1,7 +1,10 @@
-//! Convex solids with plane faces: what angular grains are cut from.
+//! Convex solids with plane faces, and the rounded polyhedra that are made of them.
 //!
-//! In: points, boxes, half-spaces. Out: corners and faces, integrals, cut and eroded solids. Nothing here knows of grains.
+//! In: points, boxes, half-spaces. Out: corners and faces, integrals, cut, eroded and rounded solids. Nothing here knows of a
+//! world.
 
+mod polyhedron;
 mod solid;
 
+pub use polyhedron::{Polyhedron, Rounded, sphere_volume};
 pub use solid::{Flaw, HalfSpace, Moments, Solid};

@@ -322,9 +322,7 @@ impl Solid {
             renamed[usize::from(v)] = 0;
         }
         let used = renamed.iter_mut().filter(|name| **name == 0);
-        for (name, next) in used.zip(0..) {
-            *name = next;
-        }
+        used.zip(0..).for_each(|(name, next)| *name = next);
         let mut old = 0;
         self.vertices.retain(|_| {
             old += 1;

@@ -9,7 +9,7 @@ use super::mixture::size_classes;
 use super::{
     ContactLaw, PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain,
     SceneGrains, SceneLiquid, SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube,
-    SmallestGap, TimeStep,
+    SmallestGap, StoredCells, TimeStep,
 };
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -216,6 +216,9 @@ impl Scene {
 
     fn check_cells(&self, cells: &SceneCells) -> Checked {
         self.check_species()?;
+        if let Some(packing) = &cells.packing {
+            return self.check_packing(packing);
+        }
         CELL.check(cells.cell, || "grains.cell".to_owned())?;
         ROUNDING.check(cells.rounding, || "grains.rounding".to_owned())?;
         if !(1e-3..=0.2).contains(&(cells.rounding / cells.cell)) {
@@ -231,6 +234,30 @@ impl Scene {
         fraction("grains.solid_fraction", cells.solid_fraction)?;
         fraction("grains.bulk_fraction", cells.bulk_fraction)?;
         self.check_bed(cells)
+    }
+
+    /// The grains of a file stand in the container.
+    fn check_packing(&self, packing: &StoredCells) -> Checked {
+        let grains = packing.grains();
+        let outside = grains.iter().filter(|grain| {
+            let room = grain.corners().map(|x| clearance(&self.container, x));
+            let least = (1.0 - DEEPEST_ROUNDING) * grain.shape.rounding;
+            room.fold(f64::INFINITY, f64::min) < least
+                || is_beside_column(&self.container, grain.position)
+        });
+        let outside = outside.count();
+        if outside == 0 && grains.len() <= MOST_POLYHEDRA {
+            return Ok(());
+        }
+        Err(Problem::new(
+            "grains.packing",
+            format!(
+                "holds {} grains, {outside} of them not inside of the container",
+                grains.len()
+            ),
+            format!("at most {MOST_POLYHEDRA} grains that stand clear of every wall, within the column where there is one"),
+        )
+        .advise("Take the container that the grains were packed in"))
     }
 
     fn check_bed(&self, cells: &SceneCells) -> Checked {
@@ -808,6 +835,12 @@ fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
             .map(|plane| (x - plane.point).dot(plane.normal))
             .fold(f64::INFINITY, f64::min),
     }
+}
+
+/// Whether `x` is no part of the column that the container is for.
+fn is_beside_column(container: &SceneContainer, x: DVec3) -> bool {
+    matches!(container, SceneContainer::Column { radius, height, .. }
+        if x.x * x.x + x.z * x.z > radius * radius || x.y > *height)
 }
 
 /// No two listed grains overlap by more than a contact does.

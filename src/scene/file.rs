@@ -11,13 +11,14 @@ use super::shape::rotation;
 use super::{
     BridgeLaw, ContactLaw, FeatureRule, LiquidCase, PAPER_VOLUME, PairOverride, Scene,
     SceneCellSpecies, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneLiquid,
-    SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, TimeStep,
+    SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, StoredCells, TimeStep,
 };
 use glam::{DQuat, DVec3};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::f64::consts::PI;
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// A whole file.
 #[derive(Deserialize)]
@@ -190,16 +191,21 @@ enum GrainsFile {
         packing: Option<f64>,
         species: Vec<SpeciesFile>,
     },
-    Voronoi {
-        cell: Option<f64>,
-        cell_mm: Option<f64>,
-        rounding: Option<f64>,
-        rounding_mm: Option<f64>,
-        solid_fraction: Option<f64>,
-        bulk_fraction: Option<f64>,
-        species: Vec<CellSpeciesFile>,
-    },
+    Voronoi(CellsFile),
     List(Vec<GrainFile>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "Voronoi", deny_unknown_fields)]
+struct CellsFile {
+    cell: Option<f64>,
+    cell_mm: Option<f64>,
+    rounding: Option<f64>,
+    rounding_mm: Option<f64>,
+    solid_fraction: Option<f64>,
+    bulk_fraction: Option<f64>,
+    packing: Option<PathBuf>,
+    species: Vec<CellSpeciesFile>,
 }
 
 #[derive(Deserialize)]
@@ -293,10 +299,10 @@ enum BridgeLawFile {
 }
 
 impl SceneFile {
-    /// The scene it states. Numbers are as the file gives them, sensible or not.
-    pub fn into_scene(self) -> Result<Scene, Problem> {
+    /// The scene it states; `folder` is the one it stands in. Numbers are as the file gives them, sensible or not.
+    pub fn into_scene(self, folder: &Path) -> Result<Scene, Problem> {
         let container = self.container.into_container()?;
-        let grains = self.grains.into_grains(&container)?;
+        let grains = self.grains.into_grains(&container, folder)?;
         let mut scene = Scene {
             title: self.title,
             look_for: self.look_for,
@@ -404,7 +410,11 @@ impl PlaneFile {
 }
 
 impl GrainsFile {
-    fn into_grains(self, container: &SceneContainer) -> Result<SceneGrains, Problem> {
+    fn into_grains(
+        self,
+        container: &SceneContainer,
+        folder: &Path,
+    ) -> Result<SceneGrains, Problem> {
         match self {
             Self::Fill {
                 count,
@@ -436,33 +446,7 @@ impl GrainsFile {
                     species,
                 })
             }
-            Self::Voronoi {
-                cell,
-                cell_mm,
-                rounding,
-                rounding_mm,
-                solid_fraction,
-                bulk_fraction,
-                species,
-            } => {
-                let alone = species.len() == 1;
-                let whole = match container {
-                    SceneContainer::Drum { .. } => 0.35,
-                    _ => 1.0,
-                };
-                Ok(SceneGrains::Voronoi(SceneCells {
-                    cell: either("grains.cell", cell, "_mm", cell_mm.map(metres))?.unwrap_or(0.002),
-                    rounding: either("grains.rounding", rounding, "_mm", rounding_mm.map(metres))?
-                        .unwrap_or(ROUNDING),
-                    solid_fraction: solid_fraction.unwrap_or(0.8),
-                    bulk_fraction: bulk_fraction.unwrap_or(whole),
-                    species: species
-                        .into_iter()
-                        .enumerate()
-                        .map(|(index, species)| species.into_species(index, alone))
-                        .collect::<Result<_, _>>()?,
-                }))
-            }
+            Self::Voronoi(cells) => Ok(SceneGrains::Voronoi(cells.into_cells(container, folder)?)),
             Self::List(grains) => Ok(SceneGrains::List(
                 grains
                     .into_iter()
@@ -485,6 +469,69 @@ impl SpeciesFile {
             share: required_share(path, self.share, alone)?,
         })
     }
+}
+
+impl CellsFile {
+    fn into_cells(self, container: &SceneContainer, folder: &Path) -> Result<SceneCells, Problem> {
+        if let Some(file) = &self.packing {
+            let packing = StoredCells::read(&folder.join(file)).map_err(|error| {
+                Problem::new(
+                    "grains.packing",
+                    format!("names {}, which {error}", file.display()),
+                    "a file that `grainfall pack SCENE --out FILE` wrote; its name is relative to the scene's folder",
+                )
+            })?;
+            return self.with_packing(packing);
+        }
+        let whole = match container {
+            SceneContainer::Drum { .. } => 0.35,
+            _ => 1.0,
+        };
+        let cell = either("grains.cell", self.cell, "_mm", self.cell_mm.map(metres))?;
+        let rounding = self.rounding_mm.map(metres);
+        let rounding = either("grains.rounding", self.rounding, "_mm", rounding)?;
+        Ok(SceneCells {
+            cell: cell.unwrap_or(0.002),
+            rounding: rounding.unwrap_or(ROUNDING),
+            solid_fraction: self.solid_fraction.unwrap_or(0.8),
+            bulk_fraction: self.bulk_fraction.unwrap_or(whole),
+            packing: None,
+            species: cell_species(self.species)?,
+        })
+    }
+
+    fn with_packing(self, packing: StoredCells) -> Result<SceneCells, Problem> {
+        for (key, value) in [
+            ("cell", self.cell.or(self.cell_mm)),
+            ("rounding", self.rounding.or(self.rounding_mm)),
+            ("solid_fraction", self.solid_fraction),
+            ("bulk_fraction", self.bulk_fraction),
+        ] {
+            if value.is_some() {
+                return Err(Problem::new(
+                    format!("grains.{key}"),
+                    "contradicts `packing`, which is given too",
+                    "either a `packing` or what the grains are cut from",
+                ));
+            }
+        }
+        let roundings = packing.grains().iter().map(|grain| grain.shape.rounding);
+        Ok(SceneCells {
+            cell: libm::cbrt(packing.solid_volume() / packing.grains().len() as f64),
+            rounding: roundings.fold(f64::INFINITY, f64::min),
+            solid_fraction: 1.0,
+            bulk_fraction: 1.0,
+            packing: Some(packing),
+            species: cell_species(self.species)?,
+        })
+    }
+}
+
+fn cell_species(species: Vec<CellSpeciesFile>) -> Result<Vec<SceneCellSpecies>, Problem> {
+    let alone = species.len() == 1;
+    let each = species.into_iter().enumerate();
+    each.map(|(index, species)| species.into_species(index, alone))
+        .collect()
 }
 
 impl CellSpeciesFile {

@@ -13,6 +13,7 @@ mod lattice;
 mod liquid;
 mod mixture;
 mod outline;
+mod packing;
 mod set;
 mod shape;
 mod syntax;
@@ -25,6 +26,7 @@ pub use liquid::{
     PairAngle, Rupture, SceneLiquid, SmallestGap,
 };
 pub use mixture::{SizeClass, size_classes, species_counts};
+pub use packing::{PackingError, StoredCells};
 pub use set::seconds;
 pub use shape::{SceneBody, SceneShape};
 
@@ -242,6 +244,9 @@ pub struct SceneCells {
     pub solid_fraction: f64,
     /// Part of the container's volume that the cells take, from below.
     pub bulk_fraction: f64,
+    /// The file that the grains come from in place of being cut. The cell above is then a cube of their mean volume, the
+    /// rounding their smallest, and nothing is taken away.
+    pub packing: Option<StoredCells>,
     /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
     pub species: Vec<SceneCellSpecies>,
 }
@@ -326,7 +331,7 @@ impl Scene {
         .advise(error::suggestion(wanted, &names)))
     }
 
-    /// The scene that `text` states; `file` is what errors call it.
+    /// The scene that `text` states; `file` is what errors call it, and names of files in it are relative to its folder.
     ///
     /// # Errors
     /// When the text is no scene, or states something impossible.
@@ -348,7 +353,7 @@ impl Scene {
             )
             .from_str::<SceneFile>(text)
             .map_err(|error| syntax::explain(file, text, &error))?
-            .into_scene()
+            .into_scene(folder_of(file))
             .map_err(refuse)?;
         scene.problem().map_err(refuse)?;
         Ok(scene)
@@ -442,13 +447,28 @@ impl Scene {
     }
 }
 
-/// Volume of the smallest of some ten thousand Voronoi cells, in lattice cells.
+/// Volume of the smallest of some ten thousand Voronoi cells, in lattice cells (one of 70 000 is smaller, with 0.16).
 const SMALLEST_CELL: f64 = 0.2;
 
+/// Part of a cell that a wall leaves where the cell's centroid lies inside of it, at least (Grünbaum 1960: (3/4)³).
+const SMALLEST_PART: f64 = 0.42;
+
+impl SceneContainer {
+    /// Whether it has a curved wall at the start, into which Voronoi cells are cut to fit.
+    pub fn cuts_cells(&self) -> bool {
+        matches!(self, Self::Drum { .. } | Self::Column { tube: Some(_), .. })
+    }
+}
+
 impl SceneCells {
-    /// Radius of the sphere of the volume of its smallest grains [m].
-    pub fn smallest_radius(&self) -> f64 {
-        shape::sphere_radius(SMALLEST_CELL * self.cell.powi(3))
+    /// Radius of the sphere of the volume of the smallest grains that it makes in `container` [m].
+    pub fn smallest_radius(&self, container: &SceneContainer) -> f64 {
+        let whole = SMALLEST_CELL * self.cell.powi(3);
+        shape::sphere_radius(if container.cuts_cells() {
+            SMALLEST_PART * whole
+        } else {
+            whole
+        })
     }
 
     /// Lattice cells that the bed takes.
@@ -459,6 +479,9 @@ impl SceneCells {
 
     /// Grains that the bed is made of: `π R_i² H_i` times cells per volume times `φ_i` for a column.
     pub fn grain_count(&self, container: &SceneContainer) -> usize {
+        if let Some(packing) = &self.packing {
+            return packing.grains().len();
+        }
         let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
         (volume / self.cell.powi(3) * self.solid_fraction).round() as usize
     }
@@ -480,6 +503,10 @@ impl PairOverride {
         let (first, second) = (self.between.0.as_str(), self.between.1.as_str());
         (first, second) == (a, b) || (first, second) == (b, a)
     }
+}
+
+fn folder_of(file: &str) -> &Path {
+    Path::new(file).parent().unwrap_or(Path::new(""))
 }
 
 /// Text of the file at `path`, which errors call `name`.

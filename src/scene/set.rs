@@ -89,25 +89,25 @@ const SETTINGS: &[Setting] = &[
     },
     Setting {
         key: "cell",
-        expected: "a length such as `2mm`, in a scene of Voronoi cells",
+        expected: "a length such as `2mm`, in a scene that cuts Voronoi cells",
         apply: |scene, text| {
-            cells(scene)?.cell = metres(text)?;
+            cut_cells(scene)?.cell = metres(text)?;
             Some(())
         },
     },
     Setting {
         key: "rounding",
-        expected: "a length such as `0.1mm`, in a scene of Voronoi cells",
+        expected: "a length such as `0.1mm`, in a scene that cuts Voronoi cells",
         apply: |scene, text| {
-            cells(scene)?.rounding = metres(text)?;
+            cut_cells(scene)?.rounding = metres(text)?;
             Some(())
         },
     },
     Setting {
         key: "solid-fraction",
-        expected: "a fraction such as `0.8`, in a scene of Voronoi cells",
+        expected: "a fraction such as `0.8`, in a scene that cuts Voronoi cells",
         apply: |scene, text| {
-            cells(scene)?.solid_fraction = number(text)?;
+            cut_cells(scene)?.solid_fraction = number(text)?;
             Some(())
         },
     },
@@ -212,6 +212,11 @@ fn cells(scene: &mut Scene) -> Option<&mut SceneCells> {
         SceneGrains::Voronoi(cells) => Some(cells),
         SceneGrains::Fill { .. } | SceneGrains::List(_) => None,
     }
+}
+
+/// The cells of a scene that are cut anew, not read from a file.
+fn cut_cells(scene: &mut Scene) -> Option<&mut SceneCells> {
+    cells(scene).filter(|cells| cells.packing.is_none())
 }
 
 fn number(text: &str) -> Option<f64> {

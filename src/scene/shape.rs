@@ -88,7 +88,8 @@ impl SceneShape {
         })
     }
 
-    /// The solid before it is rounded, its centroid at the origin; none of a sphere, nor of points in one plane.
+    /// The solid before it is rounded, its centroid at the origin; none of a sphere, of points in one plane, nor of too many
+    /// points or sides.
     pub fn solid(&self) -> Option<Solid> {
         let solid = match self {
             Self::Box { size, .. } => Solid::cuboid(-0.5 * *size, 0.5 * *size),

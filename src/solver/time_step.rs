@@ -147,7 +147,7 @@ fn kinds(scene: &Scene) -> Vec<Kind<'_>> {
             .iter()
             .filter_map(|species| {
                 Some(Kind {
-                    radius: cells.smallest_radius(),
+                    radius: cells.smallest_radius(&scene.container),
                     material: material(&species.material)?,
                 })
             })

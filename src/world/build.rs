@@ -28,8 +28,17 @@ const PLACES: u64 = 1;
 /// The world that `scene` asks for at time zero, with steps of `time_step` [s]. The scene is one that was parsed, or that
 /// [`Scene::check`] passed; of any other, what does not fit is left out.
 pub fn build(scene: &Scene, time_step: f64) -> World {
-    let cells = Packing::new(scene).map(Packing::finish);
-    build_packed(scene, time_step, cells.unwrap_or_default())
+    let cells = Packing::new(scene).map_or_else(|| stored_cells(scene), Packing::finish);
+    build_packed(scene, time_step, cells)
+}
+
+/// The grains that come from a file.
+fn stored_cells(scene: &Scene) -> Vec<Rounded> {
+    let SceneGrains::Voronoi(cells) = &scene.grains else {
+        return Vec::new();
+    };
+    let stored = cells.packing.as_ref();
+    stored.map_or(Vec::new(), |packing| packing.grains().to_vec())
 }
 
 /// As [`build`], with the grains `cells` that a [`Packing`] of the scene made where its grains are Voronoi cells.

@@ -1,6 +1,7 @@
 //! The grains' columns.
 
 use super::MaterialId;
+use crate::geometry::sphere_volume;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -102,9 +103,4 @@ impl Grains {
         self.open_bridges.push(0);
         self.liquid_loss.push([0.0; 2]);
     }
-}
-
-/// Volume of a sphere [m³].
-pub(super) fn sphere_volume(radius: f64) -> f64 {
-    4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius
 }

@@ -4,8 +4,8 @@
 //! The grains of one radius stand in a random order that the seed fixes, and the species take successive runs of it. So a
 //! larger share only adds grains to a species, and going back takes the same ones away.
 
-use super::grains::sphere_volume;
 use super::{SpeciesId, World};
+use crate::geometry::sphere_volume;
 use crate::scene::{Scene, SizeClass};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;

@@ -16,9 +16,9 @@ mod memory;
 mod mixture;
 mod packing;
 mod polyhedra;
-mod polyhedron;
 mod voronoi;
 
+pub use crate::geometry::{Polyhedron, Rounded};
 pub use crate::scene::SceneLiquid as Liquid;
 pub use build::{build, build_packed};
 pub use contact::{Contact, Partner};
@@ -31,7 +31,6 @@ pub use material::{Material, MaterialId, Materials, PairProperties};
 pub use mixture::{label_order, set_share};
 pub use packing::Packing;
 pub use polyhedra::{Body, Feature, FeatureContact, Polyhedra};
-pub use polyhedron::{Polyhedron, Rounded};
 pub use voronoi::{Boundary, Tessellation};
 
 use crate::scene::ContactLaw;

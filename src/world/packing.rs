@@ -54,18 +54,21 @@ enum Axis {
 }
 
 impl Packing {
-    /// The cells that `scene` asks for; none where its grains are no Voronoi cells or its container is open.
+    /// The cells that `scene` asks for; none where its grains are no Voronoi cells, come from a file, or its container is
+    /// open.
     pub fn new(scene: &Scene) -> Option<Self> {
         let SceneGrains::Voronoi(cells) = &scene.grains else {
             return None;
         };
+        if cells.packing.is_some() {
+            return None;
+        }
         let (min, max) = lattice_box(&scene.container)?;
         let region = Region::of(&scene.container);
         let tessellation = Tessellation::new(min, max, cells.cell, Boundary::Walls, scene.seed);
         let margin = MARGIN * tessellation.largest_distance();
-        let sites = (0..tessellation.len())
-            .filter(|&site| region.distance(tessellation.point(site)) <= margin)
-            .collect();
+        let inside = |site: &usize| region.distance(tessellation.point(*site)) <= margin;
+        let sites = (0..tessellation.len()).filter(inside).collect();
         Some(Self {
             lowest: (cells.bulk_fraction < 1.0).then(|| cells.cell_count(&scene.container)),
             wanted: if cells.solid_fraction < 1.0 {
@@ -137,14 +140,12 @@ impl Packing {
 
 impl Region {
     fn of(container: &SceneContainer) -> Self {
-        let (cylinder, walled) = match container {
-            SceneContainer::Column { radius, tube, .. } => {
-                (Some((*radius, Axis::Y)), tube.is_some())
-            }
-            SceneContainer::Drum { radius, .. } => (Some((*radius, Axis::Z)), true),
-            _ => (None, false),
+        let cylinder = match container {
+            SceneContainer::Column { radius, .. } => Some((*radius, Axis::Y)),
+            SceneContainer::Drum { radius, .. } => Some((*radius, Axis::Z)),
+            _ => None,
         };
-        let sides = cylinder.filter(|_| walled);
+        let sides = cylinder.filter(|_| container.cuts_cells());
         Self {
             cylinder,
             sides: sides.map_or(Vec::new(), |(radius, axis)| prism(radius, axis)),

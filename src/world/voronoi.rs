@@ -111,7 +111,7 @@ impl Tessellation {
 
     fn site(&self, index: usize) -> [i64; 3] {
         let [x, _, z] = self.counts;
-        let index = i64::try_from(index).unwrap_or(i64::MAX);
+        let index = i64::from(index as u32);
         [index / z % x, index / (x * z), index % z]
     }
 

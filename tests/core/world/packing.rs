@@ -1,11 +1,12 @@
 //! Columns, boxes and drums of Voronoi cells, and lists of polyhedra: what worlds they become.
 
 use glam::{DQuat, DVec3};
-use grainfall::geometry::Solid;
-use grainfall::scene::{Scene, SceneContainer, SceneGrains};
+use grainfall::geometry::{Solid, sphere_volume};
+use grainfall::scene::{Scene, SceneContainer, SceneGrains, SceneTube, StoredCells};
 use grainfall::world::{
-    self, Boundary, Polyhedra, Polyhedron, SpeciesId, Surface, Tessellation, World,
+    self, Boundary, Packing, Polyhedra, Polyhedron, SpeciesId, Surface, Tessellation, World,
 };
+use std::fs;
 
 fn world_of(scene: &Scene) -> World {
     scene.check().unwrap_or_else(|error| panic!("{error}"));
@@ -165,6 +166,30 @@ fn a_tube_and_a_drum_hold_whole_bodies() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn no_grain_is_smaller_than_the_time_step_counts_on() {
+    let mut held = column("2cm", &[]);
+    let free = held.clone();
+    let SceneContainer::Column { tube, .. } = &mut held.container else {
+        panic!("no column");
+    };
+    *tube = Some(SceneTube {
+        speed: 0.1,
+        material: "floor".to_owned(),
+    });
+    for scene in [free, held] {
+        let SceneGrains::Voronoi(cells) = &scene.grains else {
+            panic!("no cells");
+        };
+        let counted_on = sphere_volume(cells.smallest_radius(&scene.container));
+        let world = world_of(&scene);
+        let volumes = polyhedra(&world).shapes.iter().map(|shape| shape.volume);
+        let smallest = volumes.fold(f64::INFINITY, f64::min);
+        assert!(smallest >= counted_on, "{smallest} < {counted_on}");
+        assert!(smallest < 3.0 * counted_on, "{smallest} > 3 · {counted_on}");
     }
 }
 
@@ -346,5 +371,88 @@ fn every_case_of_the_paper_can_be_set() {
         ("normal-stiffness", "1"),
     ] {
         assert!(drum.set(key, value).is_err(), "{key}");
+    }
+}
+
+/// A scene of the grains in the file of this name, in a column of 1 cm.
+fn of_file(name: &str, more: &str) -> String {
+    format!(
+        r#"(
+            title: "From a file", materials: {{"smooth": (friction: 0.1), "rough": (), "floor": ()}},
+            container: Column(height_mm: 10, material: "floor"),
+            grains: Voronoi(
+                packing: "{name}", {more}
+                species: [(material: "smooth", share: 0.9), (material: "rough", share: 0.1)],
+            ),
+        )"#
+    )
+}
+
+#[test]
+fn grains_from_a_file_are_those_that_were_cut() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = column("1cm", &[]);
+    let grains = Packing::new(&scene).unwrap().finish();
+    fs::write(folder.path().join("h1.pack"), StoredCells::encode(&grains)).unwrap();
+    let file = folder.path().join("scene.ron");
+    fs::write(&file, of_file("h1.pack", "")).unwrap();
+    let read = Scene::load(&file).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.grain_count(), 1963);
+    assert!(Packing::new(&read).is_none());
+    let (cut, stored) = (world_of(&scene), world_of(&read));
+    assert_eq!(cut.grains, stored.grains);
+    assert_eq!(cut.polyhedra, stored.polyhedra);
+    let summary = serde_json::to_string(&read).unwrap();
+    assert!(
+        summary.len() < 3000 && summary.contains("h1.pack"),
+        "{summary}"
+    );
+    assert_eq!(serde_json::from_str::<Scene>(&summary).unwrap(), read);
+    let mut smaller = read.clone();
+    let message = smaller.set("radius", "2cm").unwrap_err().to_string();
+    assert!(message.contains("not inside"), "{message}");
+    let message = smaller.set("cell", "2mm").unwrap_err().to_string();
+    assert!(message.contains("cuts Voronoi cells"), "{message}");
+}
+
+#[test]
+fn files_that_hold_no_grains_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let grains = Packing::new(&Scene::open("small-column").unwrap())
+        .unwrap()
+        .finish();
+    let whole = StoredCells::encode(&grains);
+    let mut flipped = whole.clone();
+    flipped[100] ^= 1;
+    let mut older = whole.clone();
+    older[12] += 1;
+    let mut absurd = grains.clone();
+    absurd[0].shape.faces[0][0] = 9999;
+    let cases = [
+        ("short", whole[..50].to_vec(), "", "is damaged"),
+        ("empty", Vec::new(), "", "is no packing of this version"),
+        ("flipped", flipped, "", "is damaged"),
+        ("older", older, "", "is no packing of this version"),
+        ("absurd", StoredCells::encode(&absurd), "", "is damaged"),
+        ("none", StoredCells::encode(&[]), "", "is damaged"),
+        (
+            "whole",
+            whole.clone(),
+            "cell_mm: 2,",
+            "contradicts `packing`",
+        ),
+        ("high", whole, "", "not inside of the container"),
+    ];
+    for (name, bytes, more, expected) in cases {
+        fs::write(folder.path().join(name), bytes).unwrap();
+        let text = of_file(name, more).replace(
+            "height_mm: 10",
+            "radius_mm: 10, height_mm: 10, tube: (speed: 1)",
+        );
+        let file = folder.path().join("scene.ron");
+        fs::write(&file, text).unwrap();
+        let message = Scene::load(&file).unwrap_err().to_string();
+        assert!(message.contains(expected), "{name}: {message}");
+        assert!(message.contains("grains"), "{name}: {message}");
     }
 }

@@ -1,7 +1,6 @@
 //! One rounded convex polyhedron in its body frame.
 
-use super::grains::sphere_volume;
-use crate::geometry::{Flaw, Solid};
+use super::{Flaw, Solid};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +25,7 @@ pub struct Polyhedron {
 }
 
 /// A solid made a rounded polyhedron, and where its body frame is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rounded {
     /// The rounded polyhedron in its body frame.
     pub shape: Polyhedron,
@@ -87,4 +86,38 @@ impl Polyhedron {
     pub fn mean_gyration(&self) -> f64 {
         self.gyration.element_sum() / 3.0
     }
+}
+
+impl Rounded {
+    /// Whether it is a body that a world can hold, as one from a file may not be: finite, of positive size, its edges and
+    /// faces between corners that exist.
+    pub fn is_sound(&self) -> bool {
+        let shape = &self.shape;
+        let exists = |&v: &u16| usize::from(v) < shape.vertices.len();
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        shape.vertices.len() >= 4
+            && shape.vertices.iter().all(|x| x.is_finite())
+            && shape.edges.iter().flatten().all(exists)
+            && shape
+                .faces
+                .iter()
+                .all(|face| face.len() >= 3 && face.iter().all(exists))
+            && shape.vertices.len() + shape.faces.len() == shape.edges.len() + 2
+            && positive(shape.rounding)
+            && positive(shape.volume)
+            && shape.gyration.to_array().into_iter().all(positive)
+            && self.position.is_finite()
+            && self.orientation.is_normalized()
+    }
+
+    /// Corners of the core in place [m].
+    pub fn corners(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let corners = self.shape.vertices.iter();
+        corners.map(|x| self.orientation * *x + self.position)
+    }
+}
+
+/// Volume of a sphere [m³].
+pub fn sphere_volume(radius: f64) -> f64 {
+    4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius
 }

@@ -1,0 +1,118 @@
+//! Voronoi cells kept in a file, so that several scenes can have the very same grains without cutting them anew.
+//!
+//! In: the grains that [`crate::world::Packing`] made, or the bytes of a file. Out: the file's bytes, or the grains. A file
+//! that is damaged, of another version or holds absurd grains is refused.
+
+use crate::geometry::Rounded;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Raised whenever the file's layout changes.
+const FORMAT: u32 = 1;
+const MAGIC: &[u8; 12] = b"grainfallpac";
+/// Bytes before the contents: magic, format, checksum.
+const HEADER: usize = MAGIC.len() + 4 + blake3::OUT_LEN;
+
+/// Grains that a file holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Reference", into = "Reference")]
+pub struct StoredCells {
+    reference: Reference,
+    grains: Arc<[Rounded]>,
+}
+
+/// Which file, and what was in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Reference {
+    file: PathBuf,
+    checksum: String,
+}
+
+/// Why a file does not hold grains.
+#[derive(Debug, thiserror::Error)]
+pub enum PackingError {
+    /// It cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(#[from] std::io::Error),
+    /// It is something else.
+    #[error("is no packing of this version")]
+    Other,
+    /// Its contents are not what was written.
+    #[error("is damaged")]
+    Damaged,
+    /// Its contents are not those that a scene was read with.
+    #[error("holds other grains than before")]
+    Changed,
+}
+
+impl StoredCells {
+    /// The grains in the file at `path`.
+    ///
+    /// # Errors
+    /// When it cannot be read or is no whole packing.
+    pub fn read(path: &Path) -> Result<Self, PackingError> {
+        let bytes = std::fs::read(path)?;
+        let (header, contents) = bytes.split_at_checked(HEADER).ok_or(PackingError::Other)?;
+        let (identity, checksum) = header.split_at(MAGIC.len() + 4);
+        if identity != [&MAGIC[..], &FORMAT.to_le_bytes()[..]].concat() {
+            return Err(PackingError::Other);
+        }
+        let found = blake3::hash(contents);
+        if checksum != found.as_bytes() {
+            return Err(PackingError::Damaged);
+        }
+        let grains: Vec<Rounded> =
+            postcard::from_bytes(contents).map_err(|_| PackingError::Damaged)?;
+        if grains.is_empty() || !grains.iter().all(Rounded::is_sound) {
+            return Err(PackingError::Damaged);
+        }
+        Ok(Self {
+            reference: Reference {
+                file: path.to_owned(),
+                checksum: found.to_hex()[..32].to_owned(),
+            },
+            grains: grains.into(),
+        })
+    }
+
+    /// The bytes of a file that holds `grains`: magic, format, checksum, contents.
+    pub fn encode(grains: &[Rounded]) -> Vec<u8> {
+        // Writing into memory cannot fail; if it did, reading would find the file empty.
+        let contents = postcard::to_stdvec(grains).unwrap_or_default();
+        let mut bytes = Vec::with_capacity(HEADER + contents.len());
+        bytes.extend_from_slice(MAGIC);
+        bytes.extend_from_slice(&FORMAT.to_le_bytes());
+        bytes.extend_from_slice(blake3::hash(&contents).as_bytes());
+        bytes.extend_from_slice(&contents);
+        bytes
+    }
+
+    /// The grains.
+    pub fn grains(&self) -> &[Rounded] {
+        &self.grains
+    }
+
+    /// Volume of all grains [m³].
+    pub fn solid_volume(&self) -> f64 {
+        self.grains.iter().map(|grain| grain.shape.volume).sum()
+    }
+}
+
+impl TryFrom<Reference> for StoredCells {
+    type Error = PackingError;
+
+    fn try_from(reference: Reference) -> Result<Self, PackingError> {
+        let stored = Self::read(&reference.file)?;
+        if stored.reference.checksum != reference.checksum {
+            return Err(PackingError::Changed);
+        }
+        Ok(stored)
+    }
+}
+
+impl From<StoredCells> for Reference {
+    fn from(stored: StoredCells) -> Self {
+        stored.reference
+    }
+}
