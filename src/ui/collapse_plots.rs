@@ -20,6 +20,8 @@ const MILLIMETRES: f64 = 1e3;
 const MICROJOULES: f64 = 1e6;
 /// Smallest height of the plot of the front [mm].
 const SMALLEST_FRONT_SPAN: f64 = 5.0;
+/// Smallest height of the plot of the energy [µJ]: a grain of a millimetre that falls by its own size has more.
+const SMALLEST_ENERGY_SPAN: f64 = 1e-3;
 
 /// Both plots.
 #[derive(Debug, PartialEq)]
@@ -115,7 +117,7 @@ fn energy(
         title: "Kinetic energy per grain [µJ]",
         latest: number::short(latest),
         colour: palette.temperature,
-        height: height_of(seen(&points, &kept), 0.0),
+        height: height_of(seen(&points, &kept), SMALLEST_ENERGY_SPAN),
         points,
         kept,
         decades: false,
