@@ -18,6 +18,7 @@ mod integrate;
 mod lanes;
 pub mod law;
 mod neighbours;
+mod order;
 mod polyhedra;
 mod profile;
 mod row;
@@ -197,18 +198,18 @@ impl Solver {
                 if broken > 0 {
                     ruptures.fetch_add(broken, Ordering::Relaxed);
                 }
-                barrier.wait();
+                barrier.wait(member);
                 let middle = begin.map(|begin| (begin.elapsed(), Instant::now()));
                 steps += 1;
                 let last = steps == remaining;
                 // SAFETY: likewise, one barrier further.
                 let outcome = unsafe { phase.finish(processor, member, size, last) };
-                refresh.fetch_or(outcome.refresh, Ordering::Relaxed);
-                fault.fetch_or(outcome.fault, Ordering::Relaxed);
+                raise(&refresh, outcome.refresh);
+                raise(&fault, outcome.fault);
                 if !last {
                     phase.step_walls(&mut walls);
                 }
-                barrier.wait();
+                barrier.wait(member);
                 if let Some((forces, middle)) = middle {
                     timings[0] += forces;
                     timings[1] += middle.elapsed();
@@ -231,6 +232,13 @@ impl Solver {
             steps,
             fault: fault.into_inner(),
         }
+    }
+}
+
+/// Sets `flag` where `raised`; writing it at every step would take its cache line from the other members.
+fn raise(flag: &AtomicBool, raised: bool) {
+    if raised {
+        flag.store(true, Ordering::Relaxed);
     }
 }
 

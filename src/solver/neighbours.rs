@@ -2,9 +2,10 @@
 //!
 //! Two lists, both pure caches that never change a result. The *near* list, from a cell grid, holds pairs closer than a
 //! wide skin; the *active* list, filtered from it, holds pairs closer than a narrow skin and is what the pair loop runs
-//! over. Each list is good until some grain has moved by half its skin. Pairs are kept sorted by grain and partner and
-//! forces are summed in that order; a listed pair that does not touch adds exact zeros, so the sums do not depend on the
-//! skins. A pair with a bridge is active however wide its gap. Tangential springs and bridges follow their pair from list to
+//! over. Each list is good until some grain has moved by half its skin. Grains are named by their places ([`super::order`])
+//! and pairs kept sorted by these, but the first grain of a pair is the one of lower index, and forces are summed in the
+//! order of indices: so the sums do not depend on the places. A listed pair that does not touch adds exact zeros, so they do
+//! not depend on the skins. A pair with a bridge is active however wide its gap. Tangential springs and bridges follow their pair from list to
 //! list. The last of the bodies is a ghost that fills groups of
 //! pairs up; nothing it does counts.
 
@@ -47,11 +48,12 @@ impl Part {
     }
 }
 
-/// The parts that each grain has in active pairs, in the order of the pairs.
+/// The parts that each grain has in active pairs: as the second partner, then as the first, each in the order of the
+/// partners' indices, then at walls.
 #[derive(Default)]
 pub struct Parts {
     first: Vec<u32>,
-    /// Where each grain's parts as the first partner begin: those as the second come before them, as pairs are sorted.
+    /// Where each grain's parts as the first partner begin.
     own: Vec<u32>,
     list: Vec<Part>,
 }
@@ -63,7 +65,7 @@ impl Parts {
         &self.list[self.first[i] as usize..self.first[i + 1] as usize]
     }
 
-    /// The parts of grain `i` as the second partner, then those as the first, each in the order of the pairs.
+    /// The parts of grain `i` as the second partner, then those as the first.
     #[inline(always)]
     pub fn by_side(&self, i: usize) -> [&[Part]; 2] {
         let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
@@ -73,39 +75,58 @@ impl Parts {
         ]
     }
 
-    /// Sorts both sides of the pairs by grain; grains from `count` on are ghosts.
-    fn fill(&mut self, grains: &[Pair], walls: &[Pair], count: usize) {
-        let sides = || {
-            let of_grains = grains.iter().enumerate().flat_map(|(k, pair)| {
-                [
-                    (pair.grain, Part::new(k, false)),
-                    (pair.partner, Part::new(k, true)),
-                ]
-            });
-            let of_walls = walls
-                .iter()
-                .enumerate()
-                .map(|(k, pair)| (pair.grain, Part::new(grains.len() + k, false)));
-            of_grains
-                .chain(of_walls)
-                .filter(|(grain, _)| (*grain as usize) < count)
+    /// Sorts both sides of the pairs; places from `indices`' end on are ghosts'.
+    fn fill(&mut self, grains: &[Pair], walls: &[Pair], indices: &[u32]) {
+        let count = indices.len();
+        let is_grain = |(place, _): &(u32, Part)| (*place as usize) < count;
+        let seconds = || {
+            let sides = grains.iter().enumerate();
+            sides
+                .map(|(k, pair)| (pair.partner, Part::new(k, true)))
+                .filter(is_grain)
+        };
+        let firsts = || {
+            let pairs = grains.iter().chain(walls).enumerate();
+            pairs
+                .map(|(k, pair)| (pair.grain, Part::new(k, false)))
+                .filter(is_grain)
         };
         self.first.clear();
         self.first.resize(count + 1, 0);
-        sides().for_each(|(grain, _)| self.first[grain as usize + 1] += 1);
+        self.own.clear();
+        self.own.resize(count, 0);
+        seconds().for_each(|(place, _)| self.own[place as usize] += 1);
+        firsts().for_each(|(place, _)| self.first[place as usize + 1] += 1);
         for i in 0..count {
-            self.first[i + 1] += self.first[i];
+            self.first[i + 1] += self.first[i] + self.own[i];
+            self.own[i] += self.first[i];
         }
-        let mut next = self.first.clone();
         self.list
             .resize(self.first[count] as usize, Part::default());
-        self.own.clear();
-        self.own.extend_from_slice(&self.first[..count]);
-        for (grain, part) in sides() {
-            let place = &mut next[grain as usize];
-            self.list[*place as usize] = part;
-            *place += 1;
-            self.own[grain as usize] += part.side() as u32;
+        for (begins, sides) in [
+            (
+                &self.first[..count],
+                &mut seconds() as &mut dyn Iterator<Item = _>,
+            ),
+            (&self.own, &mut firsts()),
+        ] {
+            let mut next = begins.to_vec();
+            for (place, part) in sides {
+                let place = &mut next[place as usize];
+                self.list[*place as usize] = part;
+                *place += 1;
+            }
+        }
+        let other = |part: &Part| match grains.get(part.action()) {
+            Some(pair) if part.side() == 1 => indices[pair.grain as usize],
+            Some(pair) => indices[pair.partner as usize],
+            // Walls come last, in the order of the pairs, which is theirs.
+            None => u32::MAX,
+        };
+        for i in 0..count {
+            let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
+            self.list[first as usize..own as usize].sort_by_key(other);
+            self.list[own as usize..end as usize].sort_by_key(other);
         }
     }
 }
@@ -186,8 +207,8 @@ impl Neighbours {
             })
     }
 
-    /// The pair of which a grain has this part as a contact, if it touches or has a bridge and the grain is its first
-    /// partner.
+    /// The pair of which a grain has this part as a contact between places, if it touches or has a bridge and the grain is
+    /// its first partner.
     pub fn contact(&self, part: Part) -> Option<Contact> {
         let (index, action) = (part.action(), &self.actions[part.action()]);
         let touching = action.rolling[3] > 0.0;
@@ -227,12 +248,8 @@ impl Neighbours {
 
     /// Takes over pairs with their springs and bridges, sorted by grain and partner, whatever was listed before. They are
     /// no whole groups: a refresh must follow.
-    pub fn adopt(&mut self, pairs: Vec<Pair>, springs: Vec<Row>, bridges: Vec<BridgeRow>) {
-        self.grains = PairList {
-            pairs,
-            springs,
-            bridges,
-        };
+    pub fn adopt(&mut self, pairs: PairList) {
+        self.grains = pairs;
     }
 
     /// Forgets the near list, for bodies or walls that are not those it was built for.
@@ -252,16 +269,18 @@ impl Neighbours {
             .clamp(ACTIVE_SKIN.start() * radius, ACTIVE_SKIN.end() * radius);
     }
 
-    /// Brings both lists up to date; springs follow their pairs. `kind(grain, partner)` and `wall_kind(grain, wall)` name a pair's constants.
+    /// Brings both lists up to date; springs follow their pairs. `indices` are those of the grains at each place;
+    /// `kind(grain, partner)` and `wall_kind(grain, wall)` name the constants of a pair of indices.
     pub fn refresh(
         &mut self,
         bodies: &[Body],
         walls: &[WallBody],
+        indices: &[u32],
         mut kind: impl FnMut(u32, u32) -> u32,
         mut wall_kind: impl FnMut(u32, u32) -> u32,
     ) {
         if !self.covers(bodies, walls) {
-            self.rebuild(bodies, walls, &mut kind, &mut wall_kind);
+            self.rebuild(bodies, walls, indices, &mut kind, &mut wall_kind);
         }
         let skin = self.skins.active;
         let close = |pair: &&Pair| {
@@ -316,7 +335,7 @@ impl Neighbours {
         self.liquid_actions
             .resize(self.grains.bridges.len(), LiquidAction::default());
         self.parts
-            .fill(&self.grains.pairs, &self.walls.pairs, count);
+            .fill(&self.grains.pairs, &self.walls.pairs, indices);
         self.reference.clear();
         self.reference
             .extend(bodies[..count].iter().map(|body| body.position));
@@ -326,6 +345,7 @@ impl Neighbours {
         &mut self,
         bodies: &[Body],
         walls: &[WallBody],
+        indices: &[u32],
         kind: &mut impl FnMut(u32, u32) -> u32,
         wall_kind: &mut impl FnMut(u32, u32) -> u32,
     ) {
@@ -356,7 +376,7 @@ impl Neighbours {
             grid.for_near(body.position, |j| {
                 let other = &bodies[j as usize];
                 let reach = body.spin[3] + other.spin[3] + near;
-                if j as usize > i
+                if indices[j as usize] > indices[i]
                     && length_squared(sub(other.position, body.position)) < reach * reach
                 {
                     partners.push(j);
@@ -368,7 +388,7 @@ impl Neighbours {
                 .extend(partners.iter().map(|&partner| Pair {
                     grain,
                     partner,
-                    kind: kind(grain, partner),
+                    kind: kind(indices[i], indices[partner as usize]),
                 }));
         }
 
@@ -380,7 +400,7 @@ impl Neighbours {
                     self.near_walls.push(Pair {
                         grain,
                         partner,
-                        kind: wall_kind(grain, partner),
+                        kind: wall_kind(indices[i], partner),
                     });
                 }
             }

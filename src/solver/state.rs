@@ -9,7 +9,8 @@ use super::lanes::Processor;
 use super::law::{
     BridgeKinds, FilmConstants, Law, PairConstants, Pairing, contributions, rupture_gap,
 };
-use super::neighbours::{Neighbours, Parts, grain_key, wall_key};
+use super::neighbours::{Neighbours, PairList, Parts, grain_key, wall_key};
+use super::order::Order;
 use super::row::{Row, length_squared, row, vector};
 use super::team::{Shared, share};
 use super::{Fault, FaultKind};
@@ -19,9 +20,10 @@ use std::collections::HashMap;
 /// A grain that moves by more than this share of its radius in one step is lost.
 const LARGEST_MOVE: f64 = 0.1;
 
-/// The working copy.
+/// The working copy. Rows of grains stand in the places that the order gives them, and pairs name places.
 #[derive(Default)]
 pub struct State {
+    order: Order,
     bodies: Vec<Body>,
     loads: Vec<Load>,
     walls: Vec<WallBody>,
@@ -132,6 +134,10 @@ impl State {
         if !self.kinds.classify(world) {
             self.neighbours.forget();
         }
+        if self.order.is_stale(grains, self.neighbours.rebuilds) {
+            self.order.choose(grains, self.neighbours.rebuilds);
+            self.neighbours.forget();
+        }
         self.kinds.compute(world);
         self.walls.clear();
         self.walls
@@ -146,7 +152,7 @@ impl State {
         };
         self.bodies.clear();
         self.loads.clear();
-        for i in 0..grains.len() {
+        for i in self.order.grains().iter().map(|grain| *grain as usize) {
             let radius = grains.radius[i];
             self.bodies.push(Body {
                 position: row(grains.position[i], 1.0 / grains.mass[i]),
@@ -181,11 +187,12 @@ impl State {
             return;
         };
         let grains = &world.grains;
-        let losses = grains.liquid_loss.iter().zip(&grains.open_bridges);
-        self.bridge_loads.extend(
-            losses.map(|([viscous, capillary], open)| [*viscous, *capillary, f64::from(*open)]),
-        );
-        self.films.extend_from_slice(&grains.film);
+        for i in self.order.grains().iter().map(|grain| *grain as usize) {
+            let [viscous, capillary] = grains.liquid_loss[i];
+            let open = f64::from(grains.open_bridges[i]);
+            self.bridge_loads.push([viscous, capillary, open]);
+            self.films.push(grains.film[i]);
+        }
         self.films.push(0.0);
         self.neighbours
             .set_reach(Some(largest_reach(world, &liquid)));
@@ -194,26 +201,40 @@ impl State {
 
     /// Makes the pairs of `world` the listed ones, so that the next refresh keeps all that bridges hold.
     fn adopt_bridges(&mut self, world: &World, liquid: &Liquid) {
-        let (mut pairs, mut springs, mut bridges) = (Vec::new(), Vec::new(), Vec::new());
         let mut kinds = BridgeKinds::of(liquid);
+        let mut rows = Vec::new();
         for contact in &world.contacts {
             let Partner::Grain(partner) = contact.partner else {
                 continue;
             };
             let radius = &world.grains.radius;
             let radii = (radius[contact.grain as usize], radius[partner as usize]);
-            pairs.push(Pair {
-                grain: contact.grain,
-                partner,
-                kind: 0,
-            });
-            springs.push(row(contact.spring, contact.stiffness));
             let bridge = contact.bridge.as_ref();
-            bridges.push(bridge.map_or(BridgeRow::default(), |bridge| {
+            let bridge = bridge.map_or(BridgeRow::default(), |bridge| {
                 BridgeRow::of(bridge, &mut kinds, radii)
-            }));
+            });
+            rows.push((self.pair(contact), spring(contact), bridge));
         }
-        self.neighbours.adopt(pairs, springs, bridges);
+        rows.sort_unstable_by_key(|(pair, ..)| grain_key(pair));
+        let mut list = PairList::default();
+        for (pair, spring, bridge) in rows {
+            list.pairs.push(pair);
+            list.springs.push(spring);
+            list.bridges.push(bridge);
+        }
+        self.neighbours.adopt(list);
+    }
+
+    /// The pair of a contact, by places.
+    fn pair(&self, contact: &Contact) -> Pair {
+        Pair {
+            grain: self.order.place(contact.grain),
+            partner: match contact.partner {
+                Partner::Grain(j) => self.order.place(j),
+                Partner::Wall(w) => w,
+            },
+            kind: 0,
+        }
     }
 
     /// Makes the lists fit the positions that were just loaded.
@@ -226,35 +247,26 @@ impl State {
     }
 
     fn load_springs(&mut self, contacts: &[Contact]) {
-        let (mut grain_pairs, mut grain_springs) = (Vec::new(), Vec::new());
-        let (mut wall_pairs, mut wall_springs) = (Vec::new(), Vec::new());
-        for contact in contacts {
-            let (pairs, springs, partner) = match contact.partner {
-                Partner::Grain(j) => (&mut grain_pairs, &mut grain_springs, j),
-                Partner::Wall(w) => (&mut wall_pairs, &mut wall_springs, w),
-            };
-            pairs.push(Pair {
-                grain: contact.grain,
-                partner,
-                kind: 0,
-            });
-            springs.push(row(contact.spring, contact.stiffness));
+        let rows = contacts.iter().map(|contact| (self.pair(contact), contact));
+        let (mut of_grains, mut of_walls): (Vec<_>, Vec<_>) =
+            rows.partition(|(_, contact)| matches!(contact.partner, Partner::Grain(_)));
+        let Neighbours { grains, walls, .. } = &mut self.neighbours;
+        for (list, rows, key) in [
+            (grains, &mut of_grains, grain_key as fn(&Pair) -> _),
+            (walls, &mut of_walls, wall_key),
+        ] {
+            rows.sort_unstable_by_key(|(pair, _)| key(pair));
+            let rows = rows.iter().map(|(pair, contact)| (*pair, spring(contact)));
+            let (pairs, springs): (Vec<_>, Vec<_>) = rows.unzip();
+            list.load_springs(&pairs, &springs, key);
         }
-        self.neighbours
-            .grains
-            .load_springs(&grain_pairs, &grain_springs, grain_key);
-        let mut at_walls: Vec<(Pair, Row)> = wall_pairs.into_iter().zip(wall_springs).collect();
-        at_walls.sort_unstable_by_key(|(pair, _)| wall_key(pair));
-        let (wall_pairs, wall_springs): (Vec<_>, Vec<_>) = at_walls.into_iter().unzip();
-        self.neighbours
-            .walls
-            .load_springs(&wall_pairs, &wall_springs, wall_key);
     }
 
     /// Puts the state, `steps` steps on, back into `world`.
     pub fn store(&self, world: &mut World, steps: u64) {
         let grains = &mut world.grains;
-        for (i, (body, load)) in self.bodies.iter().zip(&self.loads).enumerate() {
+        let places = self.order.grains().iter().map(|grain| *grain as usize);
+        for (i, (body, load)) in places.clone().zip(self.bodies.iter().zip(&self.loads)) {
             grains.position[i] = vector(body.position);
             grains.velocity[i] = vector(body.velocity);
             grains.spin[i] = vector(body.spin);
@@ -264,8 +276,9 @@ impl State {
             grains.contact_count[i] = load.rolling[3] as u32;
             grains.exchanged[i] = load.exchanged;
         }
-        for (i, [viscous, capillary, open]) in self.bridge_loads.iter().enumerate() {
-            grains.film[i] = self.films[i];
+        let wet = self.bridge_loads.iter().zip(&self.films);
+        for (i, ([viscous, capillary, open], film)) in places.zip(wet) {
+            grains.film[i] = *film;
             grains.open_bridges[i] = *open as u32;
             grains.liquid_loss[i] = [*viscous, *capillary];
         }
@@ -283,9 +296,20 @@ impl State {
     }
 
     fn collect_contacts(&self, contacts: &mut Vec<Contact>) {
-        for i in 0..self.loads.len() {
-            let parts = self.neighbours.parts.of(i).iter();
-            contacts.extend(parts.filter_map(|part| self.neighbours.contact(*part)));
+        let grains = self.order.grains();
+        for i in 0..self.loads.len() as u32 {
+            let parts = self.neighbours.parts.of(self.order.place(i) as usize);
+            let own = parts
+                .iter()
+                .filter_map(|part| self.neighbours.contact(*part));
+            contacts.extend(own.map(|contact| Contact {
+                grain: i,
+                partner: match contact.partner {
+                    Partner::Grain(place) => Partner::Grain(grains[place as usize]),
+                    wall @ Partner::Wall(_) => wall,
+                },
+                ..contact
+            }));
         }
     }
 
@@ -325,13 +349,16 @@ impl State {
             walls,
             neighbours,
             kinds,
+            order,
             ..
         } = self;
         let before = neighbours.rebuilds;
         let kinds = std::cell::RefCell::new(kinds);
+        let grains = order.grains();
         neighbours.refresh(
             bodies,
             walls,
+            grains,
             |i, j| kinds.borrow_mut().of(i, Partner::Grain(j)),
             |i, w| kinds.borrow_mut().of(i, Partner::Wall(w)),
         );
@@ -413,15 +440,14 @@ impl State {
 
     /// What went wrong with which grain, `steps` steps after `world`.
     pub fn diagnose(&self, world: &World, steps: u64) -> Fault {
-        let found = self
-            .bodies
-            .iter()
-            .zip(&self.loads)
-            .enumerate()
-            .find_map(|(i, (body, load))| self.judge(body, load).map(|kind| (i, kind)));
-        let (grain, kind) = found.unwrap_or((0, FaultKind::NotFinite("state")));
+        let rows = self.bodies.iter().zip(&self.loads);
+        let found = self.order.grains().iter().zip(rows);
+        let (grain, kind) = found
+            .filter_map(|(grain, (body, load))| Some((*grain, self.judge(body, load)?)))
+            .min_by_key(|(grain, _)| *grain)
+            .unwrap_or((0, FaultKind::NotFinite("state")));
         Fault {
-            grain,
+            grain: grain as usize,
             kind,
             time: world.clock.time_at(world.clock.step + steps),
             good_time: world.time(),
@@ -450,6 +476,11 @@ impl State {
             None
         }
     }
+}
+
+/// What the spring of a contact holds, as a row.
+fn spring(contact: &Contact) -> Row {
+    row(contact.spring, contact.stiffness)
 }
 
 /// Largest gap that a bridge of `world` can hold [m], for the largest grains and the thickest films.

@@ -393,7 +393,7 @@ impl State {
     /// Takes `steps` steps; on a fault, says after how many.
     pub fn march(
         &mut self,
-        team: &Team,
+        team: &mut Team,
         processor: Processor,
         profile: &mut Profile,
         world: &World,
@@ -453,7 +453,7 @@ impl State {
     )]
     fn stretch(
         &mut self,
-        team: &Team,
+        team: &mut Team,
         processor: Processor,
         profile: &mut Profile,
         remaining: u64,
@@ -478,7 +478,7 @@ impl State {
                 let outcome = unsafe { phase.forces(processor, &walls, member) };
                 listed.fetch_add(outcome.listed, Ordering::Relaxed);
                 let too_deep = outcome.fault;
-                barrier.wait();
+                barrier.wait(member);
                 let middle = begin.map(|begin| (begin.elapsed(), Instant::now()));
                 steps += 1;
                 let last = steps == remaining;
@@ -489,7 +489,7 @@ impl State {
                 if !last {
                     move_walls(&mut walls, phase.dt);
                 }
-                barrier.wait();
+                barrier.wait(member);
                 if let Some((forces, middle)) = middle {
                     timings[0] += forces;
                     timings[1] += middle.elapsed();
