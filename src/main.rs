@@ -5,10 +5,12 @@
 
 use clap::{Args, Parser, Subcommand};
 use grainfall::files::write_whole;
-use grainfall::headless::{self, Claim, HeadlessError, Job, Verdict, apply_setting, read_commands};
+use grainfall::headless::{self, HeadlessError, Job, Verdict, apply_setting, read_commands};
 use grainfall::scene::{Scene, StoredCells, built_in};
-use grainfall::simulation::{BedStore, Options, ScriptedCommand, make_bed};
+use grainfall::simulation::{BedStore, Claim, Options, ScriptedCommand, Session, make_bed};
 use grainfall::sweep::{self, Sweep, Variation};
+#[cfg(feature = "desktop")]
+use grainfall::window::Opened;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -71,7 +73,7 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 /// What to open and what to change about it.
 #[derive(Args)]
 struct What {
-    /// A scene file, or the name of a built-in scene
+    /// A scene file, a session saved in the window, or the name of a built-in scene
     scene: Option<String>,
     /// Simulated time of a run without a window: 10s, 500ms
     #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
@@ -91,7 +93,7 @@ struct What {
     /// Threads the solver works on [default: all cores, one less with a window]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     threads: Option<u16>,
-    /// Commands to carry out when their time comes: a list in RON or JSON, or a run's summary.json
+    /// Commands to carry out when their time comes: a list in RON or JSON, a run's summary.json, or a session
     #[arg(long, value_name = "FILE")]
     commands: Option<PathBuf>,
 }
@@ -122,7 +124,7 @@ enum Task {
     },
     /// Compute a run again and confirm that it comes to the same state, to the bit
     Verify {
-        /// A run's summary.json, or a list of changes saved in the window
+        /// A run's summary.json, or a session or a list of changes saved in the window
         file: PathBuf,
         /// Threads the solver works on [default: all cores]
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
@@ -174,12 +176,28 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     }
     let what = arguments.what;
     let name = what.scene.clone().unwrap_or_else(first_scene);
+    #[cfg(feature = "desktop")]
+    if Session::is_at(Path::new(&name)) && !arguments.no_render {
+        let session = unchanged_session(&name, &what)?;
+        let options = window_options(&what, Vec::new());
+        return Ok(open_window(
+            name,
+            session.into(),
+            options,
+            arguments.picture,
+        ));
+    }
+    if Session::is_at(Path::new(&name)) {
+        return Err(HeadlessError::Input(format!(
+            "{name} is a session: `grainfall verify {name}` runs it again without a window"
+        )));
+    }
     let (scene, script) = changed_scene(&name, &what)?;
     if !arguments.no_render {
         #[cfg(feature = "desktop")]
         return Ok(open_window(
             name,
-            scene,
+            scene.into(),
             window_options(&what, script),
             arguments.picture,
         ));
@@ -234,6 +252,28 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
     Ok((scene, script))
 }
 
+/// The session in the file called `name`, which opens as it was.
+#[cfg(feature = "desktop")]
+fn unchanged_session(name: &str, what: &What) -> Result<Session, HeadlessError> {
+    let refuse = |reason: String| Err(HeadlessError::Input(reason));
+    let given = [
+        &what.duration,
+        &what.output_interval,
+        &what.time_step,
+        &what.seed,
+    ];
+    if given.iter().any(|option| option.is_some())
+        || !what.set.is_empty()
+        || what.commands.is_some()
+    {
+        return refuse(format!(
+            "{name} is a session and opens as it was saved: leave the options out and change it in the window, or give a \
+             scene its changes with --commands {name}"
+        ));
+    }
+    Session::read(Path::new(name)).or_else(|error| refuse(error.to_string()))
+}
+
 /// `scenes/papers/kasper2021/dry-r3.ron` is called `dry-r3`.
 fn short_name(name: &str) -> String {
     let file = name.strip_suffix(".ron").unwrap_or(name);
@@ -255,7 +295,7 @@ fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
 
 /// Opens the laboratory; what went wrong is said here. Returns the exit code.
 #[cfg(feature = "desktop")]
-fn open_window(name: String, scene: Scene, options: Options, picture: PictureArguments) -> u8 {
+fn open_window(name: String, opened: Opened, options: Options, picture: PictureArguments) -> u8 {
     use grainfall::window::{Job, PictureJob, run};
     let picture = picture.screenshot.map(|path| PictureJob {
         path,
@@ -265,7 +305,7 @@ fn open_window(name: String, scene: Scene, options: Options, picture: PictureArg
     });
     let job = Job {
         name,
-        scene,
+        opened,
         options,
         picture,
     };

@@ -1,48 +1,17 @@
-//! What a file claims: that this scene with these commands comes to that state. `grainfall verify FILE` computes it again.
+//! `grainfall verify FILE`: computes again what a file claims.
 //!
-//! In: a run's `summary.json`, or a list of changes that was saved in the window. Out: whether the state is the same to
-//! the bit. A fingerprint over all that makes the claim tells a file that was edited or damaged since.
+//! In: a run's `summary.json`, or a session or a list of changes that was saved in the window. Out: whether the state is
+//! the same to the bit.
 
 use super::{HeadlessError, Progress};
-use crate::files::write_whole;
-use crate::scene::Scene;
-use crate::simulation::{
-    BedStore, Command, Preparation, Run, Script, ScriptedCommand, StampedCommand,
-};
+use crate::simulation::{BedStore, Claim, Preparation, Run, Script, Session, VERSION};
 use crate::solver::{Fault, advise};
-use crate::world::{StateHash, World};
-use serde::{Deserialize, Serialize};
+use crate::world::StateHash;
+use std::fs;
 use std::path::Path;
-use std::{fs, io};
-
-/// Version of the program, as files state it.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Simulated time between two looks at whether to stop [s].
 const SLICE: f64 = 0.01;
-
-/// A state and all that leads to it, as JSON files hold it; what else they hold is passed over.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Claim {
-    /// Always `grainfall`.
-    pub program: String,
-    /// Version of the program that wrote it.
-    pub version: String,
-    /// What the scene was called.
-    pub name: String,
-    /// The scene as it was run.
-    pub scene: Scene,
-    /// What was changed, in order; those after the state too.
-    pub commands: Vec<ScriptedCommand>,
-    /// Steps taken until the state.
-    pub steps: u64,
-    /// Simulated time of the state [s].
-    pub time: f64,
-    /// Hash of the state; none where the run had not begun.
-    pub state_hash: Option<String>,
-    /// Hash of scene, commands, steps and state.
-    pub fingerprint: Option<String>,
-}
 
 /// What became of a claim.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,46 +38,20 @@ impl Verdict {
     }
 }
 
-/// Hash of all that a claim states. Commands count by step and content.
-pub fn fingerprint<'a>(
-    scene: &Scene,
-    commands: impl Iterator<Item = (Option<u64>, &'a Command)>,
-    steps: u64,
-    state_hash: Option<&str>,
-) -> String {
-    let commands: Vec<_> = commands.collect();
-    let all = postcard::to_stdvec(&(scene, commands, steps, state_hash)).unwrap_or_default();
-    blake3::hash(&all).to_hex()[..32].to_owned()
-}
-
 impl Claim {
-    /// That `scene`, called `name`, with `commands` comes to `world`.
-    pub fn of(name: &str, scene: &Scene, commands: &[StampedCommand], world: &World) -> Self {
-        let commands: Vec<ScriptedCommand> = commands.iter().map(Into::into).collect();
-        let mut claim = Self {
-            program: "grainfall".into(),
-            version: VERSION.into(),
-            name: name.into(),
-            scene: scene.clone(),
-            commands,
-            steps: world.clock.step,
-            time: world.time(),
-            state_hash: Some(world.hash().to_string()),
-            fingerprint: None,
-        };
-        claim.fingerprint = Some(claim.own_fingerprint());
-        claim
-    }
-
-    /// The claim of the JSON file at `path`.
+    /// The claim of the file at `path`: a session or JSON.
     ///
     /// # Errors
     /// When the file cannot be read, makes no claim, or was edited since it was written.
     pub fn read(path: &Path) -> Result<Self, HeadlessError> {
+        if Session::is_at(path) {
+            let session = Session::read(path).map_err(|e| HeadlessError::Input(e.to_string()))?;
+            return Ok(session.into_claim());
+        }
         let name = path.display();
         let refuse = |reason: String| {
             HeadlessError::Input(format!(
-                "{name}: {reason}; expected a run's summary.json, or a list of changes saved in the window"
+                "{name}: {reason}; expected a run's summary.json, or a session or a list of changes saved in the window"
             ))
         };
         let text =
@@ -117,7 +60,7 @@ impl Claim {
         if claim.program != "grainfall" || claim.state_hash.is_none() {
             return Err(refuse("states no state to come to".into()));
         }
-        if claim.fingerprint != Some(claim.own_fingerprint()) {
+        if !claim.is_genuine() {
             return Err(refuse(format!(
                 "its fingerprint does not fit: the file was edited or damaged, or written by another version than \
                  {VERSION} (it says {})",
@@ -125,17 +68,6 @@ impl Claim {
             )));
         }
         Ok(claim)
-    }
-
-    /// Writes it to the file at `path`, whole or not at all.
-    ///
-    /// # Errors
-    /// When it cannot be written.
-    pub fn write(&self, path: &Path) -> io::Result<()> {
-        write_whole(path, |file| {
-            serde_json::to_writer_pretty(&mut *file, self)?;
-            file.write_all(b"\n")
-        })
     }
 
     /// Computes the state again on `threads` threads, from time zero, until `stop` says so.
@@ -192,18 +124,5 @@ impl Claim {
             });
         }
         Ok(true)
-    }
-
-    fn own_fingerprint(&self) -> String {
-        let commands = self
-            .commands
-            .iter()
-            .map(|entry| (entry.step, &entry.command));
-        fingerprint(
-            &self.scene,
-            commands,
-            self.steps,
-            self.state_hash.as_deref(),
-        )
     }
 }

@@ -20,7 +20,7 @@ mod setting;
 mod summary_file;
 mod velocity_file;
 
-pub use claim::{Claim, Verdict};
+pub use claim::Verdict;
 pub use commands_file::read_commands;
 pub use error::HeadlessError;
 pub(crate) use folder::SUMMARY;

@@ -1,9 +1,8 @@
 //! `summary.json`: what was run, how it ended, what came out.
 
-use super::claim::fingerprint;
 use crate::measure::Summary;
 use crate::scene::Scene;
-use crate::simulation::StampedCommand;
+use crate::simulation::{StampedCommand, fingerprint};
 use crate::solver::{Fault, TimeStepAdvice};
 use serde::Serialize;
 use std::io::{self, Write};

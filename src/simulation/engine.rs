@@ -4,6 +4,7 @@
 //! how the pieces fall does not show in the trajectory.
 
 use super::preparation::{Preparation, Prepared};
+use super::session::Session;
 use super::timeline::{Past, Timeline};
 use super::{
     Command, CommandError, ParameterInfo, Run, Script, ScriptedCommand, StampedCommand, Status,
@@ -11,6 +12,7 @@ use super::{
 use crate::measure::{FlowHistory, Sample};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -22,6 +24,17 @@ pub enum Order {
     Tick(Duration),
     /// Go no further than this step for now.
     Hold(Option<u64>),
+    /// Write the whole session to this file.
+    Save(PathBuf),
+}
+
+/// What became of a file that was to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SavedFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Why it could not be written, if it could not.
+    pub outcome: Result<(), String>,
 }
 
 /// News from the engine since the last update was taken.
@@ -49,6 +62,8 @@ pub struct Update {
     pub profile: Option<Profile>,
     /// What people should know, in sentences.
     pub warnings: Vec<String>,
+    /// Files that were to be written.
+    pub saved: Vec<SavedFile>,
 }
 
 impl Update {
@@ -69,6 +84,7 @@ impl Update {
         self.status = later.status.or(self.status.take());
         self.profile = later.profile.or(self.profile.take());
         self.warnings.extend(later.warnings);
+        self.saved.extend(later.saved);
     }
 }
 
@@ -97,8 +113,8 @@ pub struct Engine {
     script: Vec<ScriptedCommand>,
     /// Memory for keyframes [bytes].
     memory: usize,
-    /// Commands that come before the run stands, or while it is on the way to another moment.
-    waiting: Vec<Command>,
+    /// Orders that come before the run stands, or while it is on the way to another moment.
+    waiting: Vec<Order>,
     /// When a parameter was last set.
     changed: Option<Instant>,
     fault: Option<Fault>,
@@ -138,8 +154,25 @@ impl Engine {
         autoplay: bool,
         speed: f64,
     ) -> Self {
+        let stage = Stage::Preparing(Box::new(preparation));
         Self {
-            stage: Stage::Preparing(Box::new(preparation)),
+            script,
+            memory,
+            ..Self::at(stage, autoplay, speed)
+        }
+    }
+
+    /// An engine that goes on with `timeline`.
+    pub fn resume(timeline: Timeline, autoplay: bool, speed: f64) -> Self {
+        let parameters = timeline.run().parameters().clone();
+        let mut engine = Self::at(Stage::Ready(Box::new(timeline)), autoplay, speed);
+        engine.news.parameters = Some(parameters);
+        engine
+    }
+
+    fn at(stage: Stage, autoplay: bool, speed: f64) -> Self {
+        Self {
+            stage,
             mode: if autoplay {
                 Mode::Running
             } else {
@@ -150,8 +183,8 @@ impl Engine {
             target: 0,
             hold: u64::MAX,
             piece: 8,
-            script,
-            memory,
+            script: Vec::new(),
+            memory: 0,
             waiting: Vec::new(),
             changed: None,
             fault: None,
@@ -166,8 +199,9 @@ impl Engine {
         match order {
             Order::Tick(passed) => self.grant(passed),
             Order::Hold(step) => self.hold = step.unwrap_or(u64::MAX),
-            Order::Command(command) if self.must_wait(&command) => self.waiting.push(command),
+            order if self.must_wait(&order) => self.waiting.push(order),
             Order::Command(command) => self.carry_out(command),
+            Order::Save(path) => self.save(path),
         }
     }
 
@@ -262,14 +296,15 @@ impl Engine {
         goal.min(self.hold)
     }
 
-    /// Whether `command` has no meaning before the run stands where it was asked to go.
-    fn must_wait(&self, command: &Command) -> bool {
+    /// Whether `order` has no meaning before the run stands where it was asked to go.
+    fn must_wait(&self, order: &Order) -> bool {
         match &self.stage {
             Stage::Preparing(_) => true,
             Stage::Ready(timeline) => {
                 let acts_on_the_moment = matches!(
-                    command,
-                    Command::Play | Command::Step(_) | Command::Set { .. }
+                    order,
+                    Order::Save(_)
+                        | Order::Command(Command::Play | Command::Step(_) | Command::Set { .. })
                 );
                 timeline.destination().is_some() && acts_on_the_moment
             }
@@ -315,9 +350,20 @@ impl Engine {
 
     /// Carries out what waited, as far as it need not wait on.
     fn carry_out_waiting(&mut self) {
-        for command in std::mem::take(&mut self.waiting) {
-            self.order(Order::Command(command));
+        for order in std::mem::take(&mut self.waiting) {
+            self.order(order);
         }
+    }
+
+    /// Writes the whole session to `path`, on the way from one piece of work to the next.
+    fn save(&mut self, path: PathBuf) {
+        let outcome = match &self.stage {
+            Stage::Ready(timeline) => Session::of(&timeline.run().scene().title, timeline)
+                .write(&path)
+                .map_err(|error| error.to_string()),
+            Stage::Preparing(_) | Stage::Failed(_) => Err("there is no run".into()),
+        };
+        self.news.saved.push(SavedFile { path, outcome });
     }
 
     fn carry_out(&mut self, command: Command) {

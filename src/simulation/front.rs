@@ -5,9 +5,10 @@
 
 use super::bed::BedStore;
 use super::driver::Driver;
-use super::engine::{Engine, Order, Update};
+use super::engine::{Engine, Order, SavedFile, Update};
 use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
+use super::session::Session;
 use super::timeline::Past;
 use super::{Command, Parameter, ScriptedCommand, StampedCommand};
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
@@ -16,6 +17,7 @@ use crate::solver::{Fault, Profile, TimeStepAdvice, advise};
 use crate::world::World;
 use bevy::ecs::resource::Resource;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -24,6 +26,9 @@ pub const SMALLEST_DROP: f64 = std::f64::consts::PI / 180.0;
 
 /// Wall-clock time over which the real-time factor is measured.
 const RATE_TIME: Duration = Duration::from_millis(400);
+
+/// Wall-clock time of running after which a run is worth keeping even if nothing was changed in it.
+const LONG_RUN: Duration = Duration::from_mins(5);
 
 /// How a simulation is opened.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,6 +150,20 @@ pub struct Simulation {
     rate: Rate,
     warnings: Vec<String>,
     generation: u64,
+    saved: Saved,
+}
+
+/// What is known of the files a session was written to.
+#[derive(Default)]
+struct Saved {
+    /// News of files, not yet taken.
+    files: Vec<SavedFile>,
+    /// Commands sent before each file that is still to be written.
+    pending: Vec<u64>,
+    /// The revision that the last file holds, or that the simulation was opened with.
+    revision: u64,
+    /// Wall-clock time of running since then.
+    worked: Duration,
 }
 
 impl Simulation {
@@ -154,6 +173,28 @@ impl Simulation {
         let advice = advise(&scene);
         let speed = options.speed;
         let driver = drive(scene.clone(), advice.time_step, options);
+        Self::with(scene, advice, speed, driver)
+    }
+
+    /// Opens `session` at the moment that was shown. What `options` say of beds and scripts means nothing for it.
+    pub fn resume(session: Session, options: Options) -> Self {
+        let scene = Arc::new(session.claim().scene.clone());
+        let speed = options.speed;
+        let make = move || {
+            let timeline = session.into_timeline(options.threads, options.memory);
+            Engine::resume(timeline, options.autoplay, speed)
+        };
+        let driver = driven(options.driver, make);
+        let advice = advise(&scene);
+        Self::with(scene, advice, speed, driver)
+    }
+
+    fn with(
+        scene: Arc<Scene>,
+        advice: TimeStepAdvice,
+        speed: f64,
+        driver: std::io::Result<Driver>,
+    ) -> Self {
         let mut simulation = Self {
             scene,
             speed,
@@ -178,6 +219,7 @@ impl Simulation {
             warnings: advice.warning.iter().cloned().collect(),
             advice,
             generation: 0,
+            saved: Saved::default(),
             driver: None,
         };
         match driver {
@@ -281,6 +323,31 @@ impl Simulation {
         self.order(Order::Command(command));
     }
 
+    /// Writes the whole session to `path`, off this thread where there is another; what becomes of it is told by
+    /// [`Simulation::take_saved`].
+    pub fn save(&mut self, path: PathBuf) {
+        self.saved.pending.push(self.sent);
+        self.order(Order::Save(path));
+    }
+
+    /// What became of files since this was last called.
+    pub fn take_saved(&mut self) -> Vec<SavedFile> {
+        std::mem::take(&mut self.saved.files)
+    }
+
+    /// Whether a file is still to be written.
+    pub fn is_saving(&self) -> bool {
+        !self.saved.pending.is_empty()
+    }
+
+    /// Whether there is something that no file holds and that would be missed: changes, runs that were kept, or minutes of
+    /// computing.
+    pub fn is_unsaved(&self) -> bool {
+        let past = &self.past;
+        let changed = past.undo.is_some() || past.redo.is_some() || !past.kept.is_empty();
+        (changed && self.revision != self.saved.revision) || self.saved.worked > LONG_RUN
+    }
+
     /// Whether every command that was sent has been taken up.
     pub fn has_answered(&self) -> bool {
         self.answered == self.sent
@@ -338,6 +405,9 @@ impl Simulation {
         if let Some(update) = update {
             self.take(update);
         }
+        if self.status == Status::Running {
+            self.saved.worked += passed;
+        }
     }
 
     fn order(&mut self, order: Order) {
@@ -371,7 +441,11 @@ impl Simulation {
         if self.has_answered() && !matches!(self.status, Status::Seeking { .. }) {
             self.sought = None;
         }
-        self.parameters = update.parameters.unwrap_or(self.parameters.clone());
+        if let Some(parameters) = update.parameters {
+            self.parameters = parameters;
+            self.saved.revision = self.revision;
+        }
+        self.take_files(update.saved);
         self.profile = update.profile.unwrap_or(std::mem::take(&mut self.profile));
         if self.status != Status::Running {
             self.rate.since = None;
@@ -382,6 +456,20 @@ impl Simulation {
             self.generation += 1;
         }
         self.avalanches.follow(&self.series);
+    }
+
+    fn take_files(&mut self, files: Vec<SavedFile>) {
+        let pending = std::mem::take(&mut self.saved.pending);
+        let (answered, waiting) = pending.split_at(files.len().min(pending.len()));
+        self.saved.pending = waiting.to_vec();
+        for (file, &sent) in files.into_iter().zip(answered) {
+            // Commands that followed before the news came may be in this revision and not in the file.
+            if file.outcome.is_ok() && sent == self.answered {
+                self.saved.revision = self.revision;
+                self.saved.worked = Duration::ZERO;
+            }
+            self.saved.files.push(file);
+        }
     }
 }
 
@@ -398,6 +486,14 @@ fn drive(scene: Arc<Scene>, time_step: f64, options: Options) -> std::io::Result
             options.speed,
         )
     };
+    driven(kind, make)
+}
+
+/// The driver of this `kind` with the engine that `make` makes.
+fn driven(
+    kind: DriverKind,
+    make: impl FnOnce() -> Engine + Send + 'static,
+) -> std::io::Result<Driver> {
     match kind {
         DriverKind::Inline => Ok(Driver::inline(make())),
         DriverKind::Thread => Driver::thread(make),

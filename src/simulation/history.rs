@@ -5,16 +5,44 @@
 
 use super::{Run, Script, StampedCommand};
 use crate::measure::{FlowHistory, Series};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The changes of a run, in order.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(into = "Changes", from = "Changes")]
 pub struct History {
     commands: Vec<StampedCommand>,
     /// For each command a hash of it and of all before it.
     keys: Vec<blake3::Hash>,
     /// Index of the first command of each change: a drag or a button may take several.
     changes: Vec<usize>,
+}
+
+/// A history in a file: each command, and whether it is part of the change before it.
+#[derive(Serialize, Deserialize)]
+struct Changes(Vec<(StampedCommand, bool)>);
+
+impl From<History> for Changes {
+    fn from(history: History) -> Self {
+        let first = |index| history.changes.contains(&index);
+        let commands = history.commands.iter().cloned().enumerate();
+        Self(
+            commands
+                .map(|(index, command)| (command, !first(index)))
+                .collect(),
+        )
+    }
+}
+
+impl From<Changes> for History {
+    fn from(changes: Changes) -> Self {
+        let mut history = Self::default();
+        for (command, joins) in changes.0 {
+            history.push(command, joins);
+        }
+        history
+    }
 }
 
 /// Where a state lies: after how many commands of which history, at which step.
@@ -88,7 +116,7 @@ impl History {
 }
 
 /// All that is known of a run from time zero to its end so far.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Record {
     /// Which of all runs it is, counted from 1.
     pub number: u32,
@@ -97,6 +125,7 @@ pub struct Record {
     /// The samples taken.
     pub series: Series,
     /// The flowing layer.
+    #[serde(with = "super::shared")]
     pub flow: Arc<FlowHistory>,
     /// Its last step so far.
     pub end: Moment,
@@ -105,7 +134,7 @@ pub struct Record {
 }
 
 /// A step and its time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Moment {
     /// Steps taken.
     pub step: u64,

@@ -13,10 +13,14 @@
 //! | `timeline` | runs as something to hold: seek, branch, undo |
 //! | `history`, `keyframes` | what tells runs apart and what is known of them; states to come back to |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
+//! | `session`, `archive`, `shared` | all of that in one file |
+//! | `claim` | a state and what leads to it, as files state it |
 //! | `engine`, `driver` | who moves a run on, in short pieces, inline or on a thread |
 //! | `front`, `plugin` | what the outside sees, and the Bevy system that ticks it |
 
+mod archive;
 mod bed;
+mod claim;
 mod command;
 mod driver;
 mod engine;
@@ -29,11 +33,15 @@ mod preparation;
 mod relabel;
 mod run;
 mod script;
+mod session;
 mod settling;
+mod shared;
 mod timeline;
 
 pub use bed::BedStore;
+pub use claim::{Claim, VERSION, fingerprint};
 pub use command::{Command, Parameter, StampedCommand};
+pub use engine::SavedFile;
 pub use front::{DriverKind, Options, SMALLEST_DROP, Simulation, Status};
 pub use history::{History, Moment, Record};
 pub use parameter::{DisplayUnit, ParameterInfo};
@@ -41,4 +49,5 @@ pub use plugin::{SimulationPlugin, SimulationSystems, advance_simulation};
 pub use preparation::{Preparation, Prepared, make_bed};
 pub use run::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
 pub use script::{Script, ScriptError, ScriptedCommand};
+pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use timeline::{Changed, Past, Timeline};

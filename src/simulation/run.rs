@@ -32,11 +32,12 @@ pub struct Run {
 }
 
 /// Where a run stood: all it takes to go on from there, together with the run's commands and samples until then.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot {
     world: World,
     commands: usize,
     samples: usize,
+    #[serde(with = "super::shared")]
     flow: Arc<FlowHistory>,
     next_sample: u64,
 }
@@ -50,6 +51,20 @@ impl Snapshot {
     /// Commands carried out until then.
     pub fn commands(&self) -> usize {
         self.commands
+    }
+
+    /// The state then.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The same with the shapes of polyhedra that `shapes_of` has.
+    pub(super) fn sharing(mut self, shapes_of: Option<&World>) -> Self {
+        let shapes = shapes_of.and_then(|world| Some(world.polyhedra.as_ref()?.shapes.clone()));
+        if let Some(polyhedra) = &mut self.world.polyhedra {
+            polyhedra.shapes = shapes.unwrap_or_else(|| Arc::new([]));
+        }
+        self
     }
 
     /// Memory that it takes [bytes].

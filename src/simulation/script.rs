@@ -23,7 +23,7 @@ pub struct ScriptedCommand {
 }
 
 /// Commands in the order in which they are due.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Script {
     commands: VecDeque<(u64, Command)>,
 }

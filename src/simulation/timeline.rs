@@ -4,10 +4,13 @@
 //! is come back to from the keyframe before it by computing again what followed, commands included: the same bits. A
 //! change made while an earlier moment is shown begins another run; the one that is left is kept beside it.
 
+use super::archive::{Archive, ArchivedDestination, ArchivedState, ArchivedTurn, Table};
 use super::history::{Moment, Place, Record};
 use super::keyframes::Keyframes;
 use super::{Command, CommandError, Parameter, Run, Script};
+use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -51,7 +54,7 @@ enum Destination {
 }
 
 /// What a change was about.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Changed {
     /// One parameter.
     Parameter(Parameter),
@@ -91,6 +94,41 @@ pub struct Past {
     pub memory: usize,
 }
 
+impl Turn {
+    fn archive(&self, table: &mut Table) -> ArchivedTurn {
+        let destination = match &self.destination {
+            Destination::Earlier { commands, moment } => ArchivedDestination::Earlier {
+                commands: *commands,
+                moment: *moment,
+            },
+            Destination::Other { record, step } => ArchivedDestination::Other {
+                record: table.index(record),
+                step: *step,
+            },
+        };
+        ArchivedTurn {
+            what: self.what.clone(),
+            destination,
+        }
+    }
+
+    fn unpack(archived: ArchivedTurn, records: &[Arc<Record>]) -> Option<Self> {
+        let destination = match archived.destination {
+            ArchivedDestination::Earlier { commands, moment } => {
+                Destination::Earlier { commands, moment }
+            }
+            ArchivedDestination::Other { record, step } => Destination::Other {
+                record: records.get(record)?.clone(),
+                step,
+            },
+        };
+        Some(Self {
+            what: archived.what,
+            destination,
+        })
+    }
+}
+
 impl Timeline {
     /// The timeline of `run`, which is at its end, with keyframes in `budget` bytes.
     pub fn new(run: Run, budget: usize) -> Self {
@@ -105,6 +143,74 @@ impl Timeline {
             news: News::default(),
             begun: 1,
         }
+    }
+
+    /// All of it, as a file can keep it.
+    pub fn archive(&self) -> Archive {
+        let mut table = Table::of(&self.record);
+        let kept = self.kept.iter().map(|record| table.index(record)).collect();
+        let mut turns =
+            |turns: &[Turn]| turns.iter().map(|turn| turn.archive(&mut table)).collect();
+        let (undo, redo) = (turns(&self.undo), turns(&self.redo));
+        let records = table.records();
+        let shown = ArchivedState {
+            record: 0,
+            snapshot: self.run.snapshot(),
+        };
+        let ends = records.iter().enumerate().filter_map(|(record, known)| {
+            let snapshot = self.keyframes.nearest(&known.history, known.end.step)?;
+            let is_end = snapshot.step() == known.end.step;
+            is_end.then(|| (record, snapshot.clone()))
+        });
+        let states = Archive::states(shown, ends);
+        Archive {
+            bed: (**self.run.bed()).clone(),
+            states,
+            kept,
+            undo,
+            redo,
+            begun: self.begun,
+            records,
+        }
+    }
+
+    /// The timeline of `scene` that was put into `archive`, on `threads` threads, with keyframes in `budget` bytes.
+    pub fn unpack(archive: Archive, scene: Arc<Scene>, threads: usize, budget: usize) -> Self {
+        let records: Vec<Arc<Record>> = archive.records.into_iter().map(Arc::new).collect();
+        let turn = |turn| Turn::unpack(turn, &records);
+        let mut timeline = Self {
+            record: records
+                .first()
+                .map(|first| (**first).clone())
+                .unwrap_or_default(),
+            kept: (archive.kept.iter())
+                .filter_map(|index| records.get(*index).cloned())
+                .collect(),
+            undo: archive.undo.into_iter().filter_map(turn).collect(),
+            redo: archive.redo.into_iter().filter_map(turn).collect(),
+            run: Run::new(scene, archive.bed, threads),
+            keyframes: Keyframes::new(budget),
+            journey: None,
+            news: News {
+                switched: true,
+                arrived: true,
+            },
+            begun: archive.begun,
+        };
+        let bed = timeline.run.bed().clone();
+        for (index, state) in archive.states.into_iter().enumerate() {
+            let snapshot = state.snapshot.sharing(Some(&bed));
+            if index == 0 {
+                let record = &timeline.record;
+                (timeline.run).restore(&snapshot, record.history.commands(), &record.series);
+            }
+            if let Some(record) = records.get(state.record) {
+                let place = record.history.place(snapshot.commands(), snapshot.step());
+                timeline.keyframes.keep(place, || snapshot);
+            }
+        }
+        timeline.follow_record();
+        timeline
     }
 
     /// Commands to carry out by themselves when their steps come.

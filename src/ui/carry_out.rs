@@ -1,81 +1,175 @@
 //! What panels ask for, fulfilled: the only place that changes the run, opens scenes and writes pictures for them.
 
 use super::{Desk, OpenWith, Purpose, Request, Requests};
-use crate::headless::Claim;
 use crate::scene::Scene;
-use crate::simulation::{Options, Simulation};
-use crate::view::{ViewSettings, save_png};
+use crate::simulation::{Claim, Options, SavedFile, Session, SessionError, Simulation};
+use crate::view::{CameraRequest, ViewSettings, save_png};
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// A session that is being read.
+#[derive(Resource, Default)]
+pub struct Opening(Option<(String, Task<Result<Session, SessionError>>)>);
+
+/// What it takes to open something.
+#[derive(SystemParam)]
+pub struct Opener<'w, 's> {
+    opening: ResMut<'w, Opening>,
+    options: Res<'w, OpenWith>,
+    view: ResMut<'w, ViewSettings>,
+    commands: Commands<'w, 's>,
+}
 
 /// Fulfils every request in the order in which it was made.
 pub fn fulfil_requests(
     mut requests: ResMut<Requests>,
     mut simulation: Option<ResMut<Simulation>>,
-    mut view: ResMut<ViewSettings>,
     mut desk: ResMut<Desk>,
+    mut opener: Opener,
     mut exit: MessageWriter<AppExit>,
-    options: Res<OpenWith>,
-    mut commands: Commands,
 ) {
-    for request in std::mem::take(&mut requests.0) {
+    let mut asked = std::mem::take(&mut requests.0);
+    if let Some(simulation) = &mut simulation {
+        asked.extend(tell_saved(simulation, &mut desk));
+    }
+    for request in asked {
+        let simulation = simulation.as_deref_mut();
+        let unsaved = (simulation.as_ref()).is_some_and(|simulation| simulation.is_unsaved());
+        let Some(request) = without_loss(request, unsaved, &mut desk) else {
+            continue;
+        };
         match request {
             Request::Command(command) => {
-                if let Some(simulation) = &mut simulation {
+                if let Some(simulation) = simulation {
                     simulation.send(command);
                 }
             }
-            Request::Camera(request) => view.camera_request = Some(request),
-            Request::ChooseScene => desk.path_dialog.ask(Purpose::Scene),
+            Request::Camera(request) => opener.view.camera_request = Some(request),
+            Request::ChooseFile => desk.path_dialog.ask(Purpose::Open),
             Request::ChoosePicture => desk.path_dialog.ask(Purpose::Picture),
-            Request::Open(name) => open(&name, &options, &mut desk, &mut view, &mut commands),
+            Request::Open(name) => opener.open(name, &mut desk),
+            Request::Save => match (simulation, desk.session.clone()) {
+                (Some(simulation), Some(path)) => simulation.save(path),
+                _ => desk.path_dialog.ask(Purpose::Session),
+            },
+            Request::ChooseSession => desk.path_dialog.ask(Purpose::Session),
+            Request::SaveSession(path) => {
+                if let Some(simulation) = simulation {
+                    simulation.save(path);
+                }
+            }
             Request::SavePicture(path) => {
-                commands
+                opener
+                    .commands
                     .spawn(Screenshot::primary_window())
                     .observe(save_to(path));
             }
             Request::ChooseChanges => desk.path_dialog.ask(Purpose::Changes),
             Request::SaveChanges(path) => {
-                if let Some(simulation) = &simulation {
-                    desk.notify(said(
-                        "The list of changes",
-                        &path,
-                        save_changes(simulation, &path),
-                    ));
+                if let Some(simulation) = simulation {
+                    let saved = save_changes(simulation, &path);
+                    desk.notify(said("The list of changes", &path, saved));
                 }
             }
             Request::Show(sheet) => desk.show_sheet(sheet),
             Request::Quit => {
                 exit.write(AppExit::Success);
             }
+            Request::SaveThen(_) | Request::Leave(_) => {}
         }
+    }
+    let saving = simulation.is_some_and(|simulation| simulation.is_saving());
+    if !saving && !desk.path_dialog.is_open() {
+        // No file was chosen, so what is open stays.
+        desk.after_saving = None;
     }
 }
 
-/// Opens the scene called `name`; one that cannot be opened leaves the present one running.
-fn open(
-    name: &str,
-    options: &OpenWith,
-    desk: &mut Desk,
-    view: &mut ViewSettings,
-    commands: &mut Commands,
-) {
-    match Scene::open(name) {
-        Ok(scene) => {
-            // A script belongs to the scene it was given with.
-            let options = Options {
-                script: Vec::new(),
-                ..options.0.clone()
-            };
-            commands.insert_resource(Simulation::open(scene, options));
-            desk.scene_opened(name);
-            view.cut = None;
-            view.camera_request = Some(crate::view::CameraRequest::Home);
+/// What to do for `request`; nothing yet where it leaves `unsaved` work and a person must be asked first.
+fn without_loss(request: Request, unsaved: bool, desk: &mut Desk) -> Option<Request> {
+    match request {
+        Request::Open(_) | Request::Quit if unsaved => {
+            desk.ask_to_save(request);
+            None
         }
-        Err(error) => desk.show_scene_error(error.to_string()),
+        Request::Leave(request) => Some(*request),
+        Request::SaveThen(next) => {
+            desk.after_saving = Some(*next);
+            Some(Request::Save)
+        }
+        request => Some(request),
+    }
+}
+
+/// Says what became of the session's files; what was to follow, if it may now.
+fn tell_saved(simulation: &mut Simulation, desk: &mut Desk) -> Option<Request> {
+    let mut next = None;
+    for SavedFile { path, outcome } in simulation.take_saved() {
+        let following = desk.after_saving.take();
+        if outcome.is_ok() {
+            desk.session = Some(path.clone());
+            next = following.map(|next| Request::Leave(Box::new(next)));
+        }
+        desk.notify(said("The session", &path, outcome));
+    }
+    next
+}
+
+/// Goes on with the session that has been read; one that cannot be leaves the present one running.
+pub fn finish_opening(mut desk: ResMut<Desk>, mut opener: Opener) {
+    let Some((name, task)) = &mut opener.opening.0 else {
+        return;
+    };
+    let Some(read) = check_ready(task) else {
+        return;
+    };
+    let name = std::mem::take(name);
+    opener.opening.0 = None;
+    match read {
+        Ok(session) => {
+            let options = opener.options.0.clone();
+            opener.show(Simulation::resume(session, options));
+            desk.session_opened(&name);
+        }
+        Err(error) => desk.show_open_error(error.to_string()),
+    }
+}
+
+impl Opener<'_, '_> {
+    /// Opens the scene or the session called `name`; one that cannot be opened leaves the present one running.
+    fn open(&mut self, name: String, desk: &mut Desk) {
+        self.opening.0 = None;
+        if Session::is_at(Path::new(&name)) {
+            desk.notify(format!("Reading {name}"));
+            let path = PathBuf::from(&name);
+            let read = IoTaskPool::get().spawn(async move { Session::read(&path) });
+            self.opening.0 = Some((name, read));
+            return;
+        }
+        match Scene::open(&name) {
+            Ok(scene) => {
+                // A script belongs to the scene it was given with.
+                let options = Options {
+                    script: Vec::new(),
+                    ..self.options.0.clone()
+                };
+                self.show(Simulation::open(scene, options));
+                desk.scene_opened(&name);
+            }
+            Err(error) => desk.show_open_error(error.to_string()),
+        }
+    }
+
+    /// Shows `simulation` as a scene is shown at first.
+    fn show(&mut self, simulation: Simulation) {
+        self.commands.insert_resource(simulation);
+        self.view.cut = None;
+        self.view.camera_request = Some(CameraRequest::Home);
     }
 }
 

@@ -23,6 +23,7 @@ use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
 use bevy_egui::egui::{self, Align2, CollapsingHeader, FontId, Id, Margin, RichText, ScrollArea};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// How long a notice stays.
@@ -45,7 +46,13 @@ pub struct Desk {
     /// Choosing a file.
     pub path_dialog: PathDialog,
     sheet: Option<Sheet>,
-    scene_error: Option<String>,
+    open_error: Option<String>,
+    /// The file of the session, where it has one.
+    pub(super) session: Option<PathBuf>,
+    /// What would leave work that is in no file, while a person is asked about it.
+    leaving: Option<Request>,
+    /// What to do when the session has been saved.
+    pub(super) after_saving: Option<Request>,
     notice: Option<(String, Instant)>,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
@@ -101,7 +108,10 @@ impl Default for Desk {
             recent: Vec::new(),
             path_dialog: PathDialog::default(),
             sheet: None,
-            scene_error: None,
+            open_error: None,
+            session: None,
+            leaving: None,
+            after_saving: None,
             notice: None,
             file_hovers: false,
         }
@@ -138,12 +148,12 @@ impl Desk {
             painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
         };
         if simulation.is_none() {
-            let text = "Open a scene: File menu, Ctrl+O, or drop a .ron file here";
+            let text = "Open a scene or a session: File menu, Ctrl+O, or drop a file here";
             write(text, 18.0, visuals.text_color());
         }
         if self.file_hovers {
             painter.rect_filled(free, 0.0, Palette::of(visuals).veil);
-            write("Drop to open the scene", 24.0, visuals.strong_text_color());
+            write("Drop to open", 24.0, visuals.strong_text_color());
         }
     }
 
@@ -152,9 +162,19 @@ impl Desk {
         self.sheet = Some(sheet);
     }
 
-    /// Shows why a scene could not be opened.
-    pub fn show_scene_error(&mut self, reason: String) {
-        self.scene_error = Some(reason);
+    /// Shows why a file could not be opened.
+    pub fn show_open_error(&mut self, reason: String) {
+        self.open_error = Some(reason);
+    }
+
+    /// Why a file could not be opened, while that is shown.
+    pub fn open_error(&self) -> Option<&str> {
+        self.open_error.as_deref()
+    }
+
+    /// Asks whether to save before `next`, which leaves the session.
+    pub fn ask_to_save(&mut self, next: Request) {
+        self.leaving = Some(next);
     }
 
     /// Says `text` for a few seconds.
@@ -167,7 +187,14 @@ impl Desk {
         self.recent.retain(|recent| recent != name);
         self.recent.insert(0, name.to_owned());
         self.recent.truncate(RECENT_SCENES);
+        self.session = None;
         (self.left, self.right) = (left(), right());
+    }
+
+    /// The same for the session in the file called `name`, to which it will be saved again.
+    pub fn session_opened(&mut self, name: &str) {
+        self.scene_opened(name);
+        self.session = Some(name.into());
     }
 
     fn menu_bar_ui(
@@ -220,8 +247,10 @@ impl Desk {
     fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
         self.path_dialog.ui(ctx, out);
         self.sheet = self.sheet.filter(|sheet| sheets::sheet_ui(ctx, *sheet));
-        let open = |reason: &String| sheets::scene_error_ui(ctx, reason);
-        self.scene_error = self.scene_error.take().filter(open);
+        let open = |reason: &String| sheets::open_error_ui(ctx, reason);
+        self.open_error = self.open_error.take().filter(open);
+        let asked = |next: &Request| sheets::unsaved_ui(ctx, next, out);
+        self.leaving = self.leaving.take().filter(asked);
         self.notice_ui(ctx);
     }
 

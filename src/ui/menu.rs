@@ -27,7 +27,7 @@ pub fn menu_ui(
     rest: impl FnOnce(&mut egui::Ui),
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_ui(ui, recent, out));
+        ui.menu_button("File", |ui| file_ui(ui, past, recent, out));
         ui.menu_button("Edit", |ui| edit_ui(ui, past, out));
         ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
         ui.menu_button("Help", |ui| {
@@ -38,8 +38,8 @@ pub fn menu_ui(
     });
 }
 
-fn file_ui(ui: &mut egui::Ui, recent: &[String], out: &mut Vec<Request>) {
-    item_ui(ui, "Open…", Request::ChooseScene, out);
+fn file_ui(ui: &mut egui::Ui, past: Option<&Past>, recent: &[String], out: &mut Vec<Request>) {
+    item_ui(ui, "Open…", Request::ChooseFile, out);
     ui.menu_button("Built-in scenes", |ui| {
         for scene in built_in() {
             item_ui(ui, scene.name, Request::Open(scene.name.into()), out);
@@ -53,6 +53,10 @@ fn file_ui(ui: &mut egui::Ui, recent: &[String], out: &mut Vec<Request>) {
         });
     });
     ui.separator();
+    ui.add_enabled_ui(past.is_some(), |ui| {
+        item_ui(ui, "Save the session", Request::Save, out);
+        item_ui(ui, "Save the session as…", Request::ChooseSession, out);
+    });
     item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
     item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
     ui.separator();

@@ -58,7 +58,7 @@ pub use plots::{Curves, Plots};
 pub use profile::{SolverProfile, advice_ui, profile_ui};
 pub use request::{Request, Sheet};
 pub use results::Results;
-pub use sheets::{scene_error_ui, sheet_ui};
+pub use sheets::{open_error_ui, sheet_ui, unsaved_ui};
 pub use transport::{Transport, status_ui};
 pub use velocity::Velocity;
 
@@ -66,7 +66,7 @@ use crate::simulation::{Options, Simulation};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use crate::world::{Shape, World};
 use bevy::prelude::*;
-use bevy::window::FileDragAndDrop;
+use bevy::window::{FileDragAndDrop, WindowCloseRequested};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 /// A part of the window: one file, one struct, one function.
@@ -108,17 +108,48 @@ struct OpenWith(Options);
 
 /// What has been asked for and not yet fulfilled.
 #[derive(Resource, Default)]
-struct Requests(Vec<Request>);
+pub struct Requests(Vec<Request>);
+
+impl Requests {
+    /// Asks for `request`, as a panel would.
+    pub fn ask(&mut self, request: Request) {
+        self.0.push(request);
+    }
+}
 
 impl Plugin for UiPlugin {
     fn build(&self, app: &mut App) {
+        let options = self.options.clone();
+        app.add_plugins(DeskPlugin { options })
+            .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain());
+    }
+}
+
+/// Fulfils what is asked for, by panels or by [`Requests::ask`]; draws nothing.
+#[derive(Clone, Debug, Default)]
+pub struct DeskPlugin {
+    /// How scenes are opened.
+    pub options: Options,
+}
+
+impl Plugin for DeskPlugin {
+    fn build(&self, app: &mut App) {
         app.insert_resource(OpenWith(self.options.clone()))
             .init_resource::<Requests>()
+            .init_resource::<carry_out::Opening>()
             .init_resource::<Desk>()
-            .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain())
+            .init_resource::<ViewSettings>()
+            .add_message::<FileDragAndDrop>()
+            .add_message::<WindowCloseRequested>()
             .add_systems(
                 Update,
-                (take_dropped_files, carry_out::fulfil_requests).chain(),
+                (
+                    take_dropped_files,
+                    ask_before_closing,
+                    carry_out::fulfil_requests,
+                    carry_out::finish_opening,
+                )
+                    .chain(),
             );
     }
 }
@@ -158,6 +189,16 @@ fn caption(simulation: Option<&Simulation>) -> Caption<'_> {
     Caption {
         world: simulation.and_then(|simulation| simulation.world().map(AsRef::as_ref)),
         real_time_factor: (factor > 0.0).then_some(factor),
+    }
+}
+
+/// Asks to end the program when the window is to be closed.
+fn ask_before_closing(
+    mut closing: MessageReader<WindowCloseRequested>,
+    mut requests: ResMut<Requests>,
+) {
+    if closing.read().count() > 0 {
+        requests.0.push(Request::Quit);
     }
 }
 

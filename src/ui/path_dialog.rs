@@ -4,6 +4,7 @@
 //! it is asked for again while it has not answered, the field appears. Nothing here waits.
 
 use super::Request;
+use crate::simulation::SESSION_EXTENSION;
 use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
 use bevy_egui::egui::{self, Id, Key, Modal};
 use rfd::{AsyncFileDialog, FileHandle};
@@ -16,8 +17,10 @@ const SHORTEST_CHOICE: Duration = Duration::from_millis(800);
 /// What a path is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// A scene to open.
-    Scene,
+    /// A scene or a session to open.
+    Open,
+    /// Where the whole session goes.
+    Session,
     /// Where a picture of the window goes.
     Picture,
     /// Where the list of changes goes.
@@ -28,7 +31,8 @@ impl Purpose {
     /// How the name of a file for it ends.
     fn extension(self) -> &'static str {
         match self {
-            Self::Scene => "ron",
+            Self::Open => "ron",
+            Self::Session => SESSION_EXTENSION,
             Self::Picture => "png",
             Self::Changes => "json",
         }
@@ -66,7 +70,8 @@ struct Typed {
 impl Purpose {
     fn title(self) -> &'static str {
         match self {
-            Self::Scene => "Open a scene",
+            Self::Open => "Open a scene or a session",
+            Self::Session => "Save the session",
             Self::Picture => "Save a picture of the window",
             Self::Changes => "Save the list of changes",
         }
@@ -74,7 +79,8 @@ impl Purpose {
 
     fn field(self) -> &'static str {
         match self {
-            Self::Scene => "Path of the scene file, or name of a built-in scene",
+            Self::Open => "Path of the file, or name of a built-in scene",
+            Self::Session => "Path of the session's file",
             Self::Picture => "Path of the PNG file",
             Self::Changes => "Path of the JSON file",
         }
@@ -82,7 +88,8 @@ impl Purpose {
 
     fn suggestion(self) -> String {
         match self {
-            Self::Scene => String::new(),
+            Self::Open => String::new(),
+            Self::Session => free_name("session", self.extension()),
             Self::Picture => free_name("grainfall", self.extension()),
             Self::Changes => free_name("changes", self.extension()),
         }
@@ -90,7 +97,8 @@ impl Purpose {
 
     fn request(self, path: PathBuf) -> Request {
         match self {
-            Self::Scene => Request::Open(path.display().to_string()),
+            Self::Open => Request::Open(path.display().to_string()),
+            Self::Session => Request::SaveSession(path.with_extension(self.extension())),
             Self::Picture => Request::SavePicture(path.with_extension(self.extension())),
             Self::Changes => Request::SaveChanges(path.with_extension(self.extension())),
         }
@@ -116,6 +124,11 @@ impl PathDialog {
             reason,
             fresh: true,
         });
+    }
+
+    /// Whether a file is being chosen.
+    pub fn is_open(&self) -> bool {
+        self.asked.is_some() || self.typed.is_some()
     }
 
     /// Whether the system's dialog has not answered yet.
@@ -162,7 +175,16 @@ async fn ask_system(purpose: Purpose) -> Answered {
     let since = Instant::now();
     let dialog = AsyncFileDialog::new().set_title(purpose.title());
     let file = match purpose {
-        Purpose::Scene => dialog.add_filter("Scenes", &["ron"]).pick_file().await,
+        Purpose::Open => {
+            let kinds = ["ron", SESSION_EXTENSION];
+            let dialog = dialog.add_filter("Scenes and sessions", &kinds);
+            dialog.pick_file().await
+        }
+        Purpose::Session => {
+            let dialog = dialog.add_filter("Sessions", &[SESSION_EXTENSION]);
+            let name = format!("session.{SESSION_EXTENSION}");
+            dialog.set_file_name(name).save_file().await
+        }
         Purpose::Picture => {
             let dialog = dialog.add_filter("Pictures", &["png"]);
             dialog.set_file_name("grainfall.png").save_file().await
@@ -200,8 +222,8 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
         ui.add_space(4.0);
         ui.horizontal(|ui| {
             let verb = match typed.purpose {
-                Purpose::Scene => "Open",
-                Purpose::Picture | Purpose::Changes => "Save",
+                Purpose::Open => "Open",
+                Purpose::Session | Purpose::Picture | Purpose::Changes => "Save",
             };
             let filled = !typed.text.trim().is_empty();
             let done = ui.add_enabled(filled, egui::Button::new(verb)).clicked();

@@ -12,10 +12,20 @@ pub enum Request {
     Command(Command),
     /// Another view of the scene.
     Camera(CameraRequest),
-    /// Let the person choose a scene file.
-    ChooseScene,
-    /// Open this scene: a file's path or a built-in scene's name.
+    /// Let the person choose a file of a scene or a session.
+    ChooseFile,
+    /// Open this: the path of a scene or a session, or a built-in scene's name.
     Open(String),
+    /// Write the whole session to the file it has, or let the person choose one.
+    Save,
+    /// Let the person choose where the whole session goes.
+    ChooseSession,
+    /// Write the whole session to this file.
+    SaveSession(PathBuf),
+    /// Save, and when that has succeeded do this, which leaves the session.
+    SaveThen(Box<Request>),
+    /// Do this, which leaves the session, without asking.
+    Leave(Box<Request>),
     /// Let the person choose where the list of changes goes.
     ChooseChanges,
     /// Write the changes of the present run to this file.

@@ -1,8 +1,8 @@
-//! Sheets over the window: the shortcuts, what the program is, a scene that could not be opened.
+//! Sheets over the window: the shortcuts, what the program is, a file that could not be opened, work that is in no file.
 
-use super::Sheet;
 use super::shortcuts::{MOUSE, SHORTCUTS};
 use super::theme::Palette;
+use super::{Request, Sheet};
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
 
 /// Draws `sheet`; false once it is closed.
@@ -13,9 +13,9 @@ pub fn sheet_ui(ctx: &egui::Context, sheet: Sheet) -> bool {
     }
 }
 
-/// Draws the reason why a scene could not be opened; false once it is closed.
-pub fn scene_error_ui(ctx: &egui::Context, reason: &str) -> bool {
-    modal_ui(ctx, "This scene cannot be opened", 720.0, |ui| {
+/// Draws the reason why a scene or a session could not be opened; false once it is closed.
+pub fn open_error_ui(ctx: &egui::Context, reason: &str) -> bool {
+    modal_ui(ctx, "This file cannot be opened", 720.0, |ui| {
         let palette = Palette::of(ui.visuals());
         egui::Frame::new()
             .fill(palette.error_fill)
@@ -28,8 +28,39 @@ pub fn scene_error_ui(ctx: &egui::Context, reason: &str) -> bool {
                     ui.add(egui::Label::new(text).selectable(true).extend());
                 });
             });
-        ui.label("What was open goes on. Correct the file and open it again.");
+        ui.label("What was open goes on. A scene can be corrected and opened again.");
     })
+}
+
+/// Asks what becomes of work that is in no file before `next`, which leaves it; false once that is answered.
+pub fn unsaved_ui(ctx: &egui::Context, next: &Request, out: &mut Vec<Request>) -> bool {
+    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
+    let modal = Modal::new(Id::new("unsaved")).frame(frame).show(ctx, |ui| {
+        ui.set_width(460.0_f32.min(0.9 * ui.ctx().content_rect().width()));
+        ui.heading("Save the session?");
+        ui.add_space(4.0);
+        ui.label(
+            "Its changes and runs are in no file yet. Saved, it opens again as it is now, with every change, every run and \
+             this moment, to the bit.",
+        );
+        ui.add_space(8.0);
+        let mut answered = false;
+        ui.horizontal(|ui| {
+            let answers = [
+                ("Save", Some(Request::SaveThen(Box::new(next.clone())))),
+                ("Discard", Some(Request::Leave(Box::new(next.clone())))),
+                ("Cancel", None),
+            ];
+            for (name, answer) in answers {
+                if ui.button(name).clicked() {
+                    out.extend(answer);
+                    answered = true;
+                }
+            }
+        });
+        answered
+    });
+    !(modal.inner || modal.should_close())
 }
 
 /// A window that must be closed before anything else; false once it is.

@@ -118,8 +118,18 @@ pub const SHORTCUTS: &[Shortcut] = &[
     },
     Shortcut {
         keys: &[ctrl(Key::O)],
-        name: "Open a scene",
-        action: Action::Ask(Request::ChooseScene),
+        name: "Open a scene or a session",
+        action: Action::Ask(Request::ChooseFile),
+    },
+    Shortcut {
+        keys: &[ctrl_shift(Key::S)],
+        name: "Save the session to another file",
+        action: Action::Ask(Request::ChooseSession),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::S)],
+        name: "Save the session",
+        action: Action::Ask(Request::Save),
     },
     Shortcut {
         keys: &[ctrl(Key::P)],

@@ -8,7 +8,7 @@ pub mod environment;
 pub mod picture;
 
 use crate::scene::Scene;
-use crate::simulation::{Options, Simulation, SimulationPlugin};
+use crate::simulation::{Options, Session, Simulation, SimulationPlugin};
 use crate::ui::{Desk, UiPlugin};
 use crate::view::{ViewPlugin, ViewSettings};
 use bevy::app::ScheduleRunnerPlugin;
@@ -32,16 +32,53 @@ use std::time::Duration;
 const FRAME: Duration = Duration::from_millis(16);
 
 /// What to open and how.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Job {
-    /// What people call the scene: a file or a built-in scene's name.
+    /// What people call it: a file or a built-in scene's name.
     pub name: String,
-    /// The scene.
-    pub scene: Scene,
+    /// The scene or the session.
+    pub opened: Opened,
     /// How it is run.
     pub options: Options,
     /// A picture to take before the program ends by itself; without one a person ends it.
     pub picture: Option<PictureJob>,
+}
+
+/// What a window opens with.
+#[derive(Clone)]
+pub enum Opened {
+    /// A scene at its start.
+    Scene(Box<Scene>),
+    /// A session at the moment that was shown.
+    Session(Box<Session>),
+}
+
+impl Opened {
+    fn scene(&self) -> &Scene {
+        match self {
+            Self::Scene(scene) => scene,
+            Self::Session(session) => &session.claim().scene,
+        }
+    }
+
+    fn run(self, options: Options) -> Simulation {
+        match self {
+            Self::Scene(scene) => Simulation::open(*scene, options),
+            Self::Session(session) => Simulation::resume(*session, options),
+        }
+    }
+}
+
+impl From<Session> for Opened {
+    fn from(session: Session) -> Self {
+        Self::Session(Box::new(session))
+    }
+}
+
+impl From<Scene> for Opened {
+    fn from(scene: Scene) -> Self {
+        Self::Scene(Box::new(scene))
+    }
 }
 
 /// A picture of the whole laboratory at one moment of the run.
@@ -106,9 +143,11 @@ pub fn run(job: Job) -> Result<(), WindowError> {
 }
 
 /// The app, not yet running.
-fn build(job: Job, software: bool, outcome: Outcome) -> App {
+fn build(mut job: Job, software: bool, outcome: Outcome) -> App {
     let mut app = App::new();
-    let title = title(&job.scene);
+    // A person begins by looking; a picture is taken of a run that goes on.
+    job.options.autoplay = job.picture.is_some();
+    let title = title(job.opened.scene());
     match &job.picture {
         Some(picture) if picture.offscreen => app.add_plugins((
             offscreen_plugins().set(log()),
@@ -136,10 +175,12 @@ fn build(job: Job, software: bool, outcome: Outcome) -> App {
         ))
         .add_systems(Startup, spawn_panel_camera)
         .add_systems(Update, follow_title);
-    app.world_mut()
-        .resource_mut::<Desk>()
-        .scene_opened(&job.name);
-    app.insert_resource(Simulation::open(job.scene, job.options));
+    let mut desk = app.world_mut().resource_mut::<Desk>();
+    match &job.opened {
+        Opened::Scene(_) => desk.scene_opened(&job.name),
+        Opened::Session(_) => desk.session_opened(&job.name),
+    }
+    app.insert_resource(job.opened.run(job.options));
     if let Some(picture) = job.picture {
         app.insert_resource(Commission::new(picture, outcome))
             .add_systems(Update, commission::carry_out);
@@ -157,6 +198,8 @@ fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGro
                 resolution: size.into(),
                 ..default()
             }),
+            // Work that is in no file is asked about first.
+            close_when_requested: false,
             ..default()
         })
         .set(RenderPlugin {

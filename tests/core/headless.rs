@@ -250,8 +250,8 @@ fn verify_refuses_what_was_edited_or_states_nothing() {
 
 #[test]
 fn claim_of_a_state_that_the_run_does_not_come_to_is_not_confirmed() {
-    use grainfall::headless::{Claim, Verdict};
-    use grainfall::simulation::BedStore;
+    use grainfall::headless::Verdict;
+    use grainfall::simulation::{BedStore, Claim};
     let scene = grainfall::scene::Scene::open("bouncing-grain").unwrap();
     let run = || crate::run::prepared(&scene, 1, BedStore::none()).0;
     let (mut honest, mut other) = (run(), run());

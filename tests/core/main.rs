@@ -4,6 +4,7 @@ mod headless;
 mod measure;
 mod run;
 mod scene;
+mod session;
 mod solver;
 mod sweep;
 mod timeline;

@@ -3,7 +3,9 @@
 use crate::run::{bits, friction, prepared, set, shared_beds};
 use grainfall::measure::{Measure, NON_RIGID_TEMPERATURE, Series};
 use grainfall::scene::{LIQUID_CASES, Scene, SceneContainer};
-use grainfall::simulation::{Changed, Command, Parameter, Run, Script, ScriptedCommand, Timeline};
+use grainfall::simulation::{
+    BedStore, Changed, Command, Parameter, Run, Script, ScriptedCommand, Timeline,
+};
 use grainfall::world::StateHash;
 
 /// Memory for a handful of keyframes of the scenes here, and for all that could be wanted [bytes].
@@ -18,6 +20,83 @@ fn wet() -> Scene {
     }
     scene.liquid = Some(LIQUID_CASES[3].liquid());
     scene
+}
+
+/// A scene to explore: how far apart the places are that are looked at, and what is changed at some of them.
+pub struct Lab {
+    pub scene: Scene,
+    pub beds: BedStore,
+    /// Steps from one place to the next.
+    pub unit: u64,
+    changes: [(u64, Command); 3],
+}
+
+/// The wet drum, looked at every 30 ms.
+pub fn wet_lab() -> Lab {
+    Lab {
+        scene: wet(),
+        beds: shared_beds(),
+        unit: unit(),
+        changes: [
+            (3, set(Parameter::Viscosity, 0.2)),
+            (6, wet_friction(0.2)),
+            (7, set(Parameter::LiquidVolume, 2e-6)),
+        ],
+    }
+}
+
+/// A column of about a hundred Voronoi grains that falls, looked at every 8 ms: within a tenth of a second it has spread.
+pub fn column_lab() -> Lab {
+    let mut scene = Scene::open("small-column").unwrap();
+    scene.set("radius", "12mm").unwrap();
+    scene.set("height", "18mm").unwrap();
+    let friction = |value| {
+        let pair = Parameter::Friction("smooth".into(), "rough".into());
+        set(pair, value)
+    };
+    let beds = BedStore::none();
+    let run = prepared(&scene, 1, beds.clone()).0;
+    Lab {
+        unit: run.world().clock.step_at(8e-3),
+        scene,
+        beds,
+        changes: [
+            (3, friction(0.02)),
+            (6, set(Parameter::Gravity, 12.0)),
+            (7, friction(0.9)),
+        ],
+    }
+}
+
+impl Lab {
+    fn run(&self) -> Run {
+        prepared(&self.scene, 1, self.beds.clone()).0
+    }
+
+    /// The change at place 7.
+    pub fn last_change(&self) -> Command {
+        self.changes[2].1.clone()
+    }
+
+    /// Goes to a place.
+    pub fn seek(&self, timeline: &mut Timeline, index: usize) {
+        seek(timeline, self.unit * index as u64);
+    }
+
+    /// A run to place 12 that is changed on the way, with the hash at each place.
+    pub fn recorded(&self, memory: usize) -> (Timeline, Vec<StateHash>) {
+        let mut timeline = Timeline::new(self.run(), memory);
+        let mut hashes = vec![hash(&timeline)];
+        for index in 1..=12 {
+            go_on(&mut timeline, self.unit * index);
+            let due = self.changes.iter().filter(|(place, _)| *place == index);
+            for (_, command) in due {
+                change(&mut timeline, command.clone());
+            }
+            hashes.push(hash(&timeline));
+        }
+        (timeline, hashes)
+    }
 }
 
 fn run() -> Run {
@@ -40,12 +119,12 @@ fn wet_friction(value: f64) -> Command {
     )
 }
 
-fn hash(timeline: &Timeline) -> StateHash {
+pub fn hash(timeline: &Timeline) -> StateHash {
     timeline.run().world().hash()
 }
 
 /// Goes on by pieces, as an engine would, until `step`.
-fn go_on(timeline: &mut Timeline, step: u64) {
+pub fn go_on(timeline: &mut Timeline, step: u64) {
     while timeline.run().world().clock.step < step {
         let next = timeline.run().world().clock.step + 397;
         timeline.advance_to(next.min(step)).unwrap();
@@ -53,7 +132,7 @@ fn go_on(timeline: &mut Timeline, step: u64) {
 }
 
 /// Goes where it was asked to go.
-fn arrive(timeline: &mut Timeline) {
+pub fn arrive(timeline: &mut Timeline) {
     while let Some(step) = timeline.destination() {
         go_on(timeline, step);
     }
@@ -75,8 +154,14 @@ fn redo(timeline: &mut Timeline) {
     arrive(timeline);
 }
 
-fn change(timeline: &mut Timeline, command: Command) {
+pub fn change(timeline: &mut Timeline, command: Command) {
     timeline.change(command, false).unwrap();
+}
+
+/// Speed of the fastest grain [m/s].
+fn top_speed(timeline: &Timeline) -> f64 {
+    let velocities = timeline.run().world().grains.velocity.iter();
+    velocities.map(|v| v.length()).fold(0.0, f64::max)
 }
 
 /// Steps of samples at which the bed flows.
@@ -91,19 +176,7 @@ fn flowing(series: &Series) -> Vec<u64> {
 
 /// A run of 360 ms whose liquid and friction change on the way, with the hash of every twelfth of it.
 fn recorded(memory: usize) -> (Timeline, Vec<StateHash>) {
-    let (mut timeline, unit) = (timeline(memory), unit());
-    let mut hashes = vec![hash(&timeline)];
-    for index in 1..=12 {
-        go_on(&mut timeline, unit * index);
-        match index {
-            3 => change(&mut timeline, set(Parameter::Viscosity, 0.2)),
-            6 => change(&mut timeline, wet_friction(0.2)),
-            7 => change(&mut timeline, set(Parameter::LiquidVolume, 2e-6)),
-            _ => {}
-        }
-        hashes.push(hash(&timeline));
-    }
-    (timeline, hashes)
+    wet_lab().recorded(memory)
 }
 
 #[test]
@@ -349,6 +422,66 @@ fn what_was_recorded_is_seen_again_faster_by_its_keyframes() {
         "the end was kept"
     );
     assert_eq!(hash(&timeline), hashes[12]);
+}
+
+#[test]
+fn scrub_lands_on_the_same_bits_mid_collapse_with_polyhedra() {
+    let lab = column_lab();
+    let mut fastest = 0.0_f64;
+    for memory in [0, PLENTY] {
+        let (mut timeline, hashes) = lab.recorded(memory);
+        let series = bits(&timeline.record().series);
+        let places: &[usize] = match memory {
+            0 => &[9, 4],
+            _ => &[12, 3, 11, 5, 0, 7, 6, 6, 12],
+        };
+        for &index in places {
+            lab.seek(&mut timeline, index);
+            assert_eq!(hash(&timeline), hashes[index], "place {index}");
+            fastest = fastest.max(top_speed(&timeline));
+        }
+        assert_eq!(bits(&timeline.record().series), series);
+        let (mut straight, _) = lab.recorded(0);
+        lab.seek(&mut timeline, 10);
+        for timeline in [&mut timeline, &mut straight] {
+            go_on(timeline, 13 * lab.unit);
+        }
+        assert_eq!(hash(&timeline), hash(&straight));
+        assert!(timeline.kept().is_empty());
+    }
+    // Half of what a free fall from the column's height ends with.
+    assert!(
+        fastest > 0.5 * (2.0 * 9.81 * 0.018_f64).sqrt(),
+        "{fastest} m/s"
+    );
+}
+
+#[test]
+fn branch_undo_and_redo_of_polyhedra_are_the_same_to_the_bit() {
+    let lab = column_lab();
+    let (mut timeline, hashes) = lab.recorded(PLENTY);
+    lab.seek(&mut timeline, 5);
+    change(&mut timeline, set(Parameter::Gravity, 3.0));
+    go_on(&mut timeline, 9 * lab.unit);
+    let branch = hash(&timeline);
+    assert_ne!(branch, hashes[9]);
+    let mut straight = lab.run();
+    let list: Vec<ScriptedCommand> = timeline.run().commands().iter().map(Into::into).collect();
+    let script = Script::new(&list, &straight.world().clock).unwrap();
+    straight.schedule(script).unwrap();
+    straight.advance_to(9 * lab.unit).unwrap();
+    assert_eq!(straight.world().hash(), branch);
+
+    undo(&mut timeline);
+    assert_eq!(timeline.run().world().clock.step, 5 * lab.unit);
+    assert_eq!(hash(&timeline), hashes[5]);
+    redo(&mut timeline);
+    assert_eq!(hash(&timeline), branch);
+    timeline.take_up(0);
+    arrive(&mut timeline);
+    assert_eq!(hash(&timeline), hashes[12], "the run that was left");
+    undo(&mut timeline);
+    assert_eq!(hash(&timeline), branch);
 }
 
 #[test]

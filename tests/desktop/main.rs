@@ -2,6 +2,7 @@
 
 mod panels;
 mod polyhedra;
+mod session;
 mod timeline;
 mod view;
 mod window;

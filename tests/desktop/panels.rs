@@ -11,7 +11,7 @@ use grainfall::simulation::{
     Status,
 };
 use grainfall::solver::{Fault, FaultKind};
-use grainfall::ui::{Curves, Desk, Plots, Request, parameter_ui, scene_error_ui, status_ui, theme};
+use grainfall::ui::{Curves, Desk, Plots, Request, open_error_ui, parameter_ui, status_ui, theme};
 use grainfall::view::{CameraRequest, ColourBy, ColourRange, Cut, Side, ViewSettings};
 use std::time::Duration;
 
@@ -389,7 +389,7 @@ fn keys_ask_for_what_the_sheet_of_shortcuts_says() {
     harness.state_mut().asked.clear();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
     harness.run_steps(2);
-    assert_eq!(harness.state().asked, [Request::ChooseScene]);
+    assert_eq!(harness.state().asked, [Request::ChooseFile]);
 }
 
 #[test]
@@ -460,7 +460,7 @@ fn a_scene_that_cannot_be_opened_is_explained_until_it_is_closed() {
     let mut harness = Harness::new_ui_state(
         move |ui, open: &mut bool| {
             if *open {
-                *open = scene_error_ui(ui.ctx(), &shown);
+                *open = open_error_ui(ui.ctx(), &shown);
             }
         },
         true,
@@ -479,7 +479,7 @@ fn a_scene_error_leaves_the_present_scene_as_it_is() {
     harness
         .state_mut()
         .desk
-        .show_scene_error("bad.ron, line 3: no".into());
+        .show_open_error("bad.ron, line 3: no".into());
     harness.run_steps(3);
     harness.get_by_label("bad.ron, line 3: no");
     assert_eq!(*harness.state().simulation.status(), Status::Paused);
@@ -496,9 +496,67 @@ fn a_scene_error_leaves_the_present_scene_as_it_is() {
 }
 
 #[test]
+fn work_in_no_file_is_saved_discarded_or_kept_open() {
+    let leave = || Request::Leave(Box::new(Request::Quit));
+    let save = || Request::SaveThen(Box::new(Request::Quit));
+    for (answer, expected) in [
+        ("Save", vec![save()]),
+        ("Discard", vec![leave()]),
+        ("Cancel", Vec::new()),
+    ] {
+        let mut harness = Window::of(prepared());
+        harness.state_mut().desk.ask_to_save(Request::Quit);
+        harness.run_steps(3);
+        harness.key_press(Key::R);
+        harness.run_steps(2);
+        assert_eq!(harness.state().asked, [], "keys wait for the answer");
+        harness.get_by_label(answer).click();
+        harness.run_steps(3);
+        assert_eq!(harness.state().asked, expected, "{answer}");
+        assert!(harness.query_by_label("Save the session?").is_none());
+    }
+    // The keyboard alone: Escape stays, Tab and Return choose.
+    let mut harness = Window::of(prepared());
+    harness.state_mut().desk.ask_to_save(Request::Quit);
+    harness.run_steps(3);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert_eq!(harness.state().asked, []);
+    assert!(harness.query_by_label("Save the session?").is_none());
+    harness.state_mut().desk.ask_to_save(Request::Quit);
+    harness.run_steps(3);
+    harness.key_press(Key::Tab);
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().asked, [save()]);
+}
+
+#[test]
+fn sessions_are_saved_by_key_and_by_menu() {
+    let mut harness = Window::of(prepared());
+    let ctrl_shift = Modifiers::COMMAND | Modifiers::SHIFT;
+    for (modifiers, request) in [
+        (Modifiers::COMMAND, Request::Save),
+        (ctrl_shift, Request::ChooseSession),
+    ] {
+        harness.state_mut().asked.clear();
+        harness.key_press_modifiers(modifiers, Key::S);
+        harness.run_steps(2);
+        assert_eq!(harness.state().asked, [request]);
+    }
+    harness.state_mut().asked.clear();
+    harness.get_by_label("File").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("Save the session as").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::ChooseSession]);
+}
+
+#[test]
 fn a_path_can_be_typed_where_the_system_has_no_dialog() {
     let mut harness = Window::of(prepared());
-    let purpose = grainfall::ui::Purpose::Scene;
+    let purpose = grainfall::ui::Purpose::Open;
     harness
         .state_mut()
         .desk

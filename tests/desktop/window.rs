@@ -11,7 +11,7 @@ use std::path::Path;
 fn job(path: &Path) -> Job {
     Job {
         name: "bouncing-grain".to_owned(),
-        scene: Scene::open("bouncing-grain").unwrap(),
+        opened: Scene::open("bouncing-grain").unwrap().into(),
         options: Options::window(),
         picture: Some(PictureJob {
             path: path.to_owned(),

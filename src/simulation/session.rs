@@ -1,0 +1,154 @@
+//! A whole session in one file: the scene, every change, every run that was kept, and the moment shown, to the bit.
+//!
+//! In: a timeline. Out: a file, and from it the same timeline. Its first line names program, layout, version and the
+//! checksum of the rest; its second line is the [`Claim`] of the moment shown, as JSON that people and
+//! `grainfall verify` read; then come states and samples. A file of another version is refused: another version may
+//! compute other bits.
+
+use super::archive::Archive;
+use super::claim::{Claim, VERSION};
+use super::timeline::Timeline;
+use crate::files::write_whole;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// What the first line begins with.
+const MARK: &str = "grainfall session";
+/// Raised whenever what follows the second line is laid out otherwise.
+const LAYOUT: &str = "1";
+
+/// Extension of a session's file.
+pub const SESSION_EXTENSION: &str = "grainfall";
+
+/// A session as it was kept.
+#[derive(Clone)]
+pub struct Session {
+    claim: Claim,
+    archive: Archive,
+}
+
+/// Why a file cannot be opened as a session, and what to do.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {reason}", .path.display())]
+pub struct SessionError {
+    path: PathBuf,
+    reason: Reason,
+}
+
+#[derive(Debug, thiserror::Error)]
+enum Reason {
+    #[error("cannot be read: {0}")]
+    Unreadable(io::Error),
+    #[error(
+        "is no session of Grainfall: its first line does not begin with `{MARK}`. Open a file that `Save the session` wrote"
+    )]
+    Foreign,
+    #[error(
+        "was saved by Grainfall {0}, and this is {VERSION}, which reads no states of it. Open it with Grainfall {0}, or \
+         repeat it here: its second line, saved as a .json file, holds scene and changes for --commands"
+    )]
+    Version(String),
+    #[error(
+        "is damaged: {0}. Open another copy of it. If its second line is whole, that line, saved as a .json file, repeats \
+         the run with --commands"
+    )]
+    Damaged(&'static str),
+}
+
+impl Session {
+    /// `timeline` as it is now; `name` is what people call its scene.
+    pub fn of(name: &str, timeline: &Timeline) -> Self {
+        let run = timeline.run();
+        let commands = timeline.record().history.commands();
+        Self {
+            claim: Claim::of(name, run.scene(), commands, run.world()),
+            archive: timeline.archive(),
+        }
+    }
+
+    /// Whether the file at `path` says that it is one.
+    pub fn is_at(path: &Path) -> bool {
+        let mut start = [0; MARK.len()];
+        let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+        read.is_ok() && start == *MARK.as_bytes()
+    }
+
+    /// The session in the file at `path`, whose states are those that were saved.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no session, is damaged or of another version.
+    pub fn read(path: &Path) -> Result<Self, SessionError> {
+        let bytes = fs::read(path).map_err(Reason::Unreadable);
+        let read = bytes.and_then(|bytes| Self::decode(&bytes));
+        read.map_err(|reason| SessionError {
+            path: path.to_owned(),
+            reason,
+        })
+    }
+
+    /// Writes it to the file at `path`, whole or not at all.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let mut body = serde_json::to_vec(&self.claim)?;
+        body.push(b'\n');
+        let body = postcard::to_extend(&self.archive, body).map_err(io::Error::other)?;
+        write_whole(path, |file| {
+            let checksum = blake3::hash(&body).to_hex();
+            writeln!(file, "{MARK} {LAYOUT} {VERSION} {checksum}")?;
+            file.write_all(&body)
+        })
+    }
+
+    /// What it states: scene, changes, the moment shown and its state.
+    pub fn claim(&self) -> &Claim {
+        &self.claim
+    }
+
+    /// What it states, without the rest.
+    pub fn into_claim(self) -> Claim {
+        self.claim
+    }
+
+    /// The timeline as it was, on `threads` threads, with keyframes in `budget` bytes.
+    pub fn into_timeline(self, threads: usize, budget: usize) -> Timeline {
+        Timeline::unpack(self.archive, self.claim.scene.into(), threads, budget)
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, Reason> {
+        let (first, body) = first_line(bytes).ok_or(Reason::Foreign)?;
+        let words = first.strip_prefix(MARK).ok_or(Reason::Foreign)?;
+        let &[layout, version, checksum] = words.split_whitespace().collect::<Vec<_>>().as_slice()
+        else {
+            return Err(Reason::Damaged("its first line is not whole"));
+        };
+        if (layout, version) != (LAYOUT, VERSION) {
+            return Err(Reason::Version(version.to_owned()));
+        }
+        if checksum != blake3::hash(body).to_hex().as_str() {
+            return Err(Reason::Damaged(
+                "its checksum does not fit, so it was cut off or edited",
+            ));
+        }
+        let foreign = "its contents are those of another build of this version";
+        let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
+        let claim: Claim = serde_json::from_str(second).map_err(|_| Reason::Damaged(foreign))?;
+        let archive: Archive = postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
+        let hash = archive.shown().map(|world| world.hash().to_string());
+        if !archive.is_whole() || !claim.is_genuine() || hash != claim.state_hash {
+            return Err(Reason::Damaged(
+                "the state in it has another hash than it states",
+            ));
+        }
+        Ok(Self { claim, archive })
+    }
+}
+
+/// The text up to the first line's end, and what follows it.
+fn first_line(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let end = bytes.iter().position(|byte| *byte == b'\n')?;
+    let line = std::str::from_utf8(&bytes[..end]).ok()?;
+    Some((line, &bytes[end + 1..]))
+}

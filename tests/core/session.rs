@@ -1,0 +1,292 @@
+//! Claims about sessions in files: they reopen to the same bits, and a file that cannot is refused in words.
+
+use crate::run::{bits, set};
+use crate::timeline::{Lab, arrive, change, column_lab, go_on, hash, wet_lab};
+use grainfall::headless::Verdict;
+use grainfall::simulation::{
+    Claim, Command, DriverKind, Options, Parameter, Session, Simulation, Status, Timeline, VERSION,
+};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use tempfile::TempDir;
+
+const PLENTY: usize = 1 << 28;
+
+fn place() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kept.grainfall");
+    (folder, path)
+}
+
+fn reopened(path: &Path, memory: usize) -> Timeline {
+    Session::read(path).unwrap().into_timeline(1, memory)
+}
+
+/// A run with changes, a branch from its middle that goes on, a change there that was taken back, and a moment of the
+/// branch that is not its newest.
+fn explored(lab: &Lab) -> Timeline {
+    let (mut timeline, _) = lab.recorded(PLENTY);
+    lab.seek(&mut timeline, 7);
+    change(&mut timeline, lab.last_change());
+    go_on(&mut timeline, 11 * lab.unit);
+    change(&mut timeline, set(Parameter::Gravity, 4.0));
+    go_on(&mut timeline, 12 * lab.unit);
+    timeline.undo();
+    arrive(&mut timeline);
+    go_on(&mut timeline, 13 * lab.unit);
+    lab.seek(&mut timeline, 9);
+    timeline
+}
+
+/// What can be done with a session next, each way on its own.
+const NEXT: [fn(&mut Timeline); 5] = [
+    |timeline| timeline.seek(timeline.record().end.step),
+    |timeline| timeline.seek(0),
+    Timeline::undo,
+    |timeline| timeline.take_up(0),
+    |timeline| change(timeline, set(Parameter::Gravity, 7.0)),
+];
+
+fn reopens_to_the_same_bits(lab: &Lab) {
+    let (_folder, path) = place();
+    let mut timeline = explored(lab);
+    Session::of("explored", &timeline).write(&path).unwrap();
+    assert_eq!(
+        timeline.kept().len(),
+        2,
+        "the run that was left, and the end that was undone"
+    );
+    // With and without room for states beside the one shown.
+    for memory in [PLENTY, 0] {
+        let same = reopened(&path, memory);
+        assert_eq!(hash(&same), hash(&timeline));
+        assert_eq!(bits(&same.record().series), bits(&timeline.record().series));
+        assert_eq!(bits(same.run().series()), bits(timeline.run().series()));
+        assert_eq!(same.run().commands(), timeline.run().commands());
+        let (past, before) = (same.past(), timeline.past());
+        assert_eq!((past.number, past.end), (before.number, before.end));
+        assert_eq!((past.changes, past.undo), (before.changes, before.undo));
+        assert_eq!(past.redo, before.redo);
+        let kept = |timeline: &Timeline| -> Vec<_> {
+            let series = timeline.kept().iter().map(|record| bits(&record.series));
+            series.collect()
+        };
+        assert_eq!(kept(&same), kept(&timeline));
+    }
+    for (index, next) in NEXT.into_iter().enumerate() {
+        let mut same = reopened(&path, PLENTY);
+        for timeline in [&mut timeline, &mut same] {
+            next(timeline);
+            arrive(timeline);
+            let step = timeline.run().world().clock.step;
+            go_on(timeline, step + lab.unit / 3);
+        }
+        assert_eq!(hash(&same), hash(&timeline), "way {index}");
+        assert_eq!(bits(&same.record().series), bits(&timeline.record().series));
+        timeline = reopened(&path, PLENTY);
+    }
+    let claim = Claim::read(&path).unwrap();
+    let verdict = claim.verify(2, lab.beds.clone(), &|| false).unwrap();
+    assert_eq!(verdict, Verdict::Same);
+}
+
+#[test]
+fn session_reopens_to_the_same_bits_mid_avalanche_with_liquid() {
+    reopens_to_the_same_bits(&wet_lab());
+}
+
+#[test]
+fn session_reopens_to_the_same_bits_mid_collapse_with_polyhedra() {
+    reopens_to_the_same_bits(&column_lab());
+}
+
+#[test]
+fn shapes_of_polyhedra_are_kept_once() {
+    let lab = column_lab();
+    let (_folder, path) = place();
+    let timeline = explored(&lab);
+    Session::of("column", &timeline).write(&path).unwrap();
+    let same = reopened(&path, PLENTY);
+    let shapes = |timeline: &Timeline| {
+        let world = timeline.run().world();
+        world.polyhedra.as_ref().unwrap().shapes.clone()
+    };
+    let bed = same.run().bed().polyhedra.as_ref().unwrap().shapes.clone();
+    assert!(std::sync::Arc::ptr_eq(&shapes(&same), &bed));
+    assert_eq!(shapes(&same), shapes(&timeline));
+}
+
+#[test]
+fn file_that_is_no_session_is_refused_with_what_to_do() {
+    let (_folder, path) = place();
+    Session::of("wet", &explored(&wet_lab()))
+        .write(&path)
+        .unwrap();
+    let whole = fs::read(&path).unwrap();
+    let edited = |at: usize| {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        bytes
+    };
+    let renamed = |from: &str, to: &str| {
+        let mut bytes = to.as_bytes().to_vec();
+        bytes.extend_from_slice(whole.strip_prefix(from.as_bytes()).unwrap());
+        bytes
+    };
+    let other = format!("grainfall session 1 {VERSION}");
+    let cases: [(Vec<u8>, [&str; 2]); 7] = [
+        (
+            whole[..whole.len() - 1].to_vec(),
+            ["damaged", "Open another copy"],
+        ),
+        (whole[..40].to_vec(), ["is no session", "Save the session"]),
+        (edited(whole.len() / 2), ["checksum", "--commands"]),
+        (edited(whole.len() - 1), ["checksum", "--commands"]),
+        (
+            renamed(&other, "grainfall session 1 0.0.7"),
+            ["saved by Grainfall 0.0.7", "Open it with Grainfall 0.0.7"],
+        ),
+        (
+            renamed(&other, "grainfall session 9 9.9"),
+            ["Grainfall 9.9", "--commands"],
+        ),
+        (
+            b"(title: \"a scene\")\n".to_vec(),
+            ["is no session", "Save the session"],
+        ),
+    ];
+    for (bytes, expected) in cases {
+        fs::write(&path, bytes).unwrap();
+        let error = Session::read(&path)
+            .err()
+            .expect("it is refused")
+            .to_string();
+        assert!(error.contains("kept.grainfall"), "{error}");
+        for part in expected {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+    }
+    fs::remove_file(&path).unwrap();
+    let error = Session::read(&path).err().unwrap().to_string();
+    assert!(error.contains("cannot be read"), "{error}");
+}
+
+/// Every file of its own checksum but with another state is refused: the hash of the state decides.
+#[test]
+fn state_is_checked_by_its_hash() {
+    let (_folder, path) = place();
+    let lab = wet_lab();
+    let timeline = explored(&lab);
+    Session::of("wet", &timeline).write(&path).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let body = whole.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    let position = timeline.run().world().grains.position[17].x;
+    let at = (body..whole.len() - 8)
+        .rfind(|at| whole[*at..*at + 8] == position.to_le_bytes())
+        .expect("the state shown is in the file");
+    let mut bytes = whole[body..].to_vec();
+    bytes[at - body] ^= 1;
+    let head = format!(
+        "grainfall session 1 {VERSION} {}\n",
+        blake3::hash(&bytes).to_hex()
+    );
+    fs::write(&path, [head.as_bytes(), &bytes].concat()).unwrap();
+    let error = Session::read(&path).err().unwrap().to_string();
+    assert!(error.contains("another hash"), "{error}");
+}
+
+fn options(lab: &Lab, driver: DriverKind) -> Options {
+    Options {
+        driver,
+        threads: 1,
+        autoplay: false,
+        beds: lab.beds.clone(),
+        ..Options::window()
+    }
+}
+
+fn tick_until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
+    for _ in 0..60_000 {
+        simulation.tick(Duration::from_millis(2));
+        if done(simulation) {
+            return;
+        }
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    panic!("still {:?}", simulation.status());
+}
+
+/// Saves, waits for the file, and says why there is none, if there is none.
+fn saved(simulation: &mut Simulation, path: &Path) -> Option<String> {
+    simulation.save(path.to_owned());
+    for _ in 0..60_000 {
+        simulation.tick(Duration::from_millis(2));
+        if let Some(file) = simulation.take_saved().pop() {
+            assert_eq!(file.path, path);
+            return file.outcome.err();
+        }
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    panic!("nothing was heard of {}", path.display());
+}
+
+#[test]
+fn simulation_knows_what_no_file_holds_and_reopens_as_it_was() {
+    let lab = wet_lab();
+    for driver in [DriverKind::Inline, DriverKind::Thread] {
+        let (_folder, path) = place();
+        let mut simulation = Simulation::open(lab.scene.clone(), options(&lab, driver));
+        tick_until(&mut simulation, |s| *s.status() == Status::Paused);
+        assert!(!simulation.is_unsaved());
+        let held = |s: &Simulation| s.has_answered() && *s.status() == Status::Paused;
+        simulation.send(Command::Step(300));
+        tick_until(&mut simulation, held);
+        assert!(!simulation.is_unsaved(), "that is done again by playing");
+        simulation.send(lab.last_change());
+        simulation.send(Command::Step(200));
+        tick_until(&mut simulation, held);
+        assert!(simulation.is_unsaved());
+        let nowhere = path.join("file");
+        fs::write(&path, "").unwrap();
+        assert!(
+            saved(&mut simulation, &nowhere).is_some(),
+            "a file is no folder"
+        );
+        assert!(simulation.is_unsaved());
+        assert_eq!(saved(&mut simulation, &path), None);
+        assert!(!simulation.is_unsaved());
+
+        let session = Session::read(&path).unwrap();
+        let mut same = Simulation::resume(session, options(&lab, driver));
+        tick_until(&mut same, |s| s.world().is_some());
+        assert_eq!(*same.status(), Status::Paused);
+        let state = |s: &Simulation| s.world().map(|world| world.hash());
+        assert_eq!(state(&same), state(&simulation));
+        assert_eq!(bits(same.series()), bits(simulation.series()));
+        assert_eq!(same.commands(), simulation.commands());
+        assert!(!same.is_unsaved() && same.past().undo.is_some());
+        same.send(Command::Undo);
+        tick_until(&mut same, held);
+        assert_eq!(same.step(), 300);
+        assert!(same.is_unsaved(), "what was undone is not in the file");
+    }
+}
+
+#[test]
+fn run_that_is_still_prepared_has_nothing_to_save_yet_and_waits() {
+    let lab = column_lab();
+    let (_folder, path) = place();
+    let options = options(&lab, DriverKind::Inline);
+    let mut simulation = Simulation::open(lab.scene.clone(), options);
+    simulation.save(path.clone());
+    assert!(simulation.world().is_none());
+    tick_until(&mut simulation, |s| s.world().is_some());
+    simulation.tick(Duration::ZERO);
+    assert_eq!(simulation.take_saved().len(), 1);
+    let same = reopened(&path, 0);
+    assert_eq!(
+        Some(same.run().world().hash()),
+        simulation.world().map(|w| w.hash())
+    );
+}

@@ -1,0 +1,182 @@
+//! Claims about saving, leaving and opening in the app as a whole: requests go in as panels make them, and nothing is drawn.
+
+use crate::panels::{friction, prepared, set};
+use bevy::MinimalPlugins;
+use bevy::prelude::*;
+use bevy::window::{FileDragAndDrop, WindowCloseRequested};
+use grainfall::scene::Scene;
+use grainfall::simulation::{BedStore, Command, Options, Simulation, SimulationPlugin, Status};
+use grainfall::ui::{Desk, DeskPlugin, Request, Requests};
+use grainfall::world::StateHash;
+use std::path::Path;
+
+/// The app of three grains at time zero, with everything but pictures.
+fn app() -> App {
+    let options = Options {
+        threads: 1,
+        autoplay: false,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, SimulationPlugin))
+        .add_plugins(DeskPlugin {
+            options: options.clone(),
+        });
+    let scene: Scene = prepared().scene().clone();
+    app.insert_resource(Simulation::open(scene, options));
+    update_until(&mut app, |s| s.world().is_some());
+    app
+}
+
+fn simulation(app: &App) -> &Simulation {
+    app.world().resource::<Simulation>()
+}
+
+fn update_until(app: &mut App, done: impl Fn(&Simulation) -> bool) {
+    for _ in 0..20_000 {
+        app.update();
+        if done(simulation(app)) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    panic!("still {:?}", simulation(app).status());
+}
+
+fn ask(app: &mut App, request: Request) {
+    app.world_mut().resource_mut::<Requests>().ask(request);
+    app.update();
+}
+
+/// Asks for `command` and waits until it has been carried out.
+fn command(app: &mut App, command: Command) {
+    ask(app, Request::Command(command));
+    update_until(app, |s| s.has_answered() && *s.status() == Status::Paused);
+}
+
+fn has_ended(app: &App) -> bool {
+    app.should_exit().is_some()
+}
+
+fn hash(app: &App) -> Option<StateHash> {
+    simulation(app).world().map(|world| world.hash())
+}
+
+/// Some work: a change in the middle, and another run from before it.
+fn work(app: &mut App) {
+    command(app, Command::Step(500));
+    command(app, set(friction(), 0.2));
+    command(app, Command::Step(500));
+    command(app, Command::Seek(250));
+    command(app, set(friction(), 0.7));
+    command(app, Command::Step(300));
+}
+
+fn saved(app: &mut App, path: &Path) {
+    ask(app, Request::SaveSession(path.to_owned()));
+    update_until(app, |s| !s.is_saving());
+    app.update();
+    assert!(path.exists());
+}
+
+#[test]
+fn saved_session_is_dropped_on_another_and_is_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("work.grainfall");
+    let mut app = app();
+    work(&mut app);
+    let (state, step) = (hash(&app), simulation(&app).step());
+    saved(&mut app, &path);
+    // Saved: leaving asks nothing.
+    ask(&mut app, Request::Open("bouncing-grain".into()));
+    update_until(&mut app, |s| s.world().is_some());
+    assert_ne!(hash(&app), state);
+    app.world_mut().write_message(FileDragAndDrop::DroppedFile {
+        window: Entity::PLACEHOLDER,
+        path_buf: path.clone(),
+    });
+    update_until(&mut app, |s| s.step() == step && s.world().is_some());
+    assert_eq!(hash(&app), state);
+    assert_eq!(simulation(&app).past().kept.len(), 1);
+    command(&mut app, Command::Undo);
+    assert_eq!(simulation(&app).value(&friction()), 0.4);
+    // It has a file now: saving asks for none.
+    let before = std::fs::read(&path).unwrap();
+    ask(&mut app, Request::Save);
+    update_until(&mut app, |s| !s.is_saving());
+    assert_ne!(std::fs::read(&path).unwrap(), before);
+}
+
+#[test]
+fn closing_with_work_in_no_file_waits_for_an_answer() {
+    let mut app = app();
+    app.world_mut().write_message(WindowCloseRequested {
+        window: Entity::PLACEHOLDER,
+    });
+    app.update();
+    assert!(has_ended(&app), "nothing would be lost");
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("work.grainfall");
+    let mut app = self::app();
+    work(&mut app);
+    let state = hash(&app);
+    for request in [Request::Quit, Request::Open("bouncing-grain".into())] {
+        ask(&mut app, request);
+        app.update();
+        assert!(!has_ended(&app) && hash(&app) == state);
+    }
+    // To save where that cannot be keeps the window open.
+    saved_nowhere(&mut app, folder.path());
+    assert!(!has_ended(&app) && simulation(&app).is_unsaved());
+    saved(&mut app, &path);
+    command(&mut app, set(friction(), 0.3));
+    ask(&mut app, Request::SaveThen(Box::new(Request::Quit)));
+    update_until(&mut app, |s| !s.is_saving());
+    app.update();
+    app.update();
+    assert!(has_ended(&app), "saved to the file it has, then ended");
+}
+
+/// Tries to save to a path below a file.
+fn saved_nowhere(app: &mut App, folder: &Path) {
+    let file = folder.join("file");
+    std::fs::write(&file, "").unwrap();
+    ask(app, Request::SaveSession(file.join("work.grainfall")));
+    update_until(app, |s| !s.is_saving());
+    app.update();
+}
+
+#[test]
+fn discarded_work_is_left() {
+    let mut app = app();
+    work(&mut app);
+    let open = Request::Open("bouncing-grain".into());
+    ask(&mut app, Request::Leave(Box::new(open)));
+    update_until(&mut app, |s| s.world().is_some());
+    assert_eq!(simulation(&app).scene().grain_count(), 1);
+}
+
+#[test]
+fn damaged_session_leaves_what_is_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("work.grainfall");
+    let mut app = app();
+    work(&mut app);
+    saved(&mut app, &path);
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
+    let state = hash(&app);
+    ask(&mut app, Request::Open(path.display().to_string()));
+    for _ in 0..200 {
+        app.update();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert_eq!(hash(&app), state);
+    let reason = app.world().resource::<Desk>().open_error();
+    assert!(
+        reason.is_some_and(|reason| reason.contains("damaged")),
+        "{reason:?}"
+    );
+}
