@@ -5,6 +5,7 @@
 //! Gaussian* with `radius` as its scale array, shows the grains at their size. Values are in SI units, in 64 bits.
 
 use super::polyhedra_file::write_polyhedra;
+use crate::simulation::Provenance;
 use crate::world::World;
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -26,20 +27,20 @@ pub fn extension(world: &World) -> &'static str {
     }
 }
 
-/// Writes the grains of `world` to `file`: one point or cell per grain with `radius` [m], `velocity` [m/s], `spin` [rad/s] and
-/// `species`.
+/// Writes the grains of `world`, which come `from` there, to `file`: one point or cell per grain with `radius` [m],
+/// `velocity` [m/s], `spin` [rad/s] and `species`.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_grains(world: &World, file: &mut dyn Write) -> io::Result<()> {
+pub fn write_grains(world: &World, from: &Provenance, file: &mut dyn Write) -> io::Result<()> {
     match &world.polyhedra {
-        Some(polyhedra) => write_polyhedra(world, polyhedra, file),
-        None => write_spheres(world, file),
+        Some(polyhedra) => write_polyhedra(world, polyhedra, from, file),
+        None => write_spheres(world, from, file),
     }
 }
 
 /// Writes spheres as VTK poly data, one vertex per grain.
-fn write_spheres(world: &World, file: &mut dyn Write) -> io::Result<()> {
+fn write_spheres(world: &World, from: &Provenance, file: &mut dyn Write) -> io::Result<()> {
     let grains = &world.grains;
     let count = grains.len() as u64;
     let species: Vec<u32> = grains.species.iter().map(|s| u32::from(s.0)).collect();
@@ -67,7 +68,10 @@ fn write_spheres(world: &World, file: &mut dyn Write) -> io::Result<()> {
         data: DataSet::inline(piece),
         file_path: None,
     };
-    vtk.write_xml(file).map_err(io::Error::other)
+    let mut xml = Vec::new();
+    vtk.write_xml(&mut xml).map_err(io::Error::other)?;
+    let xml = String::from_utf8(xml).map_err(io::Error::other)?;
+    file.write_all(from.in_xml(&xml).as_bytes())
 }
 
 fn components(vectors: &[DVec3]) -> IOBuffer {
@@ -75,11 +79,15 @@ fn components(vectors: &[DVec3]) -> IOBuffer {
     flat.into()
 }
 
-/// Writes the list of grains' files, each with its time [s], to `file`.
+/// Writes the list of grains' files, each with its time [s], all `from` one run, to `file`.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_collection(frames: &[(f64, String)], file: &mut dyn Write) -> io::Result<()> {
+pub fn write_collection(
+    frames: &[(f64, String)],
+    from: &Provenance,
+    file: &mut dyn Write,
+) -> io::Result<()> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n",
     );
@@ -91,5 +99,5 @@ pub fn write_collection(frames: &[(f64, String)], file: &mut dyn Write) -> io::R
         .map_err(io::Error::other)?;
     }
     text.push_str("  </Collection>\n</VTKFile>\n");
-    file.write_all(text.as_bytes())
+    file.write_all(from.in_xml(&text).as_bytes())
 }

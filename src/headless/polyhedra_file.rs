@@ -4,6 +4,7 @@
 //! of a Voronoi grain its whole cell. A core without faces is a single point; *Glyph* with spheres shows it by `radius`, the
 //! distance of its farthest point from its centre. All numbers are in SI units, little endian, in 64 bits.
 
+use crate::simulation::Provenance;
 use crate::world::{Polyhedra, Polyhedron, World};
 use glam::{DMat3, DVec3};
 use std::fmt::Write as _;
@@ -13,7 +14,7 @@ use std::io::{self, Write};
 const VERTEX: u8 = 1;
 const POLYHEDRON: u8 = 42;
 
-/// Writes the grains of `world`, whose shapes are `polyhedra`, to `file` with `radius` and `rounding` [m], `velocity` [m/s],
+/// Writes the grains of `world`, whose shapes are `polyhedra` and which come `from` there, to `file` with `radius` and `rounding` [m], `velocity` [m/s],
 /// `spin` [rad/s] and `species`.
 ///
 /// # Errors
@@ -21,6 +22,7 @@ const POLYHEDRON: u8 = 42;
 pub fn write_polyhedra(
     world: &World,
     polyhedra: &Polyhedra,
+    from: &Provenance,
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let grains = &world.grains;
@@ -67,7 +69,7 @@ pub fn write_polyhedra(
         let _ = writeln!(text, "</{element}>");
     }
     text.push_str("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
-    file.write_all(text.as_bytes())?;
+    file.write_all(from.in_xml(&text).as_bytes())?;
     for array in points.iter().chain(&topology).chain(&data) {
         file.write_all(&(array.bytes.len() as u64).to_le_bytes())?;
         file.write_all(&array.bytes)?;

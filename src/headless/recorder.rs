@@ -11,7 +11,7 @@ use super::summary_file::SummaryFile;
 use super::velocity_file::{VELOCITY, write_velocity};
 use super::{Ending, HeadlessError, Job};
 use crate::measure::{Deposit, Measure, Summary, results, summarise};
-use crate::simulation::{SMALLEST_DROP, Simulation};
+use crate::simulation::{Provenance, SMALLEST_DROP, Simulation, TABLES_METADATA};
 use crate::world::{Clock, World};
 use std::time::{Duration, Instant};
 
@@ -107,6 +107,7 @@ impl<'a> Recorder<'a> {
         };
         self.write_flow(simulation, from)?;
         self.write_profile(simulation)?;
+        self.write_tables_metadata(&self.provenance(simulation))?;
         self.write_summary(simulation, ending.name(), Some((ending, &results)))?;
         Ok(results)
     }
@@ -123,7 +124,9 @@ impl<'a> Recorder<'a> {
 
     fn write_grains(&mut self, world: &World) -> Result<(), HeadlessError> {
         let name = OutputFolder::grains_name(self.frames.len(), extension(world));
-        self.folder.write(&name, |file| write_grains(world, file))?;
+        let from = Provenance::of(&self.job.scene, world);
+        self.folder
+            .write(&name, |file| write_grains(world, &from, file))?;
         self.frames.push((world.time(), name));
         Ok(())
     }
@@ -157,8 +160,27 @@ impl<'a> Recorder<'a> {
         self.folder.write(SERIES, |file| {
             write_series(simulation.series(), &measures, file)
         })?;
+        let from = self.provenance(simulation);
+        self.folder.write(COLLECTION, |file| {
+            write_collection(&self.frames, &from, file)
+        })
+    }
+
+    /// Where the files of the run so far come from.
+    fn provenance(&self, simulation: &Simulation) -> Provenance {
+        let scene = &self.job.scene;
+        let of_scene = || Provenance::of_scene(scene);
+        let world = simulation.world();
+        world.map_or_else(of_scene, |world| Provenance::of(scene, world))
+    }
+
+    fn write_tables_metadata(&self, from: &Provenance) -> Result<(), HeadlessError> {
+        let tables = [SERIES, FLOW, VELOCITY, PROFILE];
+        let written: Vec<&str> = (tables.into_iter())
+            .filter(|table| self.folder.path().join(table).exists())
+            .collect();
         self.folder
-            .write(COLLECTION, |file| write_collection(&self.frames, file))
+            .write(TABLES_METADATA, |file| from.write_tables(&written, file))
     }
 
     fn write_summary(

@@ -14,7 +14,7 @@
 //! | `history`, `keyframes` | what tells runs apart and what is known of them; states to come back to |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
 //! | `session`, `archive`, `shared` | all of that in one file |
-//! | `claim` | a state and what leads to it, as files state it |
+//! | `claim`, `provenance` | a state and what leads to it, as files state it; in a few words, for exported files |
 //! | `engine`, `driver` | who moves a run on, in short pieces, inline or on a thread |
 //! | `front`, `plugin` | what the outside sees, and the Bevy system that ticks it |
 
@@ -30,6 +30,7 @@ mod keyframes;
 mod parameter;
 mod plugin;
 mod preparation;
+mod provenance;
 mod relabel;
 mod run;
 mod script;
@@ -47,6 +48,7 @@ pub use history::{History, Moment, Record};
 pub use parameter::{DisplayUnit, ParameterInfo};
 pub use plugin::{SimulationPlugin, SimulationSystems, advance_simulation};
 pub use preparation::{Preparation, Prepared, make_bed};
+pub use provenance::{Provenance, TABLES_METADATA};
 pub use run::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};

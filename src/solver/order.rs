@@ -31,8 +31,8 @@ impl Order {
         let position = &grains.position;
         let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
         let thickness = 2.0 * mean(&grains.radius);
-        let low = position.iter().copied().reduce(|a, b| a.min(b));
-        let high = position.iter().copied().reduce(|a, b| a.max(b));
+        let low = position.iter().copied().reduce(glam::DVec3::min);
+        let high = position.iter().copied().reduce(glam::DVec3::max);
         let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
         let mut axes = [0, 1, 2];
         axes.sort_by(|a, b| (high - low)[*b].total_cmp(&(high - low)[*a]));

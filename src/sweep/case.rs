@@ -8,7 +8,7 @@ use crate::headless::{
     write_profile, write_series, write_velocity,
 };
 use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, VelocityMap, results};
-use crate::simulation::{Preparation, Run, SMALLEST_DROP, Script};
+use crate::simulation::{Preparation, Provenance, Run, SMALLEST_DROP, Script, TABLES_METADATA};
 use crate::solver::{Fault, advise};
 use std::io::{self, Write};
 use std::path::Path;
@@ -224,14 +224,23 @@ fn write_files(
     write(&folder.join(SERIES), |file| {
         write_series(run.series(), &Measure::of(world), file)
     })?;
+    let mut tables = vec![SERIES];
     if let Some(deposit) = Deposit::of(world) {
-        return write(&folder.join(PROFILE), |file| {
+        tables.push(PROFILE);
+        write(&folder.join(PROFILE), |file| {
             write_profile(&deposit.height_profile(), file)
-        });
+        })?;
+    } else {
+        tables.push(FLOW);
+        write(&folder.join(FLOW), |file| write_flow(&outcome.flow, file))?;
     }
-    write(&folder.join(FLOW), |file| write_flow(&outcome.flow, file))?;
-    outcome.fastest.as_ref().map_or(Ok(()), |map| {
-        write(&folder.join(VELOCITY), |file| write_velocity(map, file))
+    if let Some(map) = &outcome.fastest {
+        tables.push(VELOCITY);
+        write(&folder.join(VELOCITY), |file| write_velocity(map, file))?;
+    }
+    let from = Provenance::of(&case.scene, world);
+    write(&folder.join(TABLES_METADATA), |file| {
+        from.write_tables(&tables, file)
     })
 }
 

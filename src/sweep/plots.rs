@@ -9,6 +9,7 @@ use super::column_plots::column_plots;
 use crate::headless::HeadlessError;
 use crate::measure::{Measure, NON_RIGID_TEMPERATURE, Series, drop_ratio_law};
 use crate::scene::SceneGrains;
+use crate::simulation::Provenance;
 use std::collections::BTreeMap;
 
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
@@ -28,6 +29,7 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessEr
             HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
         })?;
         let path = sweep.out.join("plots").join(&plot.file);
+        let text = Provenance::of_scene(&sweep.scene).in_svg(&text);
         write(&path, |file| file.write_all(text.as_bytes()))?;
     }
     Ok(())

@@ -3,6 +3,7 @@
 use super::Sweep;
 use super::case::{CaseEnding, Outcome, write};
 use crate::headless::HeadlessError;
+use crate::simulation::{Provenance, TABLES_METADATA};
 use std::fmt::Write as _;
 
 /// A column: its head with the unit it is shown in, the result it shows, how much of the SI unit that is, its digits.
@@ -145,6 +146,9 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessE
             writer.write_record(cells(outcome, columns))?;
         }
         writer.flush()
+    })?;
+    write(&sweep.out.join(TABLES_METADATA), |file| {
+        Provenance::of_scene(&sweep.scene).write_tables(&["table.csv"], file)
     })?;
     let text = markdown(sweep, outcomes);
     write(&sweep.out.join("table.md"), |file| {

@@ -6,6 +6,7 @@ use super::case::{Outcome, write};
 use crate::headless::HeadlessError;
 use crate::measure::VelocityMap;
 use crate::scene::SceneContainer;
+use crate::simulation::Provenance;
 use glam::DVec2;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -40,6 +41,7 @@ pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), H
             ))
         })?;
         let path = sweep.out.join("plots/velocity").join(format!("{name}.svg"));
+        let text = Provenance::of_scene(&outcome.case.scene).in_svg(&text);
         write(&path, |file| file.write_all(text.as_bytes()))?;
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use super::{Desk, OpenWith, Purpose, Request, Requests};
 use crate::scene::Scene;
-use crate::simulation::{Claim, Options, SavedFile, Session, SessionError, Simulation};
+use crate::simulation::{Claim, Options, Provenance, SavedFile, Session, SessionError, Simulation};
 use crate::view::{CameraRequest, ViewSettings, save_png};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -64,10 +64,11 @@ pub fn fulfil_requests(
                 }
             }
             Request::SavePicture(path) => {
+                let from = simulation.as_deref().and_then(provenance);
                 opener
                     .commands
                     .spawn(Screenshot::primary_window())
-                    .observe(save_to(path));
+                    .observe(save_to(path, from));
             }
             Request::ChooseChanges => desk.path_dialog.ask(Purpose::Changes),
             Request::SaveChanges(path) => {
@@ -173,10 +174,20 @@ impl Opener<'_, '_> {
     }
 }
 
+/// Where what is shown comes from: this update's state is the one in the picture that is asked for in it.
+fn provenance(simulation: &Simulation) -> Option<Provenance> {
+    let world = simulation.world()?;
+    Some(Provenance::of(simulation.scene(), world))
+}
+
 /// Writes the picture that was taken to `path` and says so.
-fn save_to(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, ResMut<Desk>) {
+fn save_to(
+    path: PathBuf,
+    from: Option<Provenance>,
+) -> impl FnMut(On<ScreenshotCaptured>, ResMut<Desk>) {
     move |captured, mut desk| {
-        desk.notify(said("The picture", &path, save_png(&captured.image, &path)));
+        let saved = save_png(&captured.image, from.as_ref(), &path);
+        desk.notify(said("The picture", &path, saved));
     }
 }
 

@@ -4,7 +4,7 @@
 
 use super::picture::{Canvas, WARM_UP, screenshot};
 use super::{PictureJob, WindowError};
-use crate::simulation::{Simulation, Status};
+use crate::simulation::{Provenance, Simulation, Status};
 use crate::view::{Meshing, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
@@ -103,7 +103,9 @@ pub(super) fn carry_out(
         }
         Stage::Drawing(_) if !meshing.is_whole() => Stage::Drawing(WARM_UP),
         Stage::Drawing(0) => {
-            take(&commission, canvas.as_deref(), &mut commands);
+            let world = simulation.world();
+            let from = world.map(|world| Provenance::of(simulation.scene(), world));
+            take(&commission, from, canvas.as_deref(), &mut commands);
             Stage::Taking
         }
         Stage::Drawing(frames) => Stage::Drawing(frames - 1),
@@ -118,12 +120,17 @@ pub(super) fn carry_out(
 }
 
 /// Takes the picture, writes it and ends the app.
-fn take(commission: &Commission, canvas: Option<&Canvas>, commands: &mut Commands) {
+fn take(
+    commission: &Commission,
+    from: Option<Provenance>,
+    canvas: Option<&Canvas>,
+    commands: &mut Commands,
+) {
     let path = commission.picture.path.clone();
     let outcome = commission.outcome.clone();
     commands.spawn(screenshot(canvas)).observe(
         move |captured: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
-            exit.write(match save_png(&captured.image, &path) {
+            exit.write(match save_png(&captured.image, from.as_ref(), &path) {
                 Ok(()) => AppExit::Success,
                 Err(error) => outcome.fail(WindowError::Picture(format!(
                     "{} cannot be written: {error}",

@@ -100,7 +100,13 @@ fn run_leaves_series_grains_and_summary() {
     let out = place.path("out");
     assert_eq!(
         names(&out),
-        ["grains", "grains.pvd", "series.csv", "summary.json"]
+        [
+            "csv-metadata.json",
+            "grains",
+            "grains.pvd",
+            "series.csv",
+            "summary.json"
+        ]
     );
     // Every 0.05 s from 0 to 0.2 s.
     let frames: Vec<String> = (0..5).map(|k| format!("grains_{k:06}.vtp")).collect();
@@ -196,6 +202,40 @@ fn summary_plays_its_run_again() {
     let again = place.run_small_drum("again", &["--commands", "first/summary.json"]);
     assert_eq!(again["state_hash"], first["state_hash"]);
     assert_eq!(again["commands"], first["commands"]);
+}
+
+#[test]
+fn every_file_says_where_it_came_from_and_tables_still_begin_with_their_header() {
+    let place = Place::new();
+    let summary = place.run_small_drum("out", &["--seed", "7"]);
+    let out = place.path("out");
+    let hash = summary["state_hash"].as_str().unwrap();
+    let title = summary["scene"]["title"].as_str().unwrap();
+    let state = format!(
+        "“{title}”, seed 7, t = {:?} s, step {}, state {hash}",
+        summary["time"].as_f64().unwrap(),
+        summary["steps"]
+    );
+    for file in ["grains.pvd", "grains/grains_000004.vtp"] {
+        let content = fs::read_to_string(out.join(file)).unwrap();
+        let comment = content
+            .lines()
+            .find(|line| line.starts_with("<!-- "))
+            .unwrap();
+        assert!(comment.contains(&state), "{file}: {comment}");
+        assert!(comment.contains("Grainfall 0."), "{comment}");
+    }
+    let metadata = fs::read_to_string(out.join("csv-metadata.json")).unwrap();
+    let metadata: Value = serde_json::from_str(&metadata).unwrap();
+    assert_eq!(metadata["@context"], "http://www.w3.org/ns/csvw");
+    assert_eq!(
+        metadata["tables"],
+        serde_json::json!([{ "url": "series.csv" }])
+    );
+    assert_eq!(metadata["notes"][0]["state hash"], hash);
+    assert!(metadata["dc:source"].as_str().unwrap().contains(&state));
+    let (head, _) = series(&out);
+    assert_eq!(head[0], "step [1]");
 }
 
 #[test]
@@ -384,7 +424,13 @@ fn interrupted_run_leaves_whole_files() {
     let out = place.path("out");
     assert_eq!(
         names(&out),
-        ["grains", "grains.pvd", "series.csv", "summary.json"]
+        [
+            "csv-metadata.json",
+            "grains",
+            "grains.pvd",
+            "series.csv",
+            "summary.json"
+        ]
     );
     let summary = summary(&out);
     assert_eq!(summary["status"], "interrupted");

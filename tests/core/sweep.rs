@@ -75,6 +75,7 @@ fn sweep_sets_every_combination_beside_each_other() {
             text.starts_with("<svg") && text.trim_end().ends_with("</svg>"),
             "{plot}"
         );
+        assert!(text.contains("<desc>Grainfall 0."), "{plot}");
     }
     let summary = fs::read_to_string(out.join("liquid=7_radius=3mm/summary.json")).unwrap();
     assert!(

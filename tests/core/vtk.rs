@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 use grainfall::headless::write_grains;
 use grainfall::scene::Scene;
+use grainfall::simulation::Provenance;
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
 
 /// A cube whose half edge is 1 mm when rounded by 0.2 mm, turned by a quarter about y, and a sphere of 0.5 mm.
@@ -59,7 +60,9 @@ struct File {
 impl File {
     fn of(world: &World) -> Self {
         let mut bytes = Vec::new();
-        write_grains(world, &mut bytes).unwrap();
+        let scene = Scene::open("bouncing-grain").unwrap();
+        let from = Provenance::of(&scene, world);
+        write_grains(world, &from, &mut bytes).unwrap();
         let mark = b"<AppendedData encoding=\"raw\">\n_";
         let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len();
         Self {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Carries `command` out, and what it takes.
-fn carried_out(simulation: &mut Simulation, command: Command) {
+pub fn carried_out(simulation: &mut Simulation, command: Command) {
     simulation.send(command);
     for _ in 0..10_000 {
         simulation.tick(Duration::from_millis(16));

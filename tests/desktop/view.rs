@@ -115,7 +115,7 @@ pub fn photograph(
         })
         .expect("a picture within a hundred frames");
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
-    save_png(&image, &folder.join(format!("{name}.png"))).unwrap();
+    save_png(&image, None, &folder.join(format!("{name}.png"))).unwrap();
     Photograph {
         pixels: image.data.unwrap(),
         camera: app.world().resource::<OrbitCamera>().clone(),

@@ -1,10 +1,15 @@
 //! Claims about the program as a whole: it draws itself without a display, and says why where it cannot.
 
+use crate::panels::ready;
+use crate::timeline::carried_out;
 use crate::view::studio;
 use bevy::math::UVec2;
 use grainfall::scene::Scene;
-use grainfall::simulation::Options;
+use grainfall::simulation::{Command, DriverKind, Options, Simulation};
 use grainfall::window::{Job, PictureJob, WindowError, run};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
 /// A grain before a floor, listed one by one, so that nothing must settle.
@@ -22,6 +27,30 @@ fn job(path: &Path) -> Job {
     }
 }
 
+/// The texts in a picture by their names.
+fn words(path: &Path) -> BTreeMap<String, String> {
+    let file = BufReader::new(File::open(path).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    let texts = reader.info().utf8_text.iter();
+    texts
+        .map(|chunk| (chunk.keyword.clone(), chunk.get_text().unwrap()))
+        .collect()
+}
+
+/// Hash of the grain's state after so many steps, computed again.
+fn state_at(step: &str) -> String {
+    let options = Options {
+        driver: DriverKind::Inline,
+        autoplay: false,
+        threads: 1,
+        ..Options::window()
+    };
+    let scene = Scene::open("bouncing-grain").unwrap();
+    let mut simulation = ready(Simulation::open(scene, options));
+    carried_out(&mut simulation, Command::Step(step.parse().unwrap()));
+    simulation.world().unwrap().hash().to_string()
+}
+
 #[test]
 fn laboratory_draws_itself_without_a_display() {
     let Some(_studio) = studio("laboratory_draws_itself_without_a_display") else {
@@ -31,6 +60,13 @@ fn laboratory_draws_itself_without_a_display() {
     run(job(&path)).unwrap();
     let picture = image::open(&path).unwrap().to_rgb8();
     assert_eq!(picture.dimensions(), (1280, 720));
+    let opened = Scene::open("bouncing-grain").unwrap();
+    let chunks = words(&path);
+    assert_eq!(chunks["Title"], opened.title);
+    assert_eq!(chunks["Seed"], opened.seed.to_string());
+    let time: f64 = chunks["Time"].trim_end_matches(" s").parse().unwrap();
+    assert!((0.05..0.0501).contains(&time), "{time}");
+    assert_eq!(chunks["State hash"], state_at(&chunks["Step"]));
     // The grain is amber; nothing else in the window has so much more red than blue over so many pixels.
     let amber = picture
         .pixels()

@@ -1,0 +1,174 @@
+//! Where an exported file came from: program and version, scene and seed, and the state it shows.
+//!
+//! In: a scene and a state. Out: the same few words for every kind of file: text chunks of a PNG, a description in an
+//! SVG, a comment in XML, and beside tables a `csv-metadata.json` as the W3C's *CSV on the Web* has it, so that the tables
+//! themselves begin with their header for every reader.
+
+use super::VERSION;
+use crate::scene::Scene;
+use crate::world::World;
+use serde_json::json;
+use std::fmt;
+use std::io::{self, Write};
+
+/// The file beside tables that says where they came from.
+pub const TABLES_METADATA: &str = "csv-metadata.json";
+
+/// Where a file came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Provenance {
+    scene: String,
+    seed: u64,
+    state: Option<State>,
+}
+
+/// A state that a file shows.
+#[derive(Clone, Debug, PartialEq)]
+struct State {
+    time: f64,
+    step: u64,
+    hash: String,
+}
+
+impl Provenance {
+    /// From `world`, a state of `scene`.
+    pub fn of(scene: &Scene, world: &World) -> Self {
+        Self::at(
+            scene,
+            world.time(),
+            world.clock.step,
+            world.hash().to_string(),
+        )
+    }
+
+    /// From the state of `scene` with this `hash`, at `time` [s] after `step` steps.
+    pub fn at(scene: &Scene, time: f64, step: u64, hash: String) -> Self {
+        Self {
+            state: Some(State { time, step, hash }),
+            ..Self::of_scene(scene)
+        }
+    }
+
+    /// From `scene`, of no one state.
+    pub fn of_scene(scene: &Scene) -> Self {
+        Self {
+            scene: scene.title.clone(),
+            seed: scene.seed,
+            state: None,
+        }
+    }
+
+    /// The same by name and value. The first two names are those that PNG files have for it.
+    pub fn entries(&self) -> Vec<(&'static str, String)> {
+        let mut entries = vec![
+            ("Software", format!("Grainfall {VERSION}")),
+            ("Title", self.scene.clone()),
+            ("Seed", self.seed.to_string()),
+        ];
+        if let Some(state) = &self.state {
+            entries.push(("Time", format!("{:?} s", state.time)));
+            entries.push(("Step", state.step.to_string()));
+            entries.push(("State hash", state.hash.clone()));
+        }
+        entries
+    }
+
+    /// `xml` with a comment that says so, after its first line where that declares what it is.
+    pub fn in_xml(&self, xml: &str) -> String {
+        let declared = xml.strip_prefix("<?xml").and_then(|rest| rest.find("?>"));
+        let (head, body) = xml.split_at(declared.map_or(0, |end| end + "<?xml?>".len()));
+        let space = if head.is_empty() { "" } else { "\n" };
+        // Two hyphens would end the comment.
+        let text = self.to_string().replace("--", "- -");
+        format!("{head}{space}<!-- {text} -->\n{}", body.trim_start())
+    }
+
+    /// `svg` with a description that says so, which readers for the blind speak as well.
+    pub fn in_svg(&self, svg: &str) -> String {
+        let text = escaped(&self.to_string());
+        let start = svg.find("<svg").unwrap_or(0);
+        let inside = svg[start..].find('>').map_or(0, |end| start + end + 1);
+        let (head, body) = svg.split_at(inside);
+        format!("{head}\n<desc>{text}</desc>{body}")
+    }
+
+    /// Writes to `file` that the tables called `names`, beside it, came from here.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write_tables(&self, names: &[&str], file: &mut dyn Write) -> io::Result<()> {
+        let tables: Vec<_> = names.iter().map(|name| json!({ "url": name })).collect();
+        let notes: serde_json::Map<_, _> = (self.entries().into_iter())
+            .map(|(name, value)| (name.to_lowercase(), value.into()))
+            .collect();
+        let metadata = json!({
+            "@context": "http://www.w3.org/ns/csvw",
+            "dc:title": self.scene,
+            "dc:source": self.to_string(),
+            "tables": tables,
+            "notes": [notes],
+        });
+        serde_json::to_writer_pretty(&mut *file, &metadata)?;
+        file.write_all(b"\n")
+    }
+}
+
+impl fmt::Display for Provenance {
+    /// `Grainfall 0.1.0, “A small drum”, seed 1, t = 1.25 s, step 60000, state 0123…`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "Grainfall {VERSION}, “{}”, seed {}",
+            self.scene, self.seed
+        )?;
+        match &self.state {
+            Some(State { time, step, hash }) => {
+                write!(f, ", t = {time:?} s, step {step}, state {hash}")
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// `text` as it stands in XML.
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;");
+    text.replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn provenance() -> Provenance {
+        let mut scene = Scene::open("bouncing-grain").unwrap();
+        scene.title = "a --> b <c> & d".into();
+        Provenance::at(&scene, 0.5, 20, "0a".into())
+    }
+
+    #[test]
+    fn xml_stays_xml_whatever_a_scene_is_called() {
+        let declared = provenance().in_xml("<?xml version=\"1.0\"?>\n<a/>\n");
+        assert!(declared.starts_with("<?xml version=\"1.0\"?>\n<!-- Grainfall"));
+        assert!(declared.ends_with("-->\n<a/>\n") && declared.matches("--").count() == 2);
+        let bare = provenance().in_xml("<a/>");
+        assert!(bare.starts_with("<!-- ") && bare.ends_with("<a/>"));
+        let svg = provenance().in_svg("<?xml version=\"1.0\"?><svg width=\"3\">\n<g/></svg>");
+        assert!(svg.contains("<svg width=\"3\">\n<desc>Grainfall"), "{svg}");
+        assert!(svg.contains("a --&gt; b &lt;c&gt; &amp; d”, seed"), "{svg}");
+        assert!(svg.ends_with("</desc>\n<g/></svg>"), "{svg}");
+    }
+
+    #[test]
+    fn state_is_told_to_the_last_digit() {
+        let entries = provenance().entries();
+        assert_eq!(
+            entries[3..],
+            [
+                ("Time", "0.5 s".to_owned()),
+                ("Step", "20".to_owned()),
+                ("State hash", "0a".to_owned()),
+            ]
+        );
+    }
+}
