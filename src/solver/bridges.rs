@@ -3,15 +3,14 @@
 //! In: gaps and relative motion of pairs of grains, their bridges. Out: the bridges' forces, what they lose, what their
 //! liquid does when they break. A bridge forms where grains touch, breaks at its rupture gap, and walls have none.
 
-use super::contacts::Pair;
-use super::lanes::{Lanes, Quad, Row, dot, plus, side_by_side, times};
+use super::contacts::{GROUP, Pair};
+use super::lanes::{Lanes, Quad, Row, WIDEST, dot, plus, times};
 use super::law::{BridgeConstants, BridgeKinds, FilmConstants, attraction, contributions, drag};
 use super::row::{row, vector};
 use crate::world::{Bridge, Liquid};
 
 /// What the solver keeps of a bridge; all zero where there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(32))]
 pub struct BridgeRow {
     /// Volume [m³], transfer on rupture [m³], capillary attraction and viscous normal force at the last step [N].
     pub state: Row,
@@ -19,6 +18,22 @@ pub struct BridgeRow {
     pub drag: Row,
     /// What the attraction depends on: see [`BridgeConstants`].
     pub constants: Row,
+}
+
+/// The bridges of a group of pairs, column by column.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct BridgeColumns {
+    state: [[f64; GROUP]; 4],
+    drag: [[f64; GROUP]; 3],
+    constants: [[f64; GROUP]; 4],
+}
+
+/// The bridges of a list of pairs, in whole groups.
+#[derive(Default)]
+pub struct Bridges {
+    /// The groups.
+    pub groups: Vec<BridgeColumns>,
 }
 
 /// What a bridge does beside its force: energy lost to viscosity and to capillary forces during the step [J], 1 where it
@@ -42,8 +57,10 @@ pub struct BridgeGroup<'a> {
     pub wetting: Wetting<'a>,
     /// The pairs.
     pub pairs: &'a [Pair],
-    /// Their bridges.
-    pub rows: &'a mut [BridgeRow],
+    /// The group that holds their bridges.
+    pub columns: &'a mut BridgeColumns,
+    /// Where in it the first of them stands.
+    pub first: usize,
     /// What those do.
     pub actions: &'a mut [LiquidAction],
 }
@@ -124,17 +141,85 @@ impl BridgeRow {
     }
 }
 
+impl Bridges {
+    /// Room for `count` pairs, without bridges.
+    pub fn none(count: usize) -> Self {
+        Self {
+            groups: vec![BridgeColumns::default(); count.div_ceil(GROUP)],
+        }
+    }
+
+    /// The bridge of the `k`-th pair; an empty row where the list is dry.
+    pub fn get(&self, k: usize) -> BridgeRow {
+        let group = self.groups.get(k / GROUP);
+        group.map_or(BridgeRow::default(), |columns| columns.row(k % GROUP))
+    }
+
+    /// Sets it.
+    pub fn set(&mut self, k: usize, row: &BridgeRow) {
+        self.groups[k / GROUP].set(k % GROUP, row);
+    }
+}
+
+impl BridgeColumns {
+    fn row(&self, k: usize) -> BridgeRow {
+        let [x, y, z] = self.drag.map(|column| column[k]);
+        BridgeRow {
+            state: self.state.map(|column| column[k]),
+            drag: [x, y, z, 0.0],
+            constants: self.constants.map(|column| column[k]),
+        }
+    }
+
+    fn set(&mut self, k: usize, row: &BridgeRow) {
+        let columns = self.state.iter_mut().chain(&mut self.drag);
+        let columns = columns.chain(&mut self.constants);
+        let numbers = row.state.iter().chain(&row.drag[..3]);
+        for (column, number) in columns.zip(numbers.chain(&row.constants)) {
+            column[k] = *number;
+        }
+    }
+}
+
+/// Columns side by side, from the `first` number of each on.
+#[inline(always)]
+fn load<N: Lanes, const COUNT: usize>(
+    processor: N::Processor,
+    columns: &[[f64; GROUP]; COUNT],
+    first: usize,
+) -> [N; COUNT] {
+    let mut numbers = [N::splat(processor, 0.0); COUNT];
+    // No closure: it would not be compiled for the lanes.
+    for k in 0..COUNT {
+        numbers[k] = N::load(processor, &columns[k][first..]);
+    }
+    numbers
+}
+
+/// Puts them back.
+#[inline(always)]
+fn store<N: Lanes, const COUNT: usize>(
+    numbers: [N; COUNT],
+    columns: &mut [[f64; GROUP]; COUNT],
+    first: usize,
+) {
+    for k in 0..COUNT {
+        numbers[k].store(&mut columns[k][first..]);
+    }
+}
+
 impl BridgeGroup<'_> {
-    /// Lets bridges form where grains of these radii [m] touch.
-    #[inline(always)]
-    fn form<N: Lanes>(&mut self, depth: N, radii: [N; 2]) {
-        let depths = depth.numbers();
+    /// Lets bridges form where grains with these radii [m] touch, that is, overlap [m], and have none.
+    #[cold]
+    fn form(&mut self, depths: [f64; WIDEST], radii: [[f64; WIDEST]; 2]) {
         let films = self.wetting.films;
-        for (k, (row, pair)) in self.rows.iter_mut().zip(self.pairs).enumerate() {
-            if depths[k] > 0.0 && !row.exists() {
+        for (k, pair) in self.pairs.iter().enumerate() {
+            let lane = self.first + k;
+            if depths[k] > 0.0 && !self.columns.row(lane).exists() {
                 let films = (films[pair.grain as usize], films[pair.partner as usize]);
-                let radii = (radii[0].numbers()[k], radii[1].numbers()[k]);
-                *row = BridgeRow::new(self.wetting.liquid, radii, films);
+                let radii = (radii[0][k], radii[1][k]);
+                let row = BridgeRow::new(self.wetting.liquid, radii, films);
+                self.columns.set(lane, &row);
             }
         }
     }
@@ -157,13 +242,15 @@ impl BridgeGroup<'_> {
             slip,
             compliance,
         } = *encounter;
-        self.form(depth, radii);
-        let rows = &self.rows;
-        let [volume, transfer, old_attraction, old_viscous] =
-            N::gather(processor, side_by_side::<N, _>(|k| &rows[k].state));
-        let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &rows[k].drag));
-        let old_drag = [x, y, z];
-        let constants = N::gather(processor, side_by_side::<N, _>(|k| &rows[k].constants));
+        let mut states = load::<N, 4>(processor, &self.columns.state, self.first);
+        let wanting = N::choose(states[0].exceeds(zero), zero, depth);
+        if N::count(wanting.exceeds(zero)) > 0 {
+            self.form(depth.numbers(), radii.map(N::numbers));
+            states = load(processor, &self.columns.state, self.first);
+        }
+        let [volume, transfer, old_attraction, old_viscous] = states;
+        let old_drag = load::<N, 3>(processor, &self.columns.drag, self.first);
+        let constants = load::<N, 4>(processor, &self.columns.constants, self.first);
 
         let gap = -depth;
         let kept = N::choose(gap.exceeds(constants[3]), zero, volume);
@@ -186,13 +273,12 @@ impl BridgeGroup<'_> {
         let open = N::choose(touching, zero, N::choose(held, one, zero));
         let shared = N::choose(held, zero, transfer);
 
-        let states = N::rows([kept, transfer - shared, pull, viscous]);
-        let drags = N::rows([drag[0], drag[1], drag[2], zero]);
+        let states = [kept, transfer - shared, pull, viscous];
+        store(states, &mut self.columns.state, self.first);
+        store(drag, &mut self.columns.drag, self.first);
         let actions = N::rows([viscous_loss, capillary_loss, open, shared]);
-        for k in 0..N::COUNT {
-            self.rows[k].state = states[k].row();
-            self.rows[k].drag = drags[k].row();
-            self.actions[k] = actions[k].row();
+        for (action, new) in self.actions.iter_mut().zip(actions) {
+            *action = new.row();
         }
         LiquidForce {
             repulsion: viscous - pull,

@@ -4,11 +4,11 @@
 //! pair, new springs. Pairs are computed in lanes and each writes rows of its own; nothing is summed here, so the order of
 //! work never shows.
 
-use super::bridges::{BridgeGroup, BridgeRow, Encounter, LiquidAction, Wetting};
+use super::bridges::{BridgeColumns, BridgeGroup, Encounter, LiquidAction, Wetting};
 use super::lanes::{
     Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
 };
-use super::law::{Law, PairConstants, rolling_gain};
+use super::law::{FilmConstants, Law, PairConstants, rolling_gain};
 use super::spring::stretch;
 use crate::scene::CoulombBound;
 use crate::world::{Motion, Surface};
@@ -419,12 +419,14 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
 pub struct PairRows<'a> {
     /// The pairs.
     pub pairs: &'a [Pair],
+    /// The kind of all of them, if it is one.
+    pub kind: Option<u32>,
     /// Their tangential springs [m], and the stiffness of each when it was last stretched [N/m].
     pub springs: &'a mut [Row],
     /// What they do.
     pub actions: &'a mut [Action],
-    /// Their bridges and what those do; empty where nothing is wet.
-    pub bridges: &'a mut [BridgeRow],
+    /// Their bridges, by groups; empty where nothing is wet.
+    pub bridges: &'a mut [BridgeColumns],
     /// What the bridges do.
     pub liquid_actions: &'a mut [LiquidAction],
 }
@@ -456,7 +458,18 @@ pub struct Forces<'a, L> {
 }
 
 #[inline(always)]
-fn film_constants<N: Lanes>(
+fn common_film_constants<N: Lanes>(
+    processor: N::Processor,
+    constants: &FilmConstants,
+) -> Constants<N> {
+    (
+        N::spread(processor, &constants.viscous),
+        N::spread(processor, &constants.gaps),
+    )
+}
+
+#[inline(always)]
+fn own_film_constants<N: Lanes>(
     processor: N::Processor,
     wetting: &Wetting<'_>,
     pairs: &[Pair],
@@ -475,12 +488,15 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
     all: &Surroundings<'_, L>,
     rows: PairRows<'_>,
 ) -> u64 {
-    let Some(kind) = rows.pairs.first().map(|pair| pair.kind) else {
-        return 0;
-    };
     // As a rule all grains are of one class, and the constants are the same throughout.
-    let uniform = rows.pairs.iter().all(|pair| pair.kind == kind);
-    let common = common_constants::<N>(processor, &all.constants[kind as usize]);
+    let common = rows.kind.map(|kind| kind as usize);
+    let common_film = match all.wetting {
+        Some(wetting) if WET => {
+            common.map(|kind| common_film_constants::<N>(processor, &wetting.constants[kind]))
+        }
+        _ => None,
+    };
+    let common = common.map(|kind| common_constants::<N>(processor, &all.constants[kind]));
     let mut ruptures = 0;
     for first in (0..rows.pairs.len()).step_by(N::COUNT) {
         let group = first..first + N::COUNT;
@@ -496,22 +512,23 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
                 BridgeGroup {
                     wetting,
                     pairs,
-                    rows: &mut rows.bridges[group.clone()],
+                    columns: &mut rows.bridges[first / GROUP],
+                    first: first % GROUP,
                     actions: &mut rows.liquid_actions[group],
                 },
-                film_constants(processor, &wetting, pairs),
+                match &common_film {
+                    Some(film) => *film,
+                    None => own_film_constants(processor, &wetting, pairs),
+                },
             )),
             _ => None,
         };
-        let own;
-        let constants = if uniform {
-            &common
-        } else {
-            own = own_constants::<N>(processor, all.constants, pairs);
-            &own
+        let constants = match &common {
+            Some(common) => *common,
+            None => own_constants::<N>(processor, all.constants, pairs),
         };
         ruptures += u64::from(interact(
-            processor, all, partners, constants, springs, actions, liquid,
+            processor, all, partners, &constants, springs, actions, liquid,
         ));
     }
     ruptures

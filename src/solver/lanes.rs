@@ -36,6 +36,10 @@ pub trait Lanes:
 
     /// `x` in every lane.
     fn splat(processor: Self::Processor, x: f64) -> Self;
+    /// The first numbers of a column.
+    fn load(processor: Self::Processor, column: &[f64]) -> Self;
+    /// To the first numbers of a column.
+    fn store(self, column: &mut [f64]);
     /// Column by column.
     fn gather(processor: Self::Processor, rows: Rows) -> [Self; 4];
     /// Column by column, from `a − b`.
@@ -56,6 +60,25 @@ pub trait Lanes:
     fn count(mask: Self::Mask) -> u32;
     /// One number from each lane; the first [`Lanes::COUNT`] of them count.
     fn numbers(self) -> [f64; WIDEST];
+    /// `m` between √½ and √2 and whole `k` with `m 2ᵏ` the number, where that is positive and normal.
+    fn split(self) -> (Self, Self);
+}
+
+/// How [`Lanes::split`] takes the bits of a number apart. With those of √½ taken off, the exponent's are those of `k`, off by
+/// [`split_bits::BIAS`]; the others, put on √½'s again, are those of `m`.
+mod split_bits {
+    /// The bits of √½.
+    pub const ROOT_OF_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
+    /// Brings the exponent of √½ to the bias.
+    pub const OFFSET: u64 = 1.0_f64.to_bits() - ROOT_OF_HALF;
+    /// All but sign and exponent.
+    pub const FRACTION: u64 = (1 << EXPONENT) - 1;
+    /// Where the exponent begins.
+    pub const EXPONENT: u32 = 52;
+    /// A number of which the lowest bits are whole numbers.
+    pub const WHOLE: f64 = (1_u64 << EXPONENT) as f64;
+    /// That number with the bias of exponents.
+    pub const BIAS: f64 = WHOLE + 1023.0;
 }
 
 /// A row in registers: four numbers of one grain or pair, whatever the number of lanes.
@@ -162,6 +185,16 @@ impl Lanes for One {
     }
 
     #[inline(always)]
+    fn load((): (), column: &[f64]) -> Self {
+        Self(column[0])
+    }
+
+    #[inline(always)]
+    fn store(self, column: &mut [f64]) {
+        column[0] = self.0;
+    }
+
+    #[inline(always)]
     fn gather((): (), rows: Rows) -> [Self; 4] {
         Self::spread((), rows[0])
     }
@@ -223,6 +256,17 @@ impl Lanes for One {
     fn numbers(self) -> [f64; WIDEST] {
         [self.0; WIDEST]
     }
+
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let bits = self.0.to_bits().wrapping_add(split_bits::OFFSET);
+        let whole = bits >> split_bits::EXPONENT | split_bits::WHOLE.to_bits();
+        let m = (bits & split_bits::FRACTION) + split_bits::ROOT_OF_HALF;
+        (
+            Self(f64::from_bits(m)),
+            Self(f64::from_bits(whole) - split_bits::BIAS),
+        )
+    }
 }
 
 /// A row for any processor.
@@ -270,16 +314,19 @@ mod avx {
         reason = "the pair loop is three times faster in lanes than one number at a time"
     )]
 
-    use super::{Lanes, Quad, Row, Rows, WIDEST, Work};
+    use super::{Lanes, Quad, Row, Rows, WIDEST, Work, split_bits};
     use std::arch::x86_64::{
-        __m256d, __m512d, __mmask8, _CMP_GT_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_pd,
-        _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd, _mm256_loadu_pd, _mm256_movemask_pd,
-        _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set_pd, _mm256_set1_pd, _mm256_sqrt_pd,
-        _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd,
-        _mm512_add_pd, _mm512_castpd256_pd512, _mm512_castpd512_pd256, _mm512_cmp_pd_mask,
-        _mm512_div_pd, _mm512_extractf64x4_pd, _mm512_insertf64x4, _mm512_mask_blend_pd,
-        _mm512_mul_pd, _mm512_set1_pd, _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd,
-        _mm512_xor_pd,
+        __m256d, __m512d, __mmask8, _CMP_GT_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_epi64,
+        _mm256_add_pd, _mm256_and_si256, _mm256_blendv_pd, _mm256_castpd_si256,
+        _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_div_pd, _mm256_loadu_pd, _mm256_movemask_pd,
+        _mm256_mul_pd, _mm256_or_si256, _mm256_permute2f128_pd, _mm256_set_pd, _mm256_set1_epi64x,
+        _mm256_set1_pd, _mm256_sqrt_pd, _mm256_srli_epi64, _mm256_storeu_pd, _mm256_sub_pd,
+        _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd, _mm512_add_epi64, _mm512_add_pd,
+        _mm512_and_si512, _mm512_castpd_si512, _mm512_castpd256_pd512, _mm512_castpd512_pd256,
+        _mm512_castsi512_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_extractf64x4_pd,
+        _mm512_insertf64x4, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_or_si512,
+        _mm512_set1_epi64, _mm512_set1_pd, _mm512_sqrt_pd, _mm512_srli_epi64, _mm512_storeu_pd,
+        _mm512_sub_pd, _mm512_xor_pd,
     };
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -508,6 +555,20 @@ mod avx {
         }
 
         #[inline(always)]
+        fn load(proof: Avx2, column: &[f64]) -> Self {
+            // SAFETY: AVX is there, as `proof` is; the slice holds four numbers, of any alignment.
+            Self(proof, unsafe {
+                _mm256_loadu_pd(column[..Self::COUNT].as_ptr())
+            })
+        }
+
+        #[inline(always)]
+        fn store(self, column: &mut [f64]) {
+            // SAFETY: AVX is there, as `self.0` proves; the slice holds four numbers, of any alignment.
+            unsafe { _mm256_storeu_pd(column[..Self::COUNT].as_mut_ptr(), self.1) };
+        }
+
+        #[inline(always)]
         fn gather(proof: Avx2, rows: Rows) -> [Self; 4] {
             Self::gather_four(proof, rows, 0)
         }
@@ -567,6 +628,36 @@ mod avx {
             let [a, b, c, d] = self.row();
             [a, b, c, d, a, b, c, d]
         }
+
+        #[inline(always)]
+        fn split(self) -> (Self, Self) {
+            // SAFETY: AVX2 is there, as `self.0` proves.
+            let (m, whole) = unsafe {
+                let bits = _mm256_add_epi64(
+                    _mm256_castpd_si256(self.1),
+                    _mm256_set1_epi64x(split_bits::OFFSET.cast_signed()),
+                );
+                let exponent = _mm256_srli_epi64::<{ split_bits::EXPONENT as i32 }>(bits);
+                let fraction =
+                    _mm256_and_si256(bits, _mm256_set1_epi64x(split_bits::FRACTION.cast_signed()));
+                (
+                    _mm256_add_epi64(
+                        fraction,
+                        _mm256_set1_epi64x(split_bits::ROOT_OF_HALF.cast_signed()),
+                    ),
+                    _mm256_or_si256(
+                        exponent,
+                        _mm256_set1_epi64x(split_bits::WHOLE.to_bits().cast_signed()),
+                    ),
+                )
+            };
+            // SAFETY: likewise.
+            let (m, whole) = unsafe { (_mm256_castsi256_pd(m), _mm256_castsi256_pd(whole)) };
+            (
+                Self(self.0, m),
+                Self(self.0, whole) - Self::repeat(self.0, split_bits::BIAS),
+            )
+        }
     }
 
     /// Rows of the first and of the last four numbers.
@@ -614,6 +705,20 @@ mod avx {
         fn splat(proof: Avx512, x: f64) -> Self {
             // SAFETY: AVX-512 is there, as `proof` is.
             Self(proof, unsafe { _mm512_set1_pd(x) })
+        }
+
+        #[inline(always)]
+        fn load(proof: Avx512, column: &[f64]) -> Self {
+            // SAFETY: AVX-512 is there, as `proof` is; the slice holds eight numbers, of any alignment.
+            Self(proof, unsafe {
+                _mm512_loadu_pd(column[..Self::COUNT].as_ptr())
+            })
+        }
+
+        #[inline(always)]
+        fn store(self, column: &mut [f64]) {
+            // SAFETY: AVX-512 is there, as `self.0` proves; the slice holds eight numbers, of any alignment.
+            unsafe { _mm512_storeu_pd(column[..Self::COUNT].as_mut_ptr(), self.1) };
         }
 
         #[inline(always)]
@@ -692,6 +797,36 @@ mod avx {
             // SAFETY: AVX-512 is there, as `self.0` proves; the array holds eight numbers.
             unsafe { _mm512_storeu_pd(numbers.as_mut_ptr(), self.1) };
             numbers
+        }
+
+        #[inline(always)]
+        fn split(self) -> (Self, Self) {
+            // SAFETY: AVX-512 is there, as `self.0` proves.
+            let (m, whole) = unsafe {
+                let bits = _mm512_add_epi64(
+                    _mm512_castpd_si512(self.1),
+                    _mm512_set1_epi64(split_bits::OFFSET.cast_signed()),
+                );
+                let exponent = _mm512_srli_epi64::<{ split_bits::EXPONENT }>(bits);
+                let fraction =
+                    _mm512_and_si512(bits, _mm512_set1_epi64(split_bits::FRACTION.cast_signed()));
+                (
+                    _mm512_add_epi64(
+                        fraction,
+                        _mm512_set1_epi64(split_bits::ROOT_OF_HALF.cast_signed()),
+                    ),
+                    _mm512_or_si512(
+                        exponent,
+                        _mm512_set1_epi64(split_bits::WHOLE.to_bits().cast_signed()),
+                    ),
+                )
+            };
+            // SAFETY: likewise.
+            let (m, whole) = unsafe { (_mm512_castsi512_pd(m), _mm512_castsi512_pd(whole)) };
+            (
+                Self(self.0, m),
+                Self(self.0, whole) - Self::splat(self.0, split_bits::BIAS),
+            )
         }
     }
 }

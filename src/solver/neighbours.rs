@@ -9,7 +9,7 @@
 //! list. The last of the bodies is a ghost that fills groups of
 //! pairs up; nothing it does counts.
 
-use super::bridges::{BridgeRow, LiquidAction};
+use super::bridges::{Bridges, LiquidAction};
 use super::contacts::{Action, Body, GROUP, Pair, WallBody};
 use super::grid::CellGrid;
 use super::row::{Row, length_squared, sub, vector};
@@ -20,10 +20,12 @@ use crate::world::{Contact, Partner, Surface};
 pub struct PairList {
     /// The pairs, sorted by their key.
     pub pairs: Vec<Pair>,
+    /// The kind of all of them, if it is one.
+    pub kind: Option<u32>,
     /// Tangential spring of each [m].
     pub springs: Vec<Row>,
     /// Bridge of each; empty where nothing is wet.
-    pub bridges: Vec<BridgeRow>,
+    pub bridges: Bridges,
 }
 
 /// A grain's part in a pair.
@@ -212,7 +214,7 @@ impl Neighbours {
     pub fn contact(&self, part: Part) -> Option<Contact> {
         let (index, action) = (part.action(), &self.actions[part.action()]);
         let touching = action.rolling[3] > 0.0;
-        let bridge = self.grains.bridges.get(index).and_then(BridgeRow::bridge);
+        let bridge = self.grains.bridges.get(index).bridge();
         let (pair, partner, spring) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
@@ -332,8 +334,8 @@ impl Neighbours {
             self.grains.pairs.len() + self.walls.pairs.len(),
             Action::default(),
         );
-        self.liquid_actions
-            .resize(self.grains.bridges.len(), LiquidAction::default());
+        let wet = self.grains.bridges.groups.len() * GROUP;
+        self.liquid_actions.resize(wet, LiquidAction::default());
         self.parts
             .fill(&self.grains.pairs, &self.walls.pairs, indices);
         self.reference.clear();
@@ -420,25 +422,34 @@ impl PairList {
     /// Takes over `pairs`, sorted by `key`; those that were listed before keep their springs.
     fn replace(&mut self, pairs: Vec<Pair>, key: Key, wet: bool) {
         let mut springs = vec![[0.0; 4]; pairs.len()];
-        carry(&self.pairs, &self.springs, &pairs, &mut springs, key);
+        let mut bridges = Bridges::none(if wet { pairs.len() } else { 0 });
+        for (old, new) in in_both(&self.pairs, &pairs, key) {
+            springs[new] = self.springs[old];
+            if wet {
+                bridges.set(new, &self.bridges.get(old));
+            }
+        }
         self.springs = springs;
-        let mut bridges = vec![BridgeRow::default(); if wet { pairs.len() } else { 0 }];
-        carry(&self.pairs, &self.bridges, &pairs, &mut bridges, key);
         self.bridges = bridges;
+        let kind = pairs.first().map(|pair| pair.kind);
+        self.kind = kind.filter(|kind| pairs.iter().all(|pair| pair.kind == *kind));
         self.pairs = pairs;
     }
 
     /// Sets the springs of the listed pairs from `known` pairs with their springs, sorted by `key`; others are unloaded.
     pub fn load_springs(&mut self, known: &[Pair], springs: &[Row], key: Key) {
         self.springs.fill([0.0; 4]);
-        carry(known, springs, &self.pairs, &mut self.springs, key);
+        for (old, new) in in_both(known, &self.pairs, key) {
+            self.springs[new] = springs[old];
+        }
     }
 
     /// The keys of the pairs that have a bridge, in order.
     fn bridged(&self) -> impl Iterator<Item = (u32, u32)> {
-        let rows = self.pairs.iter().zip(&self.bridges);
-        rows.filter(|(_, bridge)| bridge.exists())
-            .map(|(pair, _)| grain_key(pair))
+        let pairs = self.pairs.iter().enumerate();
+        pairs
+            .filter(|(k, _)| self.bridges.get(*k).exists())
+            .map(|(_, pair)| grain_key(pair))
     }
 }
 
@@ -460,19 +471,12 @@ fn fill_group(pairs: &mut Vec<Pair>, ghost: Pair) {
     pairs.resize(pairs.len().next_multiple_of(GROUP), ghost);
 }
 
-/// Copies what pairs remember from one sorted list to the other where they stand in both.
-fn carry<T: Copy>(
-    old: &[Pair],
-    old_memories: &[T],
-    new: &[Pair],
-    new_memories: &mut [T],
-    key: Key,
-) {
-    let mut known = old.iter().zip(old_memories).peekable();
-    for (pair, memory) in new.iter().zip(new_memories) {
-        while known.next_if(|(old, _)| key(old) < key(pair)).is_some() {}
-        if let Some((_, old_memory)) = known.next_if(|(old, _)| key(old) == key(pair)) {
-            *memory = *old_memory;
-        }
-    }
+/// Where the pairs that stand in both lists, each sorted by `key`, stand in the old and in the new one.
+fn in_both(old: &[Pair], new: &[Pair], key: Key) -> impl Iterator<Item = (usize, usize)> {
+    let mut known = old.iter().enumerate().peekable();
+    new.iter().enumerate().filter_map(move |(k, pair)| {
+        while known.next_if(|(_, old)| key(old) < key(pair)).is_some() {}
+        let (known, _) = known.next_if(|(_, old)| key(old) == key(pair))?;
+        Some((known, k))
+    })
 }

@@ -5,6 +5,7 @@
 //! never show in a result, because forces are summed in the order of the grains' indices.
 
 use crate::world::Grains;
+use glam::DVec3;
 
 /// The places of all grains.
 #[derive(Default)]
@@ -31,8 +32,8 @@ impl Order {
         let position = &grains.position;
         let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
         let thickness = 2.0 * mean(&grains.radius);
-        let low = position.iter().copied().reduce(glam::DVec3::min);
-        let high = position.iter().copied().reduce(glam::DVec3::max);
+        let low = position.iter().copied().reduce(DVec3::min);
+        let high = position.iter().copied().reduce(DVec3::max);
         let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
         let mut axes = [0, 1, 2];
         axes.sort_by(|a, b| (high - low)[*b].total_cmp(&(high - low)[*a]));

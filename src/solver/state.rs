@@ -2,7 +2,7 @@
 //!
 //! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
 
-use super::bridges::{BridgeRow, LiquidAction, Wetting};
+use super::bridges::{BridgeColumns, BridgeRow, Bridges, LiquidAction, Wetting};
 use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
 use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion, Outcome, Start};
 use super::lanes::Processor;
@@ -216,11 +216,14 @@ impl State {
             rows.push((self.pair(contact), spring(contact), bridge));
         }
         rows.sort_unstable_by_key(|(pair, ..)| grain_key(pair));
-        let mut list = PairList::default();
-        for (pair, spring, bridge) in rows {
+        let mut list = PairList {
+            bridges: Bridges::none(rows.len()),
+            ..PairList::default()
+        };
+        for (k, (pair, spring, bridge)) in rows.into_iter().enumerate() {
             list.pairs.push(pair);
             list.springs.push(spring);
-            list.bridges.push(bridge);
+            list.bridges.set(k, &bridge);
         }
         self.neighbours.adopt(list);
     }
@@ -422,13 +425,14 @@ impl State {
             grain_springs: Shared::new(&mut grains.springs),
             wall_springs: Shared::new(&mut at_walls.springs),
             actions: Shared::new(actions),
-            bridges: Shared::new(&mut grains.bridges),
+            bridges: Shared::new(&mut grains.bridges.groups),
             liquid_actions: Shared::new(liquid_actions),
             films: Shared::new(films),
             bridge_loads: Shared::new(bridge_loads),
             liquid: liquid.as_ref(),
             film_constants: &kinds.films,
             grain_pairs: &grains.pairs,
+            grain_kind: grains.kind,
             wall_pairs: &at_walls.pairs,
             parts,
             reference,
@@ -530,13 +534,14 @@ pub struct Phase<'a> {
     grain_springs: Shared<'a, Row>,
     wall_springs: Shared<'a, Row>,
     actions: Shared<'a, Action>,
-    bridges: Shared<'a, BridgeRow>,
+    bridges: Shared<'a, BridgeColumns>,
     liquid_actions: Shared<'a, LiquidAction>,
     films: Shared<'a, f64>,
     bridge_loads: Shared<'a, BridgeLoad>,
     liquid: Option<&'a Liquid>,
     film_constants: &'a [FilmConstants],
     grain_pairs: &'a [Pair],
+    grain_kind: Option<u32>,
     wall_pairs: &'a [Pair],
     parts: &'a Parts,
     reference: &'a [Row],
@@ -575,7 +580,8 @@ impl Phase<'_> {
         let (films, bridges, liquid_actions) = unsafe {
             (
                 self.films.all(),
-                self.bridges.range_mut(of_bridges.clone()),
+                self.bridges
+                    .range_mut(of_bridges.start / GROUP..of_bridges.end / GROUP),
                 self.liquid_actions.range_mut(of_bridges),
             )
         };
@@ -605,6 +611,7 @@ impl Phase<'_> {
             },
             of_grains: PairRows {
                 pairs: &self.grain_pairs[of_grains],
+                kind: self.grain_kind,
                 springs: grain_springs,
                 actions: grain_actions,
                 bridges,
@@ -612,6 +619,7 @@ impl Phase<'_> {
             },
             of_walls: PairRows {
                 pairs: &self.wall_pairs[of_walls],
+                kind: None,
                 springs: wall_springs,
                 actions: wall_actions,
                 bridges: &mut [],

@@ -19,7 +19,8 @@ use std::f64::consts::{LN_2, PI};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub struct FilmConstants {
-    /// `6π η r*²` [N s]; `6π η r*` [N s/m]; effective radius r* [m]; `2/5 r²` of the larger grain [m²].
+    /// `6π η r*²` [N s]; `6π η r*` [N s/m]; logarithm of the effective radius r* in metres; `2/5 r²` of the larger grain
+    /// [m²].
     pub viscous: Row,
     /// Smallest gap in the capillary and in the viscous forces, largest gap in both [m]; unused.
     pub gaps: Row,
@@ -55,7 +56,12 @@ impl FilmConstants {
         };
         let drag = 6.0 * PI * liquid.viscosity * radius;
         Self {
-            viscous: [drag * radius, drag, radius, 0.4 * larger * larger],
+            viscous: [
+                drag * radius,
+                drag,
+                natural_log(radius),
+                0.4 * larger * larger,
+            ],
             gaps: [in_contact, smallest, (LARGEST_GAP * sum).max(smallest), 0.0],
         }
     }
@@ -159,14 +165,15 @@ pub fn attraction<N: Lanes>(processor: N::Processor, constants: [N; 4], gap: N) 
 /// `mobility` is the step over the mass that partners leave free, summed over both sides [s/kg].
 #[inline(always)]
 pub fn drag<N: Lanes>(processor: N::Processor, film: [N; 4], gap: N, mobility: N) -> [N; 2] {
-    let [normal, across, radius, _] = film;
+    let [normal, across, log_radius, _] = film;
     let zero = N::splat(processor, 0.0);
-    let bracket = N::splat(processor, 8.0 / 15.0) * logarithm(processor, radius / gap)
-        + N::splat(processor, 0.9588);
+    let (inverse, log) = inverse_and_logarithm(processor, gap);
+    let bracket =
+        N::splat(processor, 8.0 / 15.0) * (log_radius - log) + N::splat(processor, 0.9588);
     let bracket = N::choose(bracket.exceeds(zero), bracket, zero);
+    let (normal, across) = (normal * inverse, across * bracket);
     let bound = N::splat(processor, LARGEST_DRAG) / mobility;
     let bound_across = N::splat(processor, 1.0 / SURFACE_MOBILITY) * bound;
-    let (normal, across) = (normal / gap, across * bracket);
     [
         N::choose(normal.exceeds(bound), bound, normal),
         N::choose(across.exceeds(bound_across), bound_across, across),
@@ -181,31 +188,46 @@ fn decay<N: Lanes>(processor: N::Processor, x: N) -> N {
     let lowest = N::splat(processor, -32.0);
     let x = N::choose(x.exceeds(lowest), x, lowest);
     let y = x * N::splat(processor, 1.0 / 64.0);
-    let mut sum = N::splat(processor, 1.0);
-    for n in [11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0] {
-        // The inner product does not wait for the sum: the chain of operations is a third shorter.
-        sum = N::splat(processor, 1.0) + sum * (y * N::splat(processor, 1.0 / n));
-    }
+    // Terms by twos and fours, so that short chains of operations run side by side.
+    let square = y * y;
+    let fourth = square * square;
+    let first = four_terms(processor, 0, y, square);
+    let second = four_terms(processor, 4, y, square);
+    let third = four_terms(processor, 8, y, square);
+    let mut power = first + fourth * (second + fourth * third);
     for _ in 0..6 {
-        sum = sum * sum;
+        power = power * power;
     }
-    sum
+    power
 }
 
-/// `ln x` for x between 2⁻¹² and 2¹², as [`natural_log`] but side by side.
+/// Four terms of the exponential series from the `n`-th on, over the power of y in the first.
 #[inline(always)]
-fn logarithm<N: Lanes>(processor: N::Processor, x: N) -> N {
-    const OFFSET: f64 = 12.0;
-    let one = N::splat(processor, 1.0);
-    let mut m = x * N::splat(processor, 4096.0);
-    let mut k = N::splat(processor, -OFFSET);
-    // m lies between 1 and 2²⁴: halve it until it is at most √2.
-    for halvings in [16.0, 8.0, 4.0, 2.0, 1.0_f64] {
-        let power = f64::from(1_u32 << halvings as u32);
-        let large = m.exceeds(N::splat(processor, power * std::f64::consts::FRAC_1_SQRT_2));
-        m = N::choose(large, m * N::splat(processor, 1.0 / power), m);
-        k = N::choose(large, k + N::splat(processor, halvings), k);
+fn four_terms<N: Lanes>(processor: N::Processor, n: usize, y: N, square: N) -> N {
+    let [a, b, c, d] = [n, n + 1, n + 2, n + 3].map(|n| INVERSE_FACTORIALS[n]);
+    let low = N::splat(processor, a) + N::splat(processor, b) * y;
+    let high = N::splat(processor, c) + N::splat(processor, d) * y;
+    low + high * square
+}
+
+/// `1/n!`.
+const INVERSE_FACTORIALS: [f64; 12] = {
+    let mut inverse = [1.0; 12];
+    let (mut n, mut factorial) = (1, 1.0);
+    while n < inverse.len() {
+        factorial *= n as f64;
+        inverse[n] = 1.0 / factorial;
+        n += 1;
     }
+    inverse
+};
+
+/// `1/x` and `ln x`, the latter as [`natural_log`] but side by side, for positive x far from the ends of what a number holds.
+#[inline(always)]
+fn inverse_and_logarithm<N: Lanes>(processor: N::Processor, x: N) -> (N, N) {
+    let one = N::splat(processor, 1.0);
+    let (m, k) = x.split();
+    let inverse = one / x;
     let s = (m - one) / (m + one);
     let square = s * s;
     // Every other term apart, so that two short chains of operations run side by side.
@@ -217,7 +239,8 @@ fn logarithm<N: Lanes>(processor: N::Processor, x: N) -> N {
         odd = odd * squared + N::splat(processor, 1.0 / (n + 2.0));
     }
     let series = even + square * odd;
-    k * N::splat(processor, LN_2) + N::splat(processor, 2.0) * s * series
+    let log = k * N::splat(processor, LN_2) + N::splat(processor, 2.0) * s * series;
+    (inverse, log)
 }
 
 /// `eˣ`, by sums and products alone.
@@ -261,12 +284,15 @@ mod tests {
             );
         }
         assert!(decay::<One>((), One::splat((), -1e6)).get() < 1e-13);
-        for x in [2.5e-4, 0.01, 0.5, 0.7, 1.0, 1.5, 2.0, 3.999, 25.0, 4000.0] {
-            let found = logarithm::<One>((), One::splat((), x)).get();
-            assert!(
-                (found - f64::ln(x)).abs() < 4e-15 * (1.0 + f64::ln(x).abs()),
-                "ln {x}: {found}"
-            );
+        for x in [
+            1e-200, 2.5e-4, 0.01, 0.5, 0.7, 0.7072, 1.0, 1.414, 1.5, 2.0, 3.999, 25.0, 4000.0,
+            1e200,
+        ] {
+            let (inverse, log) = inverse_and_logarithm::<One>((), One::splat((), x));
+            let (inverse, log) = (inverse.get(), log.get());
+            assert!((inverse * x - 1.0).abs() < 1e-15, "1/{x}: {inverse}");
+            let error = (log - f64::ln(x)).abs();
+            assert!(error < 4e-15 * (1.0 + f64::ln(x).abs()), "ln {x}: {log}");
         }
         for x in [1e-30, 6.2e-11, 1e-6, 0.5, 27.0] {
             assert!((cube_root(x) / f64::cbrt(x) - 1.0).abs() < 1e-14, "{x}");
