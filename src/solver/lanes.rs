@@ -637,7 +637,7 @@ mod avx {
                     _mm256_castpd_si256(self.1),
                     _mm256_set1_epi64x(split_bits::OFFSET.cast_signed()),
                 );
-                let exponent = _mm256_srli_epi64::<{ split_bits::EXPONENT as i32 }>(bits);
+                let exponent = _mm256_srli_epi64::<{ split_bits::EXPONENT.cast_signed() }>(bits);
                 let fraction =
                     _mm256_and_si256(bits, _mm256_set1_epi64x(split_bits::FRACTION.cast_signed()));
                 (
