@@ -102,9 +102,10 @@ pub fn colours(
 ) {
     let grains = &world.grains;
     let Some(legend) = legend else {
-        for i in 0..grains.len() {
-            let colour = species_colour(usize::from(grains.species[i].0));
-            paint(linear(colour).map(|c| c * individual_lightness(i)));
+        let palette = SPECIES.map(linear);
+        for (i, species) in grains.species.iter().enumerate() {
+            let colour = palette[usize::from(species.0) % palette.len()];
+            paint(colour.map(|c| c * individual_lightness(i)));
         }
         return;
     };

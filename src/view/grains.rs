@@ -4,7 +4,7 @@
 //! colours change, and the legend. Who draws a shape finds its grains in that buffer by their index, so that nothing is
 //! done per grain on the processor but filling it.
 
-use super::occlusion::occlusions;
+use super::occlusion::Shadows;
 use super::{ColourBy, ColourMap, ColourRange, Cut, Shown, ViewSettings, colour};
 use crate::world::{Polyhedra, Polyhedron, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
@@ -13,6 +13,7 @@ use bevy::render::render_resource::ShaderType;
 use bevy::render::storage::ShaderBuffer;
 use bytemuck::{Pod, Zeroable};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 const SHADER: Handle<Shader> = uuid_handle!("3f0c5b86-8f0e-4b0c-9a52-5f0d7f7c1e02");
 
@@ -30,11 +31,15 @@ pub(super) fn plugin(app: &mut App) {
 
 /// The buffer of all grains, in the order of the world.
 #[derive(Resource, Default)]
-pub(super) struct GrainBuffer {
+pub struct GrainBuffer {
     /// The buffer; another one whenever the number of grains is another.
-    pub handle: Handle<ShaderBuffer>,
+    pub(super) handle: Handle<ShaderBuffer>,
     count: usize,
+    shadows_are_whole: bool,
 }
+
+/// Grains whose shadows are brought up to date in a frame.
+const SHADOWS_A_FRAME: usize = 8192;
 
 /// A grain as the shaders read it.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -89,12 +94,24 @@ pub(super) fn polyhedron(polyhedra: Option<&Polyhedra>, i: usize) -> Option<&Pol
 /// What decides the grains' colours and shadows beside the world.
 type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>);
 
-/// Rewrites the buffer when the world or the colouring is another.
+/// What is kept from one frame to the next, so that a frame needs no new room per grain.
+#[derive(Default)]
+struct Kept {
+    colouring: Option<Colouring>,
+    forms: Forms,
+    /// Radius of the sphere of the same volume as each polyhedron [m]; none where all are spheres.
+    radii: Vec<f32>,
+    spheres: Vec<(Vec3, f32)>,
+    shadows: Shadows,
+    drawn: Vec<DrawnGrain>,
+}
+
+/// Rewrites the buffer when the world or the colouring is another, and while shadows follow.
 fn fill(
     shown: Res<Shown>,
     mut settings: ResMut<ViewSettings>,
-    mut last: Local<Option<Colouring>>,
-    mut drawn: ResMut<GrainBuffer>,
+    mut kept: Local<Kept>,
+    mut buffer: ResMut<GrainBuffer>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
     let colouring = (
@@ -103,65 +120,137 @@ fn fill(
         settings.range,
         settings.cut,
     );
-    if !shown.is_changed() && *last == Some(colouring) {
+    let moved = shown.is_changed();
+    let recoloured = kept.colouring != Some(colouring);
+    if !moved && !recoloured && kept.shadows.are_whole() {
         return;
     }
-    *last = Some(colouring);
-    let world = shown.world();
-    settings.legend = world.and_then(|world| {
-        let before = settings.legend.as_ref();
-        colour::legend(world, settings.colour_by, settings.range, before)
-    });
-    let mut grains = world.map_or_else(Vec::new, |world| drawn_grains(world, &settings));
-    if grains.is_empty() {
-        // A buffer cannot be empty; nobody draws this one.
-        grains.push(DrawnGrain::zeroed());
+    if moved || recoloured {
+        kept.colouring = Some(colouring);
+        let world = shown.world();
+        settings.legend = world.and_then(|world| {
+            let before = settings.legend.as_ref();
+            colour::legend(world, settings.colour_by, settings.range, before)
+        });
+        kept.redraw(world, &settings);
     }
-    let bytes = bytemuck::cast_slice(&grains);
-    if grains.len() == drawn.count
-        && let Some(mut buffer) = buffers.get_mut(&drawn.handle)
-    {
-        buffer.data = Some(bytes.to_vec());
-    } else {
-        drawn.count = grains.len();
-        drawn.handle = buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
+    kept.shade();
+    buffer.shadows_are_whole = kept.shadows.are_whole();
+    buffer.write(&kept.drawn, &mut buffers);
+}
+
+impl GrainBuffer {
+    /// Whether all shadows fit the state shown; they follow within some frames.
+    pub fn is_whole(&self) -> bool {
+        self.shadows_are_whole
+    }
+
+    fn write(&mut self, grains: &[DrawnGrain], buffers: &mut Assets<ShaderBuffer>) {
+        // A buffer cannot be empty; nobody draws this one.
+        let nobody = [DrawnGrain::zeroed()];
+        let grains = if grains.is_empty() { &nobody } else { grains };
+        let bytes = bytemuck::cast_slice(grains);
+        if grains.len() == self.count
+            && let Some(mut buffer) = buffers.get_mut(&self.handle)
+        {
+            buffer.data = Some(bytes.to_vec());
+        } else {
+            self.count = grains.len();
+            self.handle = buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
+        }
     }
 }
 
-fn drawn_grains(world: &World, settings: &ViewSettings) -> Vec<DrawnGrain> {
-    let grains = &world.grains;
-    let polyhedra = world.polyhedra.as_deref();
-    let spheres: Vec<(Vec3, f32)> = (0..grains.len())
-        .map(|i| {
-            let radius = polyhedron(polyhedra, i).map_or(grains.radius[i], round_radius);
-            (grains.position[i].as_vec3(), radius as f32)
-        })
-        .collect();
-    let cut = CutPlanes::of(settings.cut);
-    let hidden = occlusions(&spheres, |x| cut.take_away(x));
-    let mut drawn = Vec::with_capacity(grains.len());
-    colour::colours(
-        world,
-        settings.colour_by,
-        settings.colour_map,
-        settings.legend.as_ref(),
-        |colour| {
-            let i = drawn.len();
-            let hidden = hidden[i];
-            drawn.push(DrawnGrain {
-                centre: spheres[i].0.to_array(),
-                radius: grains.radius[i] as f32,
-                colour,
-                hidden_mean: hidden.mean,
-                hidden_gradient: hidden.gradient.to_array(),
-                hidden_quadrupole: hidden.quadrupole,
-                orientation: polyhedra.map_or([0.0, 0.0, 0.0, 1.0], |polyhedra| {
-                    polyhedra.orientation[i].as_quat().to_array()
-                }),
-            });
-        },
-    );
-    drawn
+impl Kept {
+    /// Writes places and colours, and lets the shadows follow.
+    fn redraw(&mut self, world: Option<&World>, settings: &ViewSettings) {
+        self.drawn.clear();
+        self.spheres.clear();
+        if let Some(world) = world {
+            self.place(world);
+            self.colour(world, settings);
+        }
+        let cut = CutPlanes::of(settings.cut);
+        self.shadows
+            .follow(&self.spheres, |centre| cut.take_away(centre));
+    }
+
+    fn place(&mut self, world: &World) {
+        let grains = &world.grains;
+        if self.forms.renew(world) {
+            self.radii.clear();
+            if world.polyhedra.is_some() {
+                let round = |i| polyhedron(world.polyhedra.as_deref(), i).map(round_radius);
+                let radius = |i: usize| round(i).unwrap_or(grains.radius[i]) as f32;
+                self.radii.extend((0..grains.len()).map(radius));
+            }
+        }
+        let radius = |i: usize| (self.radii.get(i).copied()).unwrap_or(grains.radius[i] as f32);
+        let places = grains.position.iter().enumerate();
+        (self.spheres).extend(places.map(|(i, x)| (x.as_vec3(), radius(i))));
+    }
+
+    fn colour(&mut self, world: &World, settings: &ViewSettings) {
+        let orientations = world.polyhedra.as_deref().map(|p| &p.orientation);
+        let (drawn, spheres) = (&mut self.drawn, &self.spheres);
+        colour::colours(
+            world,
+            settings.colour_by,
+            settings.colour_map,
+            settings.legend.as_ref(),
+            |colour| {
+                let i = drawn.len();
+                drawn.push(DrawnGrain {
+                    centre: spheres[i].0.to_array(),
+                    radius: world.grains.radius[i] as f32,
+                    colour,
+                    orientation: orientations.map_or([0.0, 0.0, 0.0, 1.0], |orientations| {
+                        orientations[i].as_quat().to_array()
+                    }),
+                    ..DrawnGrain::zeroed()
+                });
+            },
+        );
+    }
+
+    /// Brings some shadows up to date, and writes all.
+    fn shade(&mut self) {
+        self.shadows.renew(SHADOWS_A_FRAME);
+        for (grain, hidden) in self.drawn.iter_mut().zip(self.shadows.hidden()) {
+            grain.hidden_mean = hidden.mean;
+            grain.hidden_gradient = hidden.gradient.to_array();
+            grain.hidden_quadrupole = hidden.quadrupole;
+        }
+    }
+}
+
+/// Which shapes the grains of a world have: what is made of them holds until they are others.
+#[derive(Default)]
+pub(super) struct Forms {
+    count: usize,
+    shapes: Option<Arc<[Polyhedron]>>,
+    shape: Vec<u32>,
+}
+
+impl Forms {
+    /// Takes over those of `world`; whether they were others.
+    pub(super) fn renew(&mut self, world: &World) -> bool {
+        let same_shapes = match (&self.shapes, &world.polyhedra) {
+            (None, None) => true,
+            (Some(shapes), Some(polyhedra)) => {
+                Arc::ptr_eq(shapes, &polyhedra.shapes) && self.shape == polyhedra.shape
+            }
+            _ => false,
+        };
+        if same_shapes && self.count == world.grains.len() {
+            return false;
+        }
+        let polyhedra = world.polyhedra.as_deref();
+        self.count = world.grains.len();
+        self.shapes = polyhedra.map(|polyhedra| polyhedra.shapes.clone());
+        self.shape = polyhedra.map_or_else(Vec::new, |polyhedra| polyhedra.shape.clone());
+        true
+    }
 }
 
 /// Radius of the sphere of the same volume [m].

@@ -39,6 +39,7 @@ mod spheres;
 pub use camera::{OrbitCamera, apply_response};
 pub(crate) use colour::round_up;
 pub use colour::species_colour;
+pub use grains::GrainBuffer;
 pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
 pub use png::save_png;
 pub use polyhedra::Meshing;

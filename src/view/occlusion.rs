@@ -4,7 +4,7 @@
 //! `Q`: the first three orders of spherical harmonics of what the neighbours hide. It is a picture's shadow, smooth in
 //! the positions so that nothing flickers; it is no measure. Walls hide nothing.
 
-use bevy::math::Vec3;
+use bevy::math::{USizeVec3, Vec3};
 
 /// Share of the sky hidden as a function of the surface normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,25 +47,50 @@ impl Occlusion {
     }
 }
 
-/// What hides the sky from each sphere (centre, radius); spheres for which `absent` holds hide nothing.
-pub(super) fn occlusions(spheres: &[(Vec3, f32)], absent: impl Fn(Vec3) -> bool) -> Vec<Occlusion> {
-    let mut occlusions = vec![Occlusion::default(); spheres.len()];
-    let largest = spheres.iter().fold(0.0, |most: f32, s| most.max(s.1));
-    if largest <= 0.0 {
-        return occlusions;
+/// The shadows of all spheres, brought up to date some spheres at a time, so that no frame waits for all of them.
+#[derive(Default)]
+pub(super) struct Shadows {
+    hidden: Vec<Occlusion>,
+    cells: Cells,
+    /// Where in the order of cells the next ones are.
+    next: usize,
+    /// How many were not looked at since the spheres were others.
+    stale: usize,
+}
+
+impl Shadows {
+    /// What hides the sky from each sphere, as far as is known.
+    pub(super) fn hidden(&self) -> &[Occlusion] {
+        &self.hidden
     }
-    let present: Vec<bool> = spheres.iter().map(|s| !absent(s.0)).collect();
-    for_each_pair(spheres, (2.0 + RANGE) * largest, |i, j| {
-        let (from_i, distance) = (spheres[j].0 - spheres[i].0).normalize_and_length();
-        let gap = distance - spheres[i].1 - spheres[j].1;
-        if present[j] {
-            occlusions[i].add(from_i, strength(gap, spheres[i].1, spheres[j].1));
+
+    /// Whether all are up to date.
+    pub(super) fn are_whole(&self) -> bool {
+        self.stale == 0
+    }
+
+    /// From now on the spheres (centre, radius) are these; those for which `absent` holds hide nothing.
+    pub(super) fn follow(&mut self, spheres: &[(Vec3, f32)], absent: impl Fn(Vec3) -> bool) {
+        if self.hidden.len() != spheres.len() {
+            self.hidden.clear();
+            self.hidden.resize(spheres.len(), Occlusion::default());
         }
-        if present[i] {
-            occlusions[j].add(-from_i, strength(gap, spheres[j].1, spheres[i].1));
+        self.stale = if self.cells.sort(spheres, absent) {
+            spheres.len()
+        } else {
+            0
+        };
+    }
+
+    /// Brings up to `most` of them up to date.
+    pub(super) fn renew(&mut self, most: usize) {
+        for _ in 0..most.min(self.stale) {
+            self.next = (self.next + 1) % self.hidden.len();
+            let (sphere, occlusion) = self.cells.occlusion(self.next);
+            self.hidden[sphere] = occlusion;
+            self.stale -= 1;
         }
-    });
-    occlusions
+    }
 }
 
 /// What a sphere of radius `other` at a `gap` hides from one of radius `own`, in what a touching equal one does.
@@ -76,56 +101,110 @@ fn strength(gap: f32, own: f32, other: f32) -> f32 {
     fade * fade * size * size
 }
 
-/// Calls `visit` once for each pair of spheres whose centres are closer than `reach`, and for some that are not.
-fn for_each_pair(spheres: &[(Vec3, f32)], reach: f32, mut visit: impl FnMut(usize, usize)) {
-    let low = spheres.iter().fold(Vec3::INFINITY, |low, s| low.min(s.0));
-    let high = (spheres.iter()).fold(Vec3::NEG_INFINITY, |high, s| high.max(s.0));
-    if !(high - low).is_finite() {
-        return;
-    }
-    // No more than 128 cells a side, whatever flies away.
-    let cell = reach.max((high - low).max_element() / 127.0);
-    let size = ((high - low) / cell).floor().as_usizevec3() + 1;
-    let place = |x: Vec3| ((x - low) / cell).floor().as_usizevec3().min(size - 1);
-    let index = |x: usize, y: usize, z: usize| x + size.x * (y + size.y * z);
+/// Spheres in the order of the cubic cells that their centres are in.
+#[derive(Default)]
+struct Cells {
+    low: Vec3,
+    cell: f32,
+    size: USizeVec3,
+    /// Where in `sorted` each cell begins.
+    start: Vec<u32>,
+    sorted: Vec<Sorted>,
+    /// The cell of each sphere, as given.
+    cell_of: Vec<u32>,
+}
 
-    let mut start = vec![0_u32; size.element_product() + 1];
-    let cells: Vec<usize> = spheres
-        .iter()
-        .map(|s| {
-            let at = place(s.0);
-            index(at.x, at.y, at.z)
-        })
-        .collect();
-    for cell in &cells {
-        start[cell + 1] += 1;
-    }
-    for i in 1..start.len() {
-        start[i] += start[i - 1];
-    }
-    let mut next = start.clone();
-    let mut sorted = vec![0_u32; spheres.len()];
-    for (i, cell) in cells.iter().enumerate() {
-        sorted[next[*cell] as usize] = i as u32;
-        next[*cell] += 1;
+/// A sphere in its cell.
+#[derive(Clone, Copy, Default)]
+struct Sorted {
+    centre: Vec3,
+    radius: f32,
+    /// Its radius, or zero where it hides nothing.
+    hiding: f32,
+    /// Its place among those given.
+    sphere: u32,
+}
+
+impl Cells {
+    /// Sorts `spheres`; false where their places are no numbers or none has a size.
+    fn sort(&mut self, spheres: &[(Vec3, f32)], absent: impl Fn(Vec3) -> bool) -> bool {
+        let (mut low, mut high, mut largest) = (Vec3::INFINITY, Vec3::NEG_INFINITY, 0.0_f32);
+        for (centre, radius) in spheres {
+            (low, high, largest) = (low.min(*centre), high.max(*centre), largest.max(*radius));
+        }
+        if !(high - low).is_finite() || largest <= 0.0 {
+            return false;
+        }
+        // No more than 128 cells a side, whatever flies away.
+        self.cell = ((2.0 + RANGE) * largest).max((high - low).max_element() / 127.0);
+        self.low = low;
+        self.size = self.cell_at(high) + 1;
+        self.start.clear();
+        self.start.resize(self.size.element_product() + 2, 0);
+        self.cell_of.clear();
+        for (centre, _) in spheres {
+            let USizeVec3 { x, y, z } = self.cell_at(*centre);
+            let cell = self.index(x, y, z);
+            self.cell_of.push(cell as u32);
+            self.start[cell + 2] += 1;
+        }
+        for i in 2..self.start.len() {
+            self.start[i] += self.start[i - 1];
+        }
+        self.sorted.resize(spheres.len(), Sorted::default());
+        for (sphere, ((centre, radius), cell)) in spheres.iter().zip(&self.cell_of).enumerate() {
+            // What begins one cell further on moves back to where this cell ends.
+            let place = &mut self.start[*cell as usize + 1];
+            self.sorted[*place as usize] = Sorted {
+                centre: *centre,
+                radius: *radius,
+                hiding: if absent(*centre) { 0.0 } else { *radius },
+                sphere: sphere as u32,
+            };
+            *place += 1;
+        }
+        true
     }
 
-    for (i, sphere) in spheres.iter().enumerate() {
-        let at = place(sphere.0);
-        let from = at.saturating_sub(bevy::math::USizeVec3::ONE);
-        let to = (at + 1).min(size - 1);
+    fn cell_at(&self, x: Vec3) -> USizeVec3 {
+        // Truncated: nothing lies below the lowest.
+        ((x - self.low) / self.cell).as_usizevec3()
+    }
+
+    fn index(&self, x: usize, y: usize, z: usize) -> usize {
+        x + self.size.x * (y + self.size.y * z)
+    }
+
+    /// Calls `visit` with all spheres near the one at `place` in the order of cells, and with some that are not.
+    fn for_near(&self, place: usize, mut visit: impl FnMut(&Sorted)) {
+        let at = self.cell_at(self.sorted[place].centre);
+        let from = at.saturating_sub(USizeVec3::ONE);
+        let to = (at + 1).min(self.size - 1);
         for z in from.z..=to.z {
             for y in from.y..=to.y {
                 // The cells of a row follow each other.
-                let row = start[index(from.x, y, z)]..start[index(to.x, y, z) + 1];
-                for &j in &sorted[row.start as usize..row.end as usize] {
-                    let j = j as usize;
-                    if j > i && spheres[j].0.distance_squared(sphere.0) < reach * reach {
-                        visit(i, j);
-                    }
-                }
+                let row = self.start[self.index(from.x, y, z)] as usize
+                    ..self.start[self.index(to.x, y, z) + 1] as usize;
+                self.sorted[row].iter().for_each(&mut visit);
             }
         }
+    }
+
+    /// The sphere at `place` in the order of cells, and what hides the sky from it.
+    fn occlusion(&self, place: usize) -> (usize, Occlusion) {
+        let own = self.sorted[place];
+        let mut occlusion = Occlusion::default();
+        self.for_near(place, |other| {
+            let towards = other.centre - own.centre;
+            let reach = own.radius + (1.0 + RANGE) * other.hiding;
+            let square = towards.length_squared();
+            if square < reach * reach && square > 0.0 && other.hiding > 0.0 {
+                let distance = square.sqrt();
+                let gap = distance - own.radius - other.hiding;
+                occlusion.add(towards / distance, strength(gap, own.radius, other.hiding));
+            }
+        });
+        (own.sphere as usize, occlusion)
     }
 }
 
@@ -160,10 +239,17 @@ mod tests {
         }
     }
 
+    fn occlusions(spheres: &[(Vec3, f32)], absent: bool) -> Vec<Occlusion> {
+        let mut shadows = Shadows::default();
+        shadows.follow(spheres, |_| absent);
+        shadows.renew(spheres.len());
+        shadows.hidden().to_vec()
+    }
+
     #[test]
     fn neighbours_hide_most_on_their_side() {
         let spheres = [(Vec3::ZERO, 1.0), (Vec3::new(2.0, 0.0, 0.0), 1.0)];
-        let hidden = occlusions(&spheres, |_| false);
+        let hidden = occlusions(&spheres, false);
         let [towards, aside, away] = [Vec3::X, Vec3::Y, Vec3::NEG_X].map(|n| hidden[0].at(n));
         assert!(
             towards > 0.4 && aside < 0.1 && away < 0.2,
@@ -171,45 +257,75 @@ mod tests {
         );
         // What one does to the other, the other does to it.
         assert_eq!(hidden[1].at(Vec3::NEG_X), towards);
-        assert_eq!(occlusions(&spheres, |_| true)[0], Occlusion::default());
+        assert_eq!(occlusions(&spheres, true)[0], Occlusion::default());
     }
 
     #[test]
     fn shadow_fades_to_nothing_before_a_neighbour_leaves() {
         for gap in [0.0, 0.5, 0.999, 1.5] {
             let spheres = [(Vec3::ZERO, 1.0), (Vec3::new(0.0, 2.0 + gap, 0.0), 1.0)];
-            let mean = occlusions(&spheres, |_| false)[0].mean;
+            let mean = occlusions(&spheres, false)[0].mean;
             let expected = TOUCHING[0] * (1.0 - gap).max(0.0).powi(2);
             assert!((mean - expected).abs() < 1e-6, "{gap}: {mean}");
         }
     }
 
+    fn scattered() -> Vec<(Vec3, f32)> {
+        let scrambled = |i: u32, k: u32| {
+            let bits = (i * 3 + k).wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
+            bits.wrapping_mul(0x85EB_CA6B) as f32 / u32::MAX as f32
+        };
+        let place = |i| Vec3::new(scrambled(i, 0), scrambled(i, 1), scrambled(i, 2));
+        (0..400).map(|i| (12.0 * place(i), 0.5)).collect()
+    }
+
     #[test]
     fn pairs_found_by_cells_are_those_found_by_looking_at_all() {
-        let spheres: Vec<(Vec3, f32)> = (0..400_u32)
-            .map(|i| {
-                let scrambled = |k: u32| {
-                    let bits = (i * 3 + k).wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
-                    bits.wrapping_mul(0x85EB_CA6B) as f32 / u32::MAX as f32
-                };
-                (
-                    12.0 * Vec3::new(scrambled(0), scrambled(1), scrambled(2)),
-                    0.5,
-                )
-            })
-            .collect();
-        let mut found = Vec::new();
-        for_each_pair(&spheres, 1.5, |i, j| found.push((i, j)));
-        found.sort_unstable();
-        let mut all = Vec::new();
-        for i in 0..spheres.len() {
-            for j in i + 1..spheres.len() {
-                if spheres[i].0.distance_squared(spheres[j].0) < 2.25 {
-                    all.push((i, j));
+        let spheres = scattered();
+        let near = |a: Vec3, b: Vec3| a.distance_squared(b) < 2.25;
+        let mut cells = Cells::default();
+        assert!(cells.sort(&spheres, |_| false));
+        let mut pairs = 0;
+        for place in 0..spheres.len() {
+            let own = cells.sorted[place];
+            let mut found = Vec::new();
+            cells.for_near(place, |other| {
+                if near(own.centre, other.centre) {
+                    found.push(other.sphere as usize);
                 }
-            }
+            });
+            found.sort_unstable();
+            let own = own.centre;
+            let all: Vec<usize> = (0..400).filter(|i| near(own, spheres[*i].0)).collect();
+            assert_eq!(found, all);
+            pairs += all.len() - 1;
         }
-        assert_eq!(found, all);
-        assert!(all.len() > 50);
+        assert!(pairs > 100);
+    }
+
+    #[test]
+    fn shadows_are_whole_after_a_round_however_it_is_divided() {
+        let mut spheres = scattered();
+        let at_once = occlusions(&spheres, false);
+        let mut shadows = Shadows::default();
+        // Elsewhere at first: half of them are looked at, then all move.
+        spheres.reverse();
+        shadows.follow(&spheres, |_| false);
+        shadows.renew(200);
+        spheres.reverse();
+        shadows.follow(&spheres, |_| false);
+        for _ in 0..4 {
+            assert!(!shadows.are_whole());
+            shadows.renew(130);
+        }
+        assert!(shadows.are_whole());
+        assert_eq!(shadows.hidden(), at_once);
+    }
+
+    #[test]
+    fn places_that_are_no_numbers_have_no_shadows() {
+        let spheres = [(Vec3::NAN, 1.0), (Vec3::ZERO, 1.0)];
+        assert_eq!(occlusions(&spheres, false), [Occlusion::default(); 2]);
+        assert_eq!(occlusions(&[], false), []);
     }
 }

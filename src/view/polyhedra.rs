@@ -6,7 +6,7 @@
 //! body's section with the planes of its faces.
 
 use super::facets::Facets;
-use super::grains::{CutPlanes, GrainBuffer, polyhedron};
+use super::grains::{CutPlanes, Forms, GrainBuffer, polyhedron};
 use super::{Shown, ViewSettings};
 use crate::world::{Polyhedra, Polyhedron};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
@@ -23,7 +23,6 @@ use bevy::render::render_resource::{
 use bevy::render::storage::ShaderBuffer;
 use bevy::shader::ShaderRef;
 use bytemuck::{Pod, Zeroable};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const SHADER: Handle<Shader> = uuid_handle!("a5a3c7f0-7a3d-4b1f-8d0c-0f6c5b8e9d33");
@@ -139,8 +138,9 @@ struct Chunk;
 #[derive(Resource, Default)]
 pub struct Meshing {
     /// What they are made of.
-    shapes: Option<Arc<[Polyhedron]>>,
-    shape: Vec<u32>,
+    forms: Forms,
+    /// Grains to mesh: none where all are spheres.
+    count: usize,
     /// Grains before this one have their mesh, and their planes are in `planes`.
     next: usize,
     planes: Vec<Vec4>,
@@ -151,12 +151,12 @@ pub struct Meshing {
 impl Meshing {
     /// Whether all meshes of the world shown are there.
     pub fn is_whole(&self) -> bool {
-        self.next >= self.shape.len()
+        self.next >= self.count
     }
 
     /// The mesh of the next grains; none where all of them are spheres.
     fn next_chunk(&mut self, polyhedra: &Polyhedra) -> Option<Mesh> {
-        let end = (self.next + CHUNK).min(self.shape.len());
+        let end = (self.next + CHUNK).min(self.count);
         let mut surfaces = Surfaces::default();
         for i in self.next..end {
             let first = self.planes.len() as u32;
@@ -170,16 +170,6 @@ impl Meshing {
         }
         self.next = end;
         surfaces.mesh()
-    }
-
-    fn is_of(&self, polyhedra: Option<&Polyhedra>) -> bool {
-        match (&self.shapes, polyhedra) {
-            (None, None) => true,
-            (Some(shapes), Some(polyhedra)) => {
-                Arc::ptr_eq(shapes, &polyhedra.shapes) && self.shape == polyhedra.shape
-            }
-            _ => false,
-        }
     }
 }
 
@@ -196,23 +186,29 @@ fn start_over(
     if !shown.is_changed() {
         return;
     }
-    let polyhedra = shown.world().and_then(|world| world.polyhedra.as_deref());
-    if meshing.is_of(polyhedra) {
+    let renewed = match shown.world() {
+        Some(world) => meshing.forms.renew(world),
+        None => true,
+    };
+    if !renewed {
         return;
     }
     for chunk in &chunks {
         commands.entity(chunk).despawn();
     }
+    let forms = std::mem::take(&mut meshing.forms);
     *meshing = Meshing::default();
-    if let Some(polyhedra) = polyhedra {
-        meshing.material = materials.add(PolyhedronMaterial {
-            grains: grains.handle.clone(),
-            cut: CutPlanes::default(),
-            planes: buffers.add(buffer(&[Vec4::ZERO])),
-            bodies: buffers.add(buffer(&[PlaneRange::zeroed()])),
-        });
-        meshing.shapes = Some(polyhedra.shapes.clone());
-        meshing.shape.clone_from(&polyhedra.shape);
+    if let Some(world) = shown.world() {
+        meshing.forms = forms;
+        if world.polyhedra.is_some() {
+            meshing.count = world.grains.len();
+            meshing.material = materials.add(PolyhedronMaterial {
+                grains: grains.handle.clone(),
+                cut: CutPlanes::default(),
+                planes: buffers.add(buffer(&[Vec4::ZERO])),
+                bodies: buffers.add(buffer(&[PlaneRange::zeroed()])),
+            });
+        }
     }
 }
 

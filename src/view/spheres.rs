@@ -3,7 +3,7 @@
 //! In: the buffer of grains and which of them are spheres. Out: one entity whose mesh is a quad per sphere; the shader
 //! finds the grain in the buffer and raymarches it.
 
-use super::grains::{CutPlanes, GrainBuffer, polyhedron};
+use super::grains::{CutPlanes, Forms, GrainBuffer, polyhedron};
 use super::{Shown, ViewSettings};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
@@ -79,8 +79,10 @@ impl Material for SphereMaterial {
 /// The entity that draws all spheres.
 #[derive(Component)]
 struct Spheres {
-    /// The grains it draws.
-    grains: Vec<u32>,
+    /// What its mesh was made of.
+    forms: Forms,
+    /// Whether there are any.
+    any: bool,
 }
 
 fn spawn(
@@ -90,7 +92,10 @@ fn spawn(
     grains: Res<GrainBuffer>,
 ) {
     commands.spawn((
-        Spheres { grains: Vec::new() },
+        Spheres {
+            forms: Forms::default(),
+            any: false,
+        },
         Mesh3d(meshes.add(quads(&[0]))),
         MeshMaterial3d(materials.add(SphereMaterial {
             grains: grains.handle.clone(),
@@ -116,21 +121,24 @@ fn update(
     mut materials: ResMut<Assets<SphereMaterial>>,
 ) {
     let (mut drawn, mut mesh, material, mut visibility) = drawn.into_inner();
-    if shown.is_changed() {
-        let count = shown.world().map_or(0, |world| world.grains.len());
-        let polyhedra = shown.world().and_then(|world| world.polyhedra.as_deref());
-        let spheres = || (0..count).filter(|i| polyhedron(polyhedra, *i).is_none());
-        if !spheres().eq(drawn.grains.iter().map(|i| *i as usize)) {
-            drawn.grains = spheres().map(|i| i as u32).collect();
-            // A mesh cannot be empty.
-            *visibility = if drawn.grains.is_empty() {
-                Visibility::Hidden
-            } else {
-                mesh.0 = meshes.add(quads(&drawn.grains));
-                Visibility::Inherited
-            };
+    if let Some(world) = shown.world()
+        && shown.is_changed()
+        && drawn.forms.renew(world)
+    {
+        let polyhedra = world.polyhedra.as_deref();
+        let is_sphere = |i: &u32| polyhedron(polyhedra, *i as usize).is_none();
+        let spheres: Vec<u32> = (0..world.grains.len() as u32).filter(is_sphere).collect();
+        drawn.any = !spheres.is_empty();
+        // A mesh cannot be empty.
+        if drawn.any {
+            mesh.0 = meshes.add(quads(&spheres));
         }
     }
+    visibility.set_if_neq(if drawn.any && shown.world().is_some() {
+        Visibility::Inherited
+    } else {
+        Visibility::Hidden
+    });
     let cut = CutPlanes::of(settings.cut);
     if materials
         .get(&material.0)

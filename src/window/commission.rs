@@ -5,7 +5,7 @@
 use super::picture::{Canvas, WARM_UP, screenshot};
 use super::{PictureJob, WindowError};
 use crate::simulation::{Provenance, Simulation, Status};
-use crate::view::{Meshing, save_png};
+use crate::view::{GrainBuffer, Meshing, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
 use std::num::NonZero;
@@ -65,7 +65,7 @@ pub(super) fn carry_out(
     mut commission: ResMut<Commission>,
     mut simulation: ResMut<Simulation>,
     canvas: Option<Res<Canvas>>,
-    meshing: Res<Meshing>,
+    (meshing, grains): (Res<Meshing>, Res<GrainBuffer>),
     mut cameras: Query<&mut Camera>,
     mut exit: MessageWriter<AppExit>,
     mut commands: Commands,
@@ -101,7 +101,7 @@ pub(super) fn carry_out(
                 Stage::Running(step)
             }
         }
-        Stage::Drawing(_) if !meshing.is_whole() => Stage::Drawing(WARM_UP),
+        Stage::Drawing(_) if !(meshing.is_whole() && grains.is_whole()) => Stage::Drawing(WARM_UP),
         Stage::Drawing(0) => {
             let world = simulation.world();
             let from = world.map(|world| Provenance::of(simulation.scene(), world));
