@@ -7,7 +7,7 @@
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> grains: array<Grain>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> cut: Cut;
-// Outward normal and distance from the origin of each face, in the body frame.
+// Outward normal of each face and its distance from the origin, in the body frame and in radii of the sphere round the body.
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> planes: array<vec4<f32>>;
 // First plane and number of planes of each grain.
 @group(#{MATERIAL_BIND_GROUP}) @binding(3) var<storage, read> bodies: array<vec2<u32>>;
@@ -83,7 +83,7 @@ fn from_rim(body: u32, x: vec3<f32>, normal: vec3<f32>) -> f32 {
     for (var i = 0u; i < bodies[body].y; i++) {
         let plane = planes[bodies[body].x + i];
         let lean = dot(plane.xyz, along);
-        least = min(least, (plane.w - dot(plane.xyz, place)) * inverseSqrt(max(1.0 - lean * lean, 1e-4)));
+        least = min(least, (plane.w * grain.radius - dot(plane.xyz, place)) * inverseSqrt(max(1.0 - lean * lean, 1e-4)));
     }
     return least;
 }

@@ -25,11 +25,13 @@ mod row;
 mod spring;
 mod state;
 mod team;
+mod terms;
 mod time_step;
 
 pub use fault::{Fault, FaultKind};
 pub use lanes::Processor;
 pub use profile::{Profile, Stage};
+pub use terms::{ForceTerms, NormalLaw, force_terms};
 pub use time_step::{Limit, TimeStepAdvice, advise};
 
 use crate::scene::ContactLaw;

@@ -170,6 +170,7 @@ impl Opener<'_, '_> {
     fn show(&mut self, simulation: Simulation) {
         self.commands.insert_resource(simulation);
         self.view.cut = None;
+        (self.view.selected, self.view.beside) = (None, None);
         self.view.camera_request = Some(CameraRequest::Home);
     }
 }

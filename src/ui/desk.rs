@@ -9,6 +9,7 @@ use super::changes::Changes;
 use super::collapse_plots::CollapsePlots;
 use super::column_beside_paper::ColumnBesidePaper;
 use super::menu::{Shown, menu_ui};
+use super::microscope::Microscope;
 use super::parameters::Parameters;
 use super::path_dialog::PathDialog;
 use super::picture::Picture;
@@ -78,6 +79,7 @@ fn left() -> Vec<Section> {
 /// The register of panels on the right.
 fn right() -> Vec<Section> {
     vec![
+        section(Microscope::default(), false),
         section(Plots::default(), true),
         section(CollapsePlots::default(), true),
         section(Velocity::default(), false),
@@ -291,8 +293,10 @@ fn sections_ui(
                 continue;
             }
             let title = RichText::new(section.panel.title()).strong().size(17.0);
+            let summoned = section.panel.summons(view);
             CollapsingHeader::new(title)
                 .default_open(section.open_at_first)
+                .open(summoned.then_some(true))
                 .show_unindented(ui, |ui| section.panel.ui(ui, simulation, view, out));
         }
     });

@@ -12,6 +12,7 @@
 //! | `menu`, `transport`, `scrub` | menu bar, bar under the picture, the timeline in it |
 //! | `badge` | whether the run can be trusted, and why |
 //! | `about_scene`, `parameters`, `changes`, `picture`, `profile` | panels on the left |
+//! | `microscope` | one grain, its contacts, every term of their forces |
 //! | `plots`, `velocity`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
 //! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
@@ -29,6 +30,7 @@ mod column_beside_paper;
 mod decimate;
 mod desk;
 mod menu;
+mod microscope;
 mod number;
 mod parameters;
 mod path_dialog;
@@ -51,6 +53,7 @@ pub use badge::{Check, Level, checks};
 pub use collapse_plots::CollapsePlots;
 pub use column_beside_paper::ColumnBesidePaper;
 pub use desk::Desk;
+pub use microscope::Microscope;
 pub use parameters::{Parameters, parameter_ui};
 pub use path_dialog::{PathDialog, Purpose};
 pub use picture::Picture;
@@ -77,6 +80,11 @@ pub trait Panel: Send + Sync + 'static {
     /// Whether it has anything to say of this simulation; it is left out where it has not.
     fn concerns(&self, _simulation: &Simulation) -> bool {
         true
+    }
+
+    /// Whether it should open now, though a person has not opened it.
+    fn summons(&mut self, _view: &ViewSettings) -> bool {
+        false
     }
 
     /// Draws it; what is asked for goes into `out`.

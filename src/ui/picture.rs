@@ -5,8 +5,8 @@
 use super::{Panel, Request};
 use crate::simulation::Simulation;
 use crate::view::{
-    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, ProjectionKind, Side,
-    ViewSettings,
+    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, ProjectionKind,
+    SAVED_VIEWS, Side, ViewSettings,
 };
 use crate::world::{Shape, World};
 use bevy_egui::egui::{self, WidgetInfo, WidgetType};
@@ -15,6 +15,9 @@ use std::ops::RangeInclusive;
 
 /// Millimetres per metre: positions of cuts are shown in millimetres.
 const MILLIMETRES: f64 = 1e3;
+
+/// Size of the grains in the picture at which one sees what lies between their centres.
+const LOOK_BETWEEN: f32 = 0.4;
 
 /// The panel of the picture's settings.
 #[derive(Default)]
@@ -34,6 +37,13 @@ impl Panel for Picture {
     ) {
         colour_ui(ui, view);
         cut_ui(ui, view, simulation.world().map(AsRef::as_ref));
+        between_ui(
+            ui,
+            view,
+            simulation
+                .world()
+                .is_some_and(|world| world.liquid.is_some()),
+        );
         ui.horizontal(|ui| {
             ui.checkbox(&mut view.show_container, "Container");
             let opacity =
@@ -46,6 +56,7 @@ impl Panel for Picture {
             response.on_hover_text("How strongly the drum or box is drawn");
         });
         ui.checkbox(&mut view.show_overlay, "Scale bar, clock and legend");
+        ui.checkbox(&mut view.show_axes, "Axes");
         choices_ui(
             ui,
             "Background",
@@ -84,17 +95,47 @@ fn range_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
         .map_or((0.0, 1.0), |legend| (legend.min, legend.max));
     ui.horizontal(|ui| {
         ui.label("Range");
-        let automatic = view.range == ColourRange::Automatic;
-        if ui.selectable_label(automatic, "Automatic").clicked() {
+        let is_fixed = matches!(view.range, ColourRange::Fixed(..));
+        let by_shares = matches!(view.range, ColourRange::Percentiles(..));
+        if ui
+            .selectable_label(!is_fixed && !by_shares, "Automatic")
+            .clicked()
+        {
             view.range = ColourRange::Automatic;
         }
-        if ui.selectable_label(!automatic, "Fixed").clicked() && automatic {
+        if ui.selectable_label(by_shares, "Percentile").clicked() && !by_shares {
+            view.range = ColourRange::Percentiles(0.05, 0.95);
+        }
+        if ui.selectable_label(is_fixed, "Fixed").clicked() && !is_fixed {
             view.range = ColourRange::Fixed(shown.0, shown.1);
         }
     });
-    let ColourRange::Fixed(mut low, mut high) = view.range else {
-        return;
-    };
+    match view.range {
+        ColourRange::Automatic => {}
+        ColourRange::Fixed(low, high) => fixed_ui(ui, view, low, high),
+        ColourRange::Percentiles(low, high) => percentiles_ui(ui, view, low, high),
+    }
+}
+
+/// The shares of the grains that stay below the two ends of the map.
+fn percentiles_ui(ui: &mut egui::Ui, view: &mut ViewSettings, low: f64, high: f64) {
+    let (mut low, mut high) = (100.0 * low, 100.0 * high);
+    let (least, most) = (0.0..=high, low..=100.0);
+    ui.horizontal(|ui| {
+        for (name, value, range) in [("from", &mut low, least), ("to", &mut high, most)] {
+            let label = ui.label(name);
+            let field = egui::DragValue::new(value)
+                .range(range)
+                .speed(0.5)
+                .suffix(" %");
+            ui.add(field).labelled_by(label.id);
+        }
+        ui.weak("of the grains");
+    });
+    view.range = ColourRange::Percentiles(0.01 * low, 0.01 * high);
+}
+
+fn fixed_ui(ui: &mut egui::Ui, view: &mut ViewSettings, mut low: f64, mut high: f64) {
     let unit = view.colour_by.unit();
     let (least, most) = (0.0..=high, low..=f64::INFINITY);
     ui.horizontal(|ui| {
@@ -201,6 +242,41 @@ fn extent(world: &World, axis: Axis) -> RangeInclusive<f64> {
     if low < high { low..=high } else { -1.0..=1.0 }
 }
 
+/// What is drawn between the grains, and how much of them is in its way.
+fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
+    let before = view.show_forces;
+    ui.horizontal_wrapped(|ui| {
+        ui.checkbox(&mut view.show_forces, "Forces").on_hover_text(
+            "A bar from grain to grain, as thick as the force; one that pulls has a waist",
+        );
+        if wet {
+            ui.checkbox(&mut view.show_bridges, "Bridges")
+                .on_hover_text("Liquid bridges as thick as their volume makes them");
+        }
+        ui.checkbox(&mut view.show_velocities, "Velocities")
+            .on_hover_text("An arrow from each centre, as long as the grain is fast");
+    });
+    if view.show_forces && !before && view.grain_size == 1.0 {
+        // Else the grains hide what lies between their centres.
+        view.grain_size = LOOK_BETWEEN;
+    } else if !view.show_forces && before && view.grain_size == LOOK_BETWEEN {
+        view.grain_size = 1.0;
+    }
+    ui.horizontal(|ui| {
+        ui.label("Grain size");
+        let mut size = 100.0 * view.grain_size;
+        let slider = egui::Slider::new(&mut size, 10.0..=100.0)
+            .suffix(" %")
+            .fixed_decimals(0);
+        let response = ui.add(slider);
+        let value = f64::from(size);
+        response.widget_info(|| WidgetInfo::slider(true, value, "Grain size"));
+        if response.changed() {
+            view.grain_size = 0.01 * size;
+        }
+    });
+}
+
 fn camera_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
     ui.label("Look from");
     ui.horizontal_wrapped(|ui| {
@@ -226,6 +302,24 @@ fn camera_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
             .clicked()
         {
             out.push(Request::Camera(CameraRequest::Home));
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Kept views");
+        for number in 0..SAVED_VIEWS {
+            let shown = number + 1;
+            let keep = ui
+                .button(format!("Keep {shown}"))
+                .on_hover_text(format!("Keep this view (Shift+F{})", 5 + number));
+            if keep.clicked() {
+                out.push(Request::Camera(CameraRequest::Save(number)));
+            }
+            let show = ui
+                .button(format!("Show {shown}"))
+                .on_hover_text(format!("Back to the view that was kept (F{})", 5 + number));
+            if show.clicked() {
+                out.push(Request::Camera(CameraRequest::Recall(number)));
+            }
         }
     });
 }

@@ -504,7 +504,7 @@ fn kept_ui(plot: &mut PlotUi, index: usize, name: &str, points: Vec<[f64; 2]>, c
 
 /// Grid lines at round numbers at least `finest` apart, `sparse` times as far apart as the plot would have them at the
 /// closest.
-fn round_marks(input: GridInput, sparse: f32, finest: f64) -> Vec<GridMark> {
+pub(super) fn round_marks(input: GridInput, sparse: f32, finest: f64) -> Vec<GridMark> {
     let step = round_step((input.base_step_size * f64::from(sparse)).max(finest));
     let (first, last) = (
         (input.bounds.0 / step).ceil(),
@@ -525,7 +525,7 @@ fn round_step(least: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().find(fits).unwrap_or(10.0) * power
 }
 
-fn tick(value: f64, decades: bool) -> String {
+pub(super) fn tick(value: f64, decades: bool) -> String {
     if decades {
         number::power_of_ten(value.round() as i32)
     } else if value != 0.0 && value.abs() < 1e-3 {

@@ -34,6 +34,10 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
 
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+
 const fn look_from(side: Side) -> Action {
     Action::Ask(Request::Camera(CameraRequest::From(side)))
 }
@@ -116,6 +120,37 @@ pub const SHORTCUTS: &[Shortcut] = &[
         name: "Look from below",
         action: look_from(Side::Below),
     },
+    // Before the plain keys, which would take them.
+    Shortcut {
+        keys: &[shift(Key::F5)],
+        name: "Keep this view as view 1",
+        action: Action::Ask(Request::Camera(CameraRequest::Save(0))),
+    },
+    Shortcut {
+        keys: &[shift(Key::F6)],
+        name: "Keep this view as view 2",
+        action: Action::Ask(Request::Camera(CameraRequest::Save(1))),
+    },
+    Shortcut {
+        keys: &[shift(Key::F7)],
+        name: "Keep this view as view 3",
+        action: Action::Ask(Request::Camera(CameraRequest::Save(2))),
+    },
+    Shortcut {
+        keys: &[key(Key::F5)],
+        name: "Show kept view 1",
+        action: Action::Ask(Request::Camera(CameraRequest::Recall(0))),
+    },
+    Shortcut {
+        keys: &[key(Key::F6)],
+        name: "Show kept view 2",
+        action: Action::Ask(Request::Camera(CameraRequest::Recall(1))),
+    },
+    Shortcut {
+        keys: &[key(Key::F7)],
+        name: "Show kept view 3",
+        action: Action::Ask(Request::Camera(CameraRequest::Recall(2))),
+    },
     Shortcut {
         keys: &[ctrl(Key::O)],
         name: "Open a scene or a session",
@@ -149,7 +184,8 @@ pub const SHORTCUTS: &[Shortcut] = &[
 ];
 
 /// What the mouse does over the picture.
-pub const MOUSE: [(&str, &str); 4] = [
+pub const MOUSE: [(&str, &str); 5] = [
+    ("Click a grain", "Put it under the microscope"),
     ("Drag", "Orbit"),
     ("Right drag, Shift + drag", "Pan"),
     ("Scroll, pinch", "Zoom"),

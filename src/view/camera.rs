@@ -3,7 +3,7 @@
 //! In: drags and scrolls in egui points, requests, the points that should fit. Out: eye, rotation, visible height, and
 //! where a point of the world lands in the picture. Nothing here knows of Bevy's camera entity; the rig does.
 
-use super::{CameraRequest, ProjectionKind, Side};
+use super::{CameraRequest, ProjectionKind, SAVED_VIEWS, Side};
 use bevy::math::{EulerRot, Quat, Rect, Vec2, Vec3};
 use bevy::prelude::Resource;
 use bevy_egui::egui;
@@ -37,6 +37,16 @@ pub struct OrbitCamera {
     home: (f32, f32),
     /// How often a view was asked for.
     requests: u32,
+    saved: [Option<Pose>; SAVED_VIEWS],
+}
+
+/// Where a camera looks from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pose {
+    focus: Vec3,
+    yaw: f32,
+    pitch: f32,
+    height: f32,
 }
 
 impl Default for OrbitCamera {
@@ -51,6 +61,7 @@ impl Default for OrbitCamera {
             fits: true,
             home: HOME,
             requests: 0,
+            saved: [None; SAVED_VIEWS],
         }
     }
 }
@@ -94,15 +105,36 @@ impl OrbitCamera {
         self.fits = true;
     }
 
-    /// Does what was asked; the picture then fits the scene again.
+    /// Does what was asked; the picture then fits the scene again, unless a view was kept or called back.
     pub fn follow(&mut self, request: CameraRequest) {
         match request {
+            CameraRequest::Save(number) => return self.save(number),
+            CameraRequest::Recall(number) => return self.recall(number),
             CameraRequest::Home => (self.yaw, self.pitch) = self.home,
             CameraRequest::Fit => {}
             CameraRequest::From(side) => self.look_from(side),
         }
         self.fits = true;
         self.requests = self.requests.wrapping_add(1);
+    }
+
+    fn save(&mut self, number: usize) {
+        if let Some(place) = self.saved.get_mut(number) {
+            *place = Some(Pose {
+                focus: self.focus,
+                yaw: self.yaw,
+                pitch: self.pitch,
+                height: self.height,
+            });
+        }
+    }
+
+    fn recall(&mut self, number: usize) {
+        if let Some(Some(pose)) = self.saved.get(number).copied() {
+            (self.focus, self.height) = (pose.focus, pose.height);
+            (self.yaw, self.pitch) = (pose.yaw, pose.pitch);
+            self.fits = false;
+        }
     }
 
     /// From now on the scene's view is from `home`, yaw and pitch [rad]; turns there unless a person has turned away.
@@ -349,6 +381,23 @@ mod tests {
         assert_eq!((camera.yaw, camera.pitch), (turned, 0.3));
         camera.follow(CameraRequest::Home);
         assert_eq!((camera.yaw, camera.pitch), HOME);
+    }
+
+    #[test]
+    fn a_view_that_was_kept_comes_back_and_stays() {
+        let mut camera = OrbitCamera::default();
+        camera.follow(CameraRequest::Recall(1));
+        assert!(camera.fits, "nothing was kept");
+        camera.orbit(Vec2::new(80.0, 30.0));
+        camera.zoom(200.0, Vec2::new(50.0, 20.0));
+        let kept = camera.clone();
+        camera.follow(CameraRequest::Save(1));
+        camera.follow(CameraRequest::From(Side::Above));
+        camera.follow(CameraRequest::Recall(1));
+        let pose = |c: &OrbitCamera| (c.focus, c.yaw, c.pitch, c.height, c.fits);
+        assert_eq!(pose(&camera), pose(&kept));
+        camera.follow(CameraRequest::Save(99));
+        camera.follow(CameraRequest::Recall(99));
     }
 
     #[test]

@@ -82,6 +82,7 @@ pub fn legend(
     let before = before.filter(|before| before.title == title && before.min == 0.0);
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
+        ColourRange::Percentiles(low, high) => percentiles(world, colour_by, low, high),
         ColourRange::Automatic => (0.0, automatic_maximum(world, colour_by, before)),
     };
     Some(Legend {
@@ -134,12 +135,31 @@ fn value(world: &World, colour_by: ColourBy, i: usize) -> f64 {
     }
 }
 
-/// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
-fn automatic_maximum(world: &World, colour_by: ColourBy, before: Option<&Legend>) -> f64 {
-    let mut values: Vec<f64> = (0..world.grains.len())
+/// The numbers that these shares of the grains stay below.
+fn percentiles(world: &World, colour_by: ColourBy, low: f64, high: f64) -> (f64, f64) {
+    let mut values = values(world, colour_by);
+    if values.is_empty() {
+        return (0.0, 1.0);
+    }
+    let last = values.len() - 1;
+    let mut at = |share: f64| {
+        let rank = (share.clamp(0.0, 1.0) * last as f64).round() as usize;
+        *values.select_nth_unstable_by(rank, f64::total_cmp).1
+    };
+    (at(low), at(high))
+}
+
+/// The numbers behind the colours of all grains, as far as they are numbers.
+fn values(world: &World, colour_by: ColourBy) -> Vec<f64> {
+    (0..world.grains.len())
         .map(|i| value(world, colour_by, i))
         .filter(|value| value.is_finite())
-        .collect();
+        .collect()
+}
+
+/// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
+fn automatic_maximum(world: &World, colour_by: ColourBy, before: Option<&Legend>) -> f64 {
+    let mut values = values(world, colour_by);
     if values.is_empty() {
         return 1.0;
     }

@@ -79,7 +79,7 @@ impl CutPlanes {
     }
 
     /// Whether the point `x` is cut away.
-    fn take_away(&self, x: Vec3) -> bool {
+    pub(super) fn take_away(&self, x: Vec3) -> bool {
         let beyond = |plane: &Vec4| plane.truncate().dot(x) > plane.w;
         self.planes.iter().all(beyond)
     }
@@ -92,7 +92,7 @@ pub(super) fn polyhedron(polyhedra: Option<&Polyhedra>, i: usize) -> Option<&Pol
 }
 
 /// What decides the grains' colours and shadows beside the world.
-type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>);
+type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>, f32);
 
 /// What is kept from one frame to the next, so that a frame needs no new room per grain.
 #[derive(Default)]
@@ -119,6 +119,7 @@ fn fill(
         settings.colour_map,
         settings.range,
         settings.cut,
+        settings.grain_size,
     );
     let moved = shown.is_changed();
     let recoloured = kept.colouring != Some(colouring);
@@ -167,7 +168,7 @@ impl Kept {
         self.drawn.clear();
         self.spheres.clear();
         if let Some(world) = world {
-            self.place(world);
+            self.place(world, settings.grain_size);
             self.colour(world, settings);
         }
         let cut = CutPlanes::of(settings.cut);
@@ -175,7 +176,7 @@ impl Kept {
             .follow(&self.spheres, |centre| cut.take_away(centre));
     }
 
-    fn place(&mut self, world: &World) {
+    fn place(&mut self, world: &World, size: f32) {
         let grains = &world.grains;
         if self.forms.renew(world) {
             self.radii.clear();
@@ -185,9 +186,9 @@ impl Kept {
                 self.radii.extend((0..grains.len()).map(radius));
             }
         }
-        let radius = |i: usize| (self.radii.get(i).copied()).unwrap_or(grains.radius[i] as f32);
+        let own = |i: usize| (self.radii.get(i).copied()).unwrap_or(grains.radius[i] as f32);
         let places = grains.position.iter().enumerate();
-        (self.spheres).extend(places.map(|(i, x)| (x.as_vec3(), radius(i))));
+        (self.spheres).extend(places.map(|(i, x)| (x.as_vec3(), size * own(i))));
     }
 
     fn colour(&mut self, world: &World, settings: &ViewSettings) {
@@ -202,7 +203,7 @@ impl Kept {
                 let i = drawn.len();
                 drawn.push(DrawnGrain {
                     centre: spheres[i].0.to_array(),
-                    radius: world.grains.radius[i] as f32,
+                    radius: settings.grain_size * world.grains.radius[i] as f32,
                     colour,
                     orientation: orientations.map_or([0.0, 0.0, 0.0, 1.0], |orientations| {
                         orientations[i].as_quat().to_array()

@@ -18,6 +18,9 @@
 //! | `facets` | the surface of a rounded polyhedron |
 //! | `occlusion` | the soft shadow in the gaps between grains |
 //! | `container` | drum, box and planes as one-sided panes |
+//! | `links` | force chains, liquid bridges, velocity arrows |
+//! | `pick` | which grain a point of the picture shows |
+//! | `trail` | the way of the selected grain |
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `rig` | Bevy's camera entity that follows it |
 //! | `overlay` | scale bar, clock, legend in the picture |
@@ -28,13 +31,16 @@ mod colour;
 mod container;
 mod facets;
 mod grains;
+mod links;
 mod occlusion;
 mod overlay;
+mod pick;
 mod png;
 mod polyhedra;
 mod rig;
 mod settings;
 mod spheres;
+mod trail;
 
 pub use camera::{OrbitCamera, apply_response};
 pub(crate) use colour::round_up;
@@ -45,8 +51,8 @@ pub use png::save_png;
 pub use polyhedra::Meshing;
 pub use rig::WorldCamera;
 pub use settings::{
-    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, ProjectionKind,
-    Side, ViewSettings,
+    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, LinkScales,
+    ProjectionKind, SAVED_VIEWS, Side, ViewSettings,
 };
 
 use crate::simulation::Simulation;
@@ -93,9 +99,15 @@ impl Plugin for ViewPlugin {
                 spheres::plugin,
                 polyhedra::plugin,
                 container::plugin,
+                links::plugin,
             ))
             .add_systems(Startup, rig::spawn)
-            .add_systems(Update, take_newest.in_set(ViewSystems::Take))
+            .add_systems(
+                Update,
+                (take_newest, trail::follow)
+                    .chain()
+                    .in_set(ViewSystems::Take),
+            )
             .add_systems(
                 PostUpdate,
                 (rig::steer, rig::follow)

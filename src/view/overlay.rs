@@ -6,7 +6,9 @@
 use super::camera::apply_response;
 use super::colour::{Scheme, species_colour};
 use super::container::ring_distance;
-use super::{ColourMap, Legend, OrbitCamera, ViewSettings};
+use super::links::{LIQUID, PULL, PUSH, VELOCITY};
+use super::pick::pick;
+use super::{Axis, ColourMap, Legend, OrbitCamera, ViewSettings};
 use crate::world::{self, World};
 use bevy::color::{Color, ColorToPacked};
 use bevy::math::{Vec2, Vec3};
@@ -17,6 +19,8 @@ use bevy_egui::egui::{
 
 /// Distance of everything from the edge of the picture, in points.
 const INSET: f32 = 18.0;
+/// sRGB colour of what is selected.
+const SELECTED: [u8; 3] = [0xFF, 0xE0, 0x66];
 /// Length that the scale bar does not exceed, in points.
 const LONGEST_BAR: f32 = 180.0;
 
@@ -42,6 +46,15 @@ pub fn viewport_ui(
     settings.pixels_per_point = ui.ctx().pixels_per_point();
     let response = ui.interact(rect, Id::new("picture"), Sense::click_and_drag());
     apply_response(&response, camera);
+    if let (Some(world), Some(at)) = (caption.world, response.interact_pointer_pos())
+        && response.clicked()
+    {
+        let at = at - rect.min;
+        let picked = pick(world, camera, settings, Vec2::new(at.x, at.y));
+        if picked != settings.selected {
+            (settings.selected, settings.beside) = (picked, None);
+        }
+    }
     if settings.show_overlay {
         overlay(&ui.painter_at(rect), rect, caption, settings, camera);
     }
@@ -75,11 +88,22 @@ pub fn overlay(
             world.time(),
             caption.real_time_factor,
         );
+        trail(&ink, rect, camera, settings);
+        selection(&ink, rect, camera, world, settings);
         if settings.legend.is_none() && world.species.len() > 1 {
             species(&ink, inner.right_bottom(), world);
         }
     }
     scale_bar(&ink, inner.left_bottom(), camera.metres_per_point());
+    links(
+        &ink,
+        inner.left_bottom() - vec2(0.0, 40.0),
+        camera,
+        settings,
+    );
+    if settings.show_axes {
+        axes(&ink, inner.right_top() + vec2(-44.0, 44.0), camera);
+    }
     if let Some(legend) = &settings.legend {
         colour_bar(&ink, inner.right_bottom(), legend, settings.colour_map);
     }
@@ -190,6 +214,114 @@ fn colour_bar(ink: &Ink, corner: Pos2, legend: &Legend, map: ColourMap) {
     };
     let at = pos2(corner.x, bar.top() - 14.0);
     ink.write(at, Align2::RIGHT_BOTTOM, title, 13.0, ink.text);
+}
+
+/// Rings round the selected grain and the one beside it, over whatever hides them.
+fn selection(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, settings: &ViewSettings) {
+    let rings = [
+        (settings.selected, 2.5, true),
+        (settings.beside, 1.5, false),
+    ];
+    for (grain, width, named) in rings {
+        let Some(grain) = grain.filter(|grain| *grain < world.grains.len()) else {
+            return;
+        };
+        let centre = world.grains.position[grain].as_vec3();
+        let Some((place, per_metre)) = camera.project(centre) else {
+            continue;
+        };
+        let at = rect.min + vec2(place.x, place.y);
+        let own = settings.grain_size * world.grains.radius[grain] as f32;
+        let radius = (own * per_metre + 2.0).max(6.0);
+        // Dark round light: one of them stands out from any grain.
+        let outside = Stroke::new(width + 2.5, Color32::from_black_alpha(170));
+        ink.painter.circle_stroke(at, radius, outside);
+        ink.painter
+            .circle_stroke(at, radius, Stroke::new(width, rgb(SELECTED)));
+        if named {
+            let text_at = at - vec2(0.0, radius + 4.0);
+            let shadow = text_at + vec2(1.0, 1.0);
+            let text = format!("grain {grain}");
+            for (at, colour) in [(shadow, Color32::BLACK), (text_at, rgb(SELECTED))] {
+                ink.write(at, Align2::CENTER_BOTTOM, &text, 13.0, colour);
+            }
+        }
+    }
+}
+
+/// Where the selected grain has been.
+fn trail(ink: &Ink, rect: Rect, camera: &OrbitCamera, settings: &ViewSettings) {
+    if !settings.show_trail {
+        return;
+    }
+    let points = settings.trail.iter().filter_map(|(_, x)| {
+        let (place, _) = camera.project(*x)?;
+        Some(rect.min + vec2(place.x, place.y))
+    });
+    let points: Vec<Pos2> = points.collect();
+    if points.len() > 1 {
+        let stroke = Stroke::new(2.0, rgb(SELECTED).gamma_multiply(0.8));
+        ink.painter.add(Shape::line(points, stroke));
+    }
+}
+
+/// The directions of the axes.
+fn axes(ink: &Ink, at: Pos2, camera: &OrbitCamera) {
+    const LENGTH: f32 = 30.0;
+    let back = camera.rotation().inverse();
+    for axis in Axis::ALL {
+        let seen = back * axis.unit().as_vec3();
+        let tip = vec2(seen.x, -seen.y) * LENGTH;
+        ink.painter.arrow(at, tip, Stroke::new(1.8, ink.text));
+        let label = at + tip * 1.35;
+        ink.write(label, Align2::CENTER_CENTER, axis.label(), 13.0, ink.text);
+    }
+}
+
+/// What thickness and length of bars and arrows mean, above the scale bar.
+fn links(ink: &Ink, corner: Pos2, camera: &OrbitCamera, settings: &ViewSettings) {
+    let scales = &settings.link_scales;
+    let points = |metres: f64| (metres / f64::from(camera.metres_per_point())) as f32;
+    let mut at = corner;
+    let mut line = |colour: [u8; 3], size: bevy_egui::egui::Vec2, text: String| {
+        let swatch = Rect::from_min_size(at - vec2(0.0, 0.5 * size.y), size);
+        ink.painter
+            .rect_filled(swatch, CornerRadius::same(2), rgb(colour));
+        let text_at = at + vec2(size.x + 8.0, 0.0);
+        ink.write(text_at, Align2::LEFT_CENTER, text, 13.0, ink.text);
+        at.y -= (size.y + 8.0).max(22.0);
+    };
+    if let Some(speed) = scales.speed {
+        let scale = Prefixed::new(speed, "m/s");
+        let text = format!("{} {}", short_number(speed * scale.factor), scale.unit);
+        line(VELOCITY, vec2(points(scales.length), 3.0), text);
+    }
+    if scales.liquid {
+        line(
+            LIQUID,
+            vec2(26.0, 10.0),
+            "liquid bridges, to scale".to_owned(),
+        );
+    }
+    if let Some(force) = scales.force {
+        let thickness = points(scales.thickness).max(1.0);
+        line(PULL, vec2(26.0, 4.0), "pulls (with a waist)".to_owned());
+        line(
+            PUSH,
+            vec2(26.0, thickness),
+            format!("pushes with {}", newtons(force)),
+        );
+    }
+}
+
+/// A force [N] with a unit.
+fn newtons(force: f64) -> String {
+    let (factor, unit) = match force {
+        f if f < 0.9e-3 => (1e6, "µN"),
+        f if f < 0.9 => (1e3, "mN"),
+        _ => (1.0, "N"),
+    };
+    format!("{} {unit}", short_number(force * factor))
 }
 
 fn species(ink: &Ink, corner: Pos2, world: &World) {

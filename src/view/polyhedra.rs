@@ -163,7 +163,9 @@ impl Meshing {
             if let Some(shape) = polyhedron(Some(polyhedra), i) {
                 let facets = Facets::of(shape);
                 surfaces.add(i, shape, &facets);
-                self.planes.extend(&facets.planes);
+                let radius = shape.bounding_radius() as f32;
+                let scaled = |plane: &Vec4| plane.truncate().extend(plane.w / radius);
+                self.planes.extend(facets.planes.iter().map(scaled));
             }
             let count = self.planes.len() as u32 - first;
             self.bodies.push(PlaneRange { first, count });

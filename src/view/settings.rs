@@ -16,6 +16,22 @@ pub struct ViewSettings {
     pub range: ColourRange,
     /// What is cut away.
     pub cut: Option<Cut>,
+    /// Size of the grains in the picture over their own: smaller ones let one look between them.
+    pub grain_size: f32,
+    /// Whether the forces between grains are drawn.
+    pub show_forces: bool,
+    /// Whether liquid bridges are drawn.
+    pub show_bridges: bool,
+    /// Whether the grains' velocities are drawn.
+    pub show_velocities: bool,
+    /// The grain that is looked at closely, by its number; one that the world shown does not have counts as none.
+    pub selected: Option<usize>,
+    /// The grain beside it whose contact with it is looked at.
+    pub beside: Option<usize>,
+    /// Whether the way of the selected grain is drawn.
+    pub show_trail: bool,
+    /// Whether the directions of the axes are drawn.
+    pub show_axes: bool,
     /// Whether the container is drawn.
     pub show_container: bool,
     /// How strongly the container's glass-like surfaces are drawn, 0 … 1.
@@ -36,6 +52,10 @@ pub struct ViewSettings {
     pub smooth_edges: bool,
     /// Out: what the colours mean now. `None` while grains are coloured by species.
     pub legend: Option<Legend>,
+    /// Out: what thickness and length of bars and arrows mean.
+    pub link_scales: LinkScales,
+    /// Out: where the selected grain has been: times [s] and places [m], in order of time.
+    pub trail: Vec<(f64, bevy::math::Vec3)>,
 }
 
 impl Default for ViewSettings {
@@ -45,6 +65,14 @@ impl Default for ViewSettings {
             colour_map: ColourMap::Viridis,
             range: ColourRange::Automatic,
             cut: None,
+            grain_size: 1.0,
+            show_forces: false,
+            show_bridges: false,
+            show_velocities: false,
+            selected: None,
+            beside: None,
+            show_trail: false,
+            show_axes: false,
             show_container: true,
             container_opacity: 0.5,
             show_overlay: true,
@@ -55,6 +83,8 @@ impl Default for ViewSettings {
             pixels_per_point: 1.0,
             smooth_edges: true,
             legend: None,
+            link_scales: LinkScales::default(),
+            trail: Vec::new(),
         }
     }
 }
@@ -146,6 +176,8 @@ pub enum ColourRange {
     Automatic,
     /// From the first to the second.
     Fixed(f64, f64),
+    /// From the number that this share of the grains stay below to that which the second share stay below, 0 … 1.
+    Percentiles(f64, f64),
 }
 
 /// A direction along an axis.
@@ -228,6 +260,28 @@ pub enum CameraRequest {
     Fit,
     /// Look from this side, and move so that everything fits.
     From(Side),
+    /// Keep the present view under this number, below [`SAVED_VIEWS`].
+    Save(usize),
+    /// The view that was kept under this number, if one was.
+    Recall(usize),
+}
+
+/// How many views can be kept.
+pub const SAVED_VIEWS: usize = 3;
+
+/// What thickness and length of bars and arrows mean; nothing of what is not drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkScales {
+    /// The force [N] whose bar is [`LinkScales::thickness`] thick.
+    pub force: Option<f64>,
+    /// Thickness of that bar [m].
+    pub thickness: f64,
+    /// The speed [m/s] whose arrow is [`LinkScales::length`] long.
+    pub speed: Option<f64>,
+    /// Length of that arrow [m].
+    pub length: f64,
+    /// Whether liquid bridges are drawn.
+    pub liquid: bool,
 }
 
 /// The six sides that one can look from.

@@ -151,7 +151,7 @@ fn update(
 }
 
 /// A quad for each of the `grains`; a vertex holds its corner (±1, ±1) and the grain's index.
-fn quads(grains: &[u32]) -> Mesh {
+pub(super) fn quads(grains: &[u32]) -> Mesh {
     let mut places = Vec::with_capacity(4 * grains.len());
     let mut indices = Vec::with_capacity(6 * grains.len());
     for (i, grain) in (0_u32..).zip(grains) {

@@ -13,6 +13,7 @@ mod polyhedra;
 mod published;
 mod random_scenes;
 mod rolling;
+mod terms;
 mod time_step;
 
 use grainfall::scene::Scene;

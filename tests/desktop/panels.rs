@@ -12,7 +12,10 @@ use grainfall::simulation::{
 };
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{Curves, Desk, Plots, Request, open_error_ui, parameter_ui, status_ui, theme};
-use grainfall::view::{CameraRequest, ColourBy, ColourRange, Cut, Side, ViewSettings};
+use grainfall::view::{
+    CameraRequest, Caption, ColourBy, ColourRange, Cut, OrbitCamera, Side, ViewSettings,
+    viewport_ui,
+};
 use std::time::Duration;
 
 /// A simulation of three grains, which needs no settling, at time zero.
@@ -726,4 +729,145 @@ fn velocities_are_seen_from_the_laboratory_and_from_the_drum() {
     let number = label.trim_start_matches("Velocity map, up to ");
     let speed: f64 = number.trim_end_matches(" mm/s").parse().unwrap();
     assert!((4.18..4.51).contains(&speed), "{label}");
+}
+
+/// `simulation` after `time` of its run.
+fn after(mut simulation: Simulation, time: f64) -> Simulation {
+    let step = simulation.world().unwrap().clock.step_at(time);
+    simulation.hold_at(Some(step));
+    simulation.send(Command::Speed(f64::INFINITY));
+    simulation.send(Command::Play);
+    for _ in 0..100_000 {
+        simulation.tick(Duration::from_millis(16));
+        if simulation.world().unwrap().clock.step >= step {
+            return simulation;
+        }
+    }
+    panic!("it does not get there");
+}
+
+#[test]
+fn microscope_shows_a_grain_its_contacts_and_every_term_of_their_forces() {
+    let mut harness = Window::of(after(prepared(), 0.2));
+    harness.get_by_label("Microscope").click();
+    harness.run_steps(3);
+    harness.get_by_label("choose by number").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().view.selected, Some(0));
+    for label in [
+        "Position",
+        "Velocity",
+        "Spin",
+        "Mass",
+        "Coordination",
+        "Kinetic energy",
+    ] {
+        harness.get_by_label(label);
+    }
+    harness.get_by_label("Choose a contact to see its forces.");
+    harness.get_by_label_contains("Rim · touches").click();
+    harness.run_steps(3);
+    for label in [
+        "Normal spring",
+        "Normal dashpot",
+        "Tangential spring",
+        "Coulomb bound",
+        "Rolling torque",
+    ] {
+        harness.get_by_label(label);
+    }
+    harness.get_by_label_contains("Force over gap: ");
+    type_number(&mut harness, "Grain", "2");
+    assert_eq!(harness.state().view.selected, Some(2));
+    harness.get_by_label("Look at no grain").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().view.selected, None);
+}
+
+#[test]
+fn a_grain_that_is_clicked_opens_the_microscope() {
+    let mut harness = Window::of(after(wet(), 0.2));
+    assert!(harness.query_by_label("Coordination").is_none());
+    harness.state_mut().view.selected = Some(1);
+    harness.run_steps(4);
+    harness.get_by_label("Coordination");
+    // A wall holds no liquid; another grain on a bridge does.
+    if let Some(wet) = harness.query_by_label_contains("touches, wet") {
+        wet.click();
+        harness.run_steps(3);
+        harness.get_by_label("Capillary");
+        harness.get_by_label("Viscous, normal");
+    }
+    // A grain that the next scene does not have is no grain.
+    harness.state_mut().view.selected = Some(1000);
+    harness.run_steps(3);
+}
+
+#[test]
+fn what_lies_between_the_grains_is_chosen_by_name() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Picture").click();
+    harness.run_steps(3);
+    harness.get_by_label("Forces").click();
+    harness.run_steps(3);
+    let view = &harness.state().view;
+    assert!(
+        view.show_forces && view.grain_size < 0.5,
+        "grains make room"
+    );
+    harness.get_by_label("Forces").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().view.grain_size, 1.0);
+    harness.get_by_label("Velocities").click();
+    harness.get_by_label("Axes").click();
+    harness.get_by_label("Keep 2").click();
+    harness.get_by_label("Show 2").click();
+    harness.run_steps(3);
+    let window = harness.state();
+    assert!(window.view.show_velocities && window.view.show_axes);
+    for request in [CameraRequest::Save(1), CameraRequest::Recall(1)] {
+        assert!(window.asked.contains(&Request::Camera(request)));
+    }
+    assert!(
+        harness.query_by_label("Bridges").is_none(),
+        "nothing is wet"
+    );
+}
+
+#[test]
+fn a_click_on_the_picture_picks_the_grain_under_it() {
+    let simulation = prepared();
+    let world = simulation.world().unwrap().clone();
+    let mut camera = OrbitCamera::default();
+    (camera.focus, camera.height, camera.yaw, camera.pitch) =
+        (world.grains.position[1].as_vec3(), 0.05, 0.0, 0.0);
+    let mut harness = Harness::builder().with_size([400.0, 300.0]).build_ui_state(
+        move |ui, (settings, camera): &mut (ViewSettings, OrbitCamera)| {
+            let caption = Caption {
+                world: Some(&world),
+                real_time_factor: None,
+            };
+            viewport_ui(ui, caption, settings, camera);
+        },
+        (ViewSettings::default(), camera),
+    );
+    harness.run_steps(2);
+    let click = |harness: &mut Harness<'_, _>, pos: egui::Pos2| {
+        harness.event(egui::Event::PointerMoved(pos));
+        for pressed in [true, false] {
+            harness.event(egui::Event::PointerButton {
+                pos,
+                button: egui::PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+            harness.run_steps(1);
+        }
+        harness.run_steps(1);
+    };
+    let rect = harness.state().0.free_rect.unwrap();
+    click(&mut harness, rect.center());
+    assert_eq!(harness.state().0.selected, Some(1));
+    click(&mut harness, rect.min + egui::vec2(5.0, 5.0));
+    assert_eq!(harness.state().0.selected, None);
 }

@@ -17,8 +17,8 @@ use grainfall::window::picture::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use grainfall::world::{
-    Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, PairProperties,
-    Shape, Species, SpeciesId, Surface, Wall, World,
+    Bridge, Clock, Contact, Container, Grains, Ledger, Material, MaterialId, Materials, Motion,
+    PairProperties, Partner, Shape, Species, SpeciesId, Surface, Wall, World,
 };
 use std::io::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -429,4 +429,108 @@ fn mark_turns_with_the_drum() {
             assert!(warmth(angle + away) < 0, "{away}");
         }
     }
+}
+
+/// Two grains side by side that touch, pushed apart by `force`, with a bridge between them.
+fn pair(force: f64) -> World {
+    let mut world = world(Shape::Planes, Vec::new());
+    for x in [-5e-3, 5e-3] {
+        (world.grains).push_sphere(DVec3::new(x, 0.0, 0.0), 5e-3, 2500.0, SpeciesId(0));
+    }
+    world.contacts.push(Contact {
+        grain: 0,
+        partner: Partner::Grain(1),
+        spring: DVec3::ZERO,
+        stiffness: 0.0,
+        force: DVec3::new(-force, 0.0, 0.0),
+        touching: true,
+        bridge: Some(Box::new(Bridge {
+            volume: 4e-9,
+            transfer: 0.0,
+            capillary: 0.0,
+            viscous: 0.0,
+            drag: DVec3::ZERO,
+        })),
+    });
+    world
+}
+
+/// How far up from `place` the picture is covered [pixels].
+fn half_thickness(photograph: &Photograph, place: Vec2) -> f32 {
+    let steps = (0..400).map(|i| 0.25 * i as f32);
+    let mut up = steps.take_while(|up| photograph.covered(place - Vec2::Y * *up));
+    up.by_ref().last().unwrap_or(0.0)
+}
+
+#[test]
+fn force_is_a_bar_as_thick_as_it_is_large() {
+    let Some(_studio) = studio("force_is_a_bar_as_thick_as_it_is_large") else {
+        return;
+    };
+    // The reference is the next round number: of 1 mN itself, of 0.6 mN again 1 mN.
+    let thickness = |force: f64| {
+        let photograph = photograph("force", pair(force), |settings, camera| {
+            settings.show_forces = true;
+            settings.grain_size = 0.2;
+            settings.show_overlay = false;
+            settings.projection = ProjectionKind::Orthographic;
+            camera.look_from(Side::Front);
+        });
+        let (middle, per_metre) = photograph.camera.project(Vec3::ZERO).unwrap();
+        half_thickness(&photograph, middle) / per_metre
+    };
+    let (full, part) = (thickness(1e-3), thickness(0.6e-3));
+    // Three tenths of a radius; two pixels.
+    assert!((full - 1.5e-3).abs() < 1.0e-4, "{full}");
+    assert!((part / full - 0.6).abs() < 0.08, "{part} {full}");
+}
+
+#[test]
+fn bridge_is_as_thick_as_its_volume_makes_it() {
+    let Some(_studio) = studio("bridge_is_as_thick_as_its_volume_makes_it") else {
+        return;
+    };
+    let mut wet = pair(0.0);
+    wet.grains.film = vec![1e-8; 2];
+    wet.liquid = Some(grainfall::scene::LIQUID_CASES[1].liquid());
+    let seen = |bridges: bool| {
+        let photograph = photograph("bridge", wet.clone(), |settings, camera| {
+            settings.show_bridges = bridges;
+            settings.show_overlay = false;
+            settings.projection = ProjectionKind::Orthographic;
+            camera.look_from(Side::Front);
+        });
+        let (middle, per_metre) = photograph.camera.project(Vec3::ZERO).unwrap();
+        half_thickness(&photograph, middle) / per_metre
+    };
+    // V = π q²/(4 r*) with r* = 2.5 mm: q = 3.57e-6 m².
+    let expected = (4.0 * 2.5e-3 * 4e-9 / std::f64::consts::PI).sqrt().sqrt() as f32;
+    // Two pixels, and a soft edge.
+    assert!(
+        (seen(true) - expected).abs() < 1.2e-4,
+        "{} {expected}",
+        seen(true)
+    );
+    assert!(seen(false) < 0.5 * expected);
+}
+
+#[test]
+fn arrows_point_where_grains_go() {
+    let Some(_studio) = studio("arrows_point_where_grains_go") else {
+        return;
+    };
+    let mut moving = pair(0.0);
+    moving.grains.velocity[1] = DVec3::new(0.0, 0.05, 0.0);
+    let photograph = photograph("arrows", moving, |settings, camera| {
+        settings.show_velocities = true;
+        settings.show_overlay = false;
+        settings.projection = ProjectionKind::Orthographic;
+        camera.look_from(Side::Front);
+        (camera.fits, camera.height) = (false, 0.06);
+    });
+    // 0.05 m/s is the reference: four radii long.
+    let at = |x: f32, y: f32| photograph.camera.project(Vec3::new(x, y, 0.0)).unwrap().0;
+    assert!(photograph.covered(at(5e-3, 0.012)));
+    assert!(!photograph.covered(at(5e-3, 0.022)));
+    assert!(!photograph.covered(at(-5e-3, 0.012)));
 }

@@ -73,9 +73,24 @@ impl Shapes {
         if let Some(polyhedra) = &world.polyhedra {
             (0..world.grains.len()).for_each(|i| shapes.push(polyhedra.shape_of(i)));
         }
-        shapes.places.push(shapes.end());
-        shapes.loop_starts.push(shapes.loops.len() as u32);
+        shapes.close();
         shapes
+    }
+
+    /// Adds a body of this shape after those that are there; returns its number.
+    pub fn add(&mut self, shape: &Polyhedron) -> usize {
+        // What closed the tables is where the next body begins.
+        self.places.pop();
+        self.loop_starts.pop();
+        let number = self.places.len();
+        self.push(shape);
+        self.close();
+        number
+    }
+
+    fn close(&mut self) {
+        self.places.push(self.end());
+        self.loop_starts.push(self.loops.len() as u32);
     }
 
     fn end(&self) -> Place {

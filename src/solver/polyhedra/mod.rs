@@ -10,6 +10,7 @@
 //! | `nearest` | nearest points of two features |
 //! | `listing` | which features of a pair may touch before long |
 //! | `pairs` | pairs near each other, their contacts' forces |
+//! | `terms` | those forces, term by term |
 //!
 //! Not here: rolling friction, liquid, laws other than Hooke's, bodies that are not convex. A sphere is a core of one
 //! vertex.
@@ -18,6 +19,9 @@ mod bodies;
 mod listing;
 mod nearest;
 mod pairs;
+mod terms;
+
+pub use terms::force_terms;
 
 use super::contacts::WallBody;
 use super::grid::CellGrid;

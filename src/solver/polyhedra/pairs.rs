@@ -670,7 +670,7 @@ fn list_at_wall(all: &Surroundings<'_>, surface: &Surface, skin: f64, pair: &mut
 
 /// The point of a wall nearest to a vertex.
 #[inline(always)]
-fn to_wall(surface: &Surface, vertex: Row) -> Nearest {
+pub fn to_wall(surface: &Surface, vertex: Row) -> Nearest {
     let place = vector(vertex);
     let (distance, direction) = surface.distance(place);
     Nearest {

@@ -1,0 +1,57 @@
+// Links between points: round bars that get thicker or thinner towards their end, as bands that face the viewer.
+
+#import bevy_pbr::mesh_view_bindings::view
+#import grainfall::grain::ray_through
+#import grainfall::light::{matt_light, gloss}
+
+struct Link {
+    from_point: vec3<f32>,
+    from_radius: f32,
+    to_point: vec3<f32>,
+    to_radius: f32,
+    colour: vec3<f32>,
+    unused: f32,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> links: array<Link>;
+
+struct Corner {
+    // x, y: which corner, ±1; z: index of the link.
+    @location(0) place: vec3<f32>,
+}
+
+struct Covered {
+    @builtin(position) position: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    // From one edge of the band (−1) to the other (1).
+    @location(1) across: f32,
+    @location(2) side: vec3<f32>,
+    @location(3) @interpolate(flat) colour: vec3<f32>,
+}
+
+@vertex
+fn vertex(corner: Corner) -> Covered {
+    let link = links[u32(corner.place.z + 0.5)];
+    let along = link.to_point - link.from_point;
+    let end = 0.5 + 0.5 * corner.place.y;
+    let middle = mix(link.from_point, link.to_point, end);
+    let to_eye = -ray_through(middle).direction;
+    let sideways = cross(along, to_eye);
+    var covered: Covered;
+    // A link that is seen from its end, or has no length, shows nothing.
+    covered.side = sideways * inverseSqrt(max(dot(sideways, sideways), 1e-30));
+    covered.across = corner.place.x;
+    covered.world = middle + corner.place.x * mix(link.from_radius, link.to_radius, end) * covered.side;
+    covered.colour = link.colour;
+    covered.position = view.clip_from_world * vec4<f32>(covered.world, 1.0);
+    return covered;
+}
+
+@fragment
+fn fragment(covered: Covered) -> @location(0) vec4<f32> {
+    let to_eye = -ray_through(covered.world).direction;
+    let upward = sqrt(max(1.0 - covered.across * covered.across, 0.0));
+    let normal = normalize(covered.across * covered.side + upward * to_eye);
+    let light = covered.colour * matt_light(normal) * mix(0.6, 1.0, upward) + vec3<f32>(0.12 * gloss(normal, to_eye));
+    return vec4<f32>(light, 1.0);
+}

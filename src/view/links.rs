@@ -1,0 +1,390 @@
+//! What lies between grains or starts at them: force chains, liquid bridges, velocity arrows, drawn to scale.
+//!
+//! In: the world shown and what of it is to be seen. Out: one draw of round bars, and what their thickness and length mean.
+//! A bar of a force goes from centre to centre, as thick as the force is large; one that pulls has a waist. A bridge is as
+//! thick as its volume makes it. An arrow tapers to its tip.
+
+use super::colour::{linear, round_up};
+use super::grains::CutPlanes;
+use super::spheres::quads;
+use super::{LinkScales, Shown, ViewSettings};
+use crate::world::{Contact, Partner, World};
+use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
+use bevy::camera::visibility::NoFrustumCulling;
+use bevy::mesh::MeshVertexBufferLayoutRef;
+use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
+use bevy::prelude::*;
+use bevy::render::render_resource::{
+    AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
+};
+use bevy::render::storage::ShaderBuffer;
+use bevy::shader::ShaderRef;
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+const SHADER: Handle<Shader> = uuid_handle!("c1a9b0de-5f35-4a25-8a53-71f5a2f0cb21");
+/// sRGB colours of what pushes, what pulls, liquid, velocity.
+pub(super) const PUSH: [u8; 3] = [0xF0, 0x8A, 0x4B];
+pub(super) const PULL: [u8; 3] = [0x6F, 0xB6, 0xF2];
+pub(super) const LIQUID: [u8; 3] = [0x46, 0x9F, 0xE0];
+pub(super) const VELOCITY: [u8; 3] = [0xE8, 0xEC, 0xF2];
+/// Radius of the bar of the reference force, and of the root of an arrow, in mean radii of grains.
+const FORCE_RADIUS: f64 = 0.3;
+const ARROW_RADIUS: f64 = 0.16;
+/// Length of the arrow of the reference speed, in mean radii of grains.
+const ARROW_LENGTH: f64 = 4.0;
+/// No bar is thicker than that of this many reference forces.
+const LARGEST: f64 = 2.0;
+/// Forces and speeds below this share of the reference are not drawn.
+const SMALLEST: f64 = 0.01;
+/// Radius of a waist over that of its bar.
+const WAIST: f64 = 0.35;
+
+/// Adds the links' material, their entity and what keeps it up to date.
+pub(super) fn plugin(app: &mut App) {
+    load_internal_asset!(
+        app,
+        SHADER,
+        "../../assets/shaders/links.wgsl",
+        Shader::from_wgsl
+    );
+    app.add_plugins(MaterialPlugin::<LinkMaterial>::default())
+        .add_systems(Startup, spawn)
+        .add_systems(Update, update.in_set(super::ViewSystems::Draw));
+}
+
+#[derive(Asset, TypePath, AsBindGroup, Clone)]
+struct LinkMaterial {
+    #[storage(0, read_only)]
+    links: Handle<ShaderBuffer>,
+}
+
+impl Material for LinkMaterial {
+    fn vertex_shader() -> ShaderRef {
+        SHADER.into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        SHADER.into()
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _pipeline: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        _key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        descriptor.primitive.cull_mode = None;
+        descriptor.vertex.buffers = vec![
+            layout
+                .0
+                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0)])?,
+        ];
+        Ok(())
+    }
+}
+
+/// A bar as the shader reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+struct Link {
+    from: [f32; 3],
+    from_radius: f32,
+    to: [f32; 3],
+    to_radius: f32,
+    colour: [f32; 3],
+    unused: f32,
+}
+
+/// The entity that draws all links.
+#[derive(Component, Default)]
+struct Links {
+    /// How many its mesh and its buffer hold.
+    room: usize,
+    drawn: Vec<Link>,
+}
+
+fn spawn(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<LinkMaterial>>,
+) {
+    commands.spawn((
+        Links::default(),
+        Mesh3d(meshes.add(quads(&[0]))),
+        MeshMaterial3d(materials.add(LinkMaterial {
+            links: Handle::default(),
+        })),
+        Visibility::Hidden,
+        NoFrustumCulling,
+    ));
+}
+
+/// What decides the links beside the world.
+type Choice = (bool, bool, bool, Option<super::Cut>);
+
+/// Draws the links of the world shown when it or the choice is another.
+fn update(
+    shown: Res<Shown>,
+    mut settings: ResMut<ViewSettings>,
+    mut last: Local<Option<Choice>>,
+    drawn: Single<(
+        &mut Links,
+        &mut Mesh3d,
+        &MeshMaterial3d<LinkMaterial>,
+        &mut Visibility,
+    )>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<LinkMaterial>>,
+    mut buffers: ResMut<Assets<ShaderBuffer>>,
+) {
+    let choice = (
+        settings.show_forces,
+        settings.show_bridges,
+        settings.show_velocities,
+        settings.cut,
+    );
+    if !shown.is_changed() && *last == Some(choice) {
+        return;
+    }
+    *last = Some(choice);
+    let (mut links, mut mesh, material, mut visibility) = drawn.into_inner();
+    links.drawn.clear();
+    let scales = match shown.world() {
+        Some(world) => links.draw(world, &settings),
+        None => LinkScales::default(),
+    };
+    if settings.link_scales != scales {
+        settings.link_scales = scales;
+    }
+    if links.drawn.is_empty() {
+        visibility.set_if_neq(Visibility::Hidden);
+        return;
+    }
+    visibility.set_if_neq(Visibility::Inherited);
+    let room = links.drawn.len().next_power_of_two();
+    links.drawn.resize(room, Link::zeroed());
+    let bytes: &[u8] = bytemuck::cast_slice(&links.drawn);
+    let handle = materials.get(&material.0).map(|m| m.links.clone());
+    if room == links.room
+        && let Some(mut buffer) = handle.and_then(|handle| buffers.get_mut(&handle))
+    {
+        buffer.data = Some(bytes.to_vec());
+    } else if let Some(mut material) = materials.get_mut(&material.0) {
+        let all: Vec<u32> = (0..room as u32).collect();
+        mesh.0 = meshes.add(quads(&all));
+        material.links = buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
+        links.room = room;
+    }
+}
+
+impl Links {
+    /// Makes the bars; says what they mean.
+    fn draw(&mut self, world: &World, settings: &ViewSettings) -> LinkScales {
+        let cut = CutPlanes::of(settings.cut);
+        let before = &settings.link_scales;
+        let mut scales = LinkScales::default();
+        let radius = mean_radius(world);
+        if settings.show_forces {
+            let force = |contact: &Contact| contact.force.length();
+            let reference = steady(reference(world.contacts.iter().map(force)), before.force);
+            scales.force = Some(reference);
+            scales.thickness = 2.0 * FORCE_RADIUS * radius;
+            for contact in &world.contacts {
+                self.force(world, contact, reference, radius);
+            }
+        }
+        if settings.show_bridges {
+            scales.liquid = world.wetting().is_some();
+            for contact in &world.contacts {
+                self.bridge(world, contact);
+            }
+        }
+        if settings.show_velocities {
+            let speed = |v: &DVec3| v.length();
+            let speeds = world.grains.velocity.iter().map(speed);
+            let reference = steady(reference(speeds), before.speed);
+            scales.speed = Some(reference);
+            scales.length = ARROW_LENGTH * radius;
+            self.arrows(world, reference, radius);
+        }
+        self.drawn.retain(|link| {
+            let middle = 0.5 * (Vec3::from(link.from) + Vec3::from(link.to));
+            !cut.take_away(middle)
+        });
+        scales
+    }
+
+    fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], colour: [f32; 3]) {
+        self.drawn.push(Link {
+            from: ends[0].as_vec3().to_array(),
+            from_radius: radii[0] as f32,
+            to: ends[1].as_vec3().to_array(),
+            to_radius: radii[1] as f32,
+            colour,
+            unused: 0.0,
+        });
+    }
+
+    fn force(&mut self, world: &World, contact: &Contact, reference: f64, radius: f64) {
+        let share = contact.force.length() / reference;
+        // Written so that what is no number is not drawn.
+        if !(share > SMALLEST) {
+            return;
+        }
+        let [from, to] = ends(world, contact);
+        let thick = FORCE_RADIUS * radius * share.min(LARGEST);
+        if contact.force.dot(to - from) <= 0.0 {
+            self.push([from, to], [thick; 2], linear(PUSH));
+            return;
+        }
+        let (middle, thin, colour) = (0.5 * (from + to), WAIST * thick, linear(PULL));
+        self.push([from, middle], [thick, thin], colour);
+        self.push([middle, to], [thin, thick], colour);
+    }
+
+    fn bridge(&mut self, world: &World, contact: &Contact) {
+        let (Some(bridge), Partner::Grain(j)) = (&contact.bridge, contact.partner) else {
+            return;
+        };
+        let grains = &world.grains;
+        let (i, j) = (contact.grain as usize, j as usize);
+        let radii = [grains.radius[i], grains.radius[j]];
+        let [from, to] = ends(world, contact);
+        let normal = (to - from).normalize_or_zero();
+        let gap = (to - from).length() - radii[0] - radii[1];
+        let neck = neck_radius(bridge.volume, gap, radii);
+        // From where the neck meets one sphere to where it meets the other.
+        let inside = |r: f64| (r * r - (neck * neck).min(r * r)).sqrt();
+        let ends = [
+            from + normal * inside(radii[0]),
+            to - normal * inside(radii[1]),
+        ];
+        self.push(ends, [neck; 2], linear(LIQUID));
+    }
+
+    fn arrows(&mut self, world: &World, reference: f64, radius: f64) {
+        let colour = linear(VELOCITY);
+        for (x, v) in world.grains.position.iter().zip(&world.grains.velocity) {
+            if v.length() > SMALLEST * reference {
+                let tip = *x + *v * (ARROW_LENGTH * radius / reference);
+                self.push([*x, tip], [ARROW_RADIUS * radius, 0.0], colour);
+            }
+        }
+    }
+}
+
+/// The two centres, or the centre and the nearest point of the wall [m].
+fn ends(world: &World, contact: &Contact) -> [DVec3; 2] {
+    let from = world.grains.position[contact.grain as usize];
+    let to = match contact.partner {
+        Partner::Grain(j) => world.grains.position[j as usize],
+        Partner::Wall(w) => {
+            let (distance, towards) = world.container.walls[w as usize].surface.distance(from);
+            from + distance * towards
+        }
+    };
+    [from, to]
+}
+
+/// Radius of the cylinder of liquid between two spheres of these `radii` at this `gap` that holds `volume` [m³]: of
+/// `V = π q (D + q / 4 r*)`, with `q` the square of the radius, in the spheres' parabolas.
+fn neck_radius(volume: f64, gap: f64, radii: [f64; 2]) -> f64 {
+    let effective = radii[0] * radii[1] / (radii[0] + radii[1]);
+    let q = 2.0 * effective * ((gap * gap + volume / (PI * effective)).sqrt() - gap);
+    q.max(0.0).sqrt()
+}
+
+fn mean_radius(world: &World) -> f64 {
+    let radii = &world.grains.radius;
+    radii.iter().sum::<f64>() / radii.len().max(1) as f64
+}
+
+/// A round number that all but a fiftieth of the numbers above zero stay below.
+fn reference(numbers: impl Iterator<Item = f64>) -> f64 {
+    let mut numbers: Vec<f64> = numbers.filter(|x| x.is_finite() && *x > 0.0).collect();
+    if numbers.is_empty() {
+        return 1.0;
+    }
+    let rank = (numbers.len() - 1) * 49 / 50;
+    let (_, most, _) = numbers.select_nth_unstable_by(rank, f64::total_cmp);
+    round_up(*most)
+}
+
+/// `before` while it suits, so that bars do not jump from frame to frame.
+fn steady(reference: f64, before: Option<f64>) -> f64 {
+    before
+        .filter(|before| (0.3..=1.0).contains(&(reference / before)))
+        .unwrap_or(reference)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neck_holds_its_volume_between_two_spheres() {
+        // Volume between the spheres inside the cylinder, ring by ring.
+        let (radii, gap, volume) = ([3e-3, 2e-3], 1e-4, 4e-10);
+        let neck = neck_radius(volume, gap, radii);
+        let rings = 20_000;
+        let mut found = 0.0;
+        for k in 0..rings {
+            let rho = neck * (f64::from(k) + 0.5) / f64::from(rings);
+            let sagitta = |r: f64| r - (r * r - rho * rho).sqrt();
+            let height = gap + sagitta(radii[0]) + sagitta(radii[1]);
+            found += 2.0 * PI * rho * height * neck / f64::from(rings);
+        }
+        // Parabolas for circles: (ρ/r)²/8 of the caps, here 2 % of the volume at most.
+        assert!((found / volume - 1.0).abs() < 0.02, "{}", found / volume);
+        // Grains that overlap have a wider neck, and no liquid none.
+        assert!(neck_radius(volume, -1e-5, radii) > neck);
+        assert_eq!(neck_radius(0.0, gap, radii), 0.0);
+    }
+
+    #[test]
+    fn scale_keeps_still_while_it_suits() {
+        assert_eq!(steady(0.5, Some(1.0)), 1.0);
+        assert_eq!(steady(0.2, Some(1.0)), 0.2);
+        assert_eq!(steady(2.0, Some(1.0)), 2.0);
+        assert_eq!(reference([0.0, f64::NAN].into_iter()), 1.0);
+    }
+
+    #[test]
+    fn a_bar_is_as_thick_as_its_force_and_a_pull_has_a_waist() {
+        let mut world = crate::view::tests::grains_in_a_row(2);
+        let contact = |force: DVec3| Contact {
+            grain: 0,
+            partner: Partner::Grain(1),
+            spring: DVec3::ZERO,
+            stiffness: 0.0,
+            force,
+            touching: true,
+            bridge: None,
+        };
+        let along = (world.grains.position[1] - world.grains.position[0]).normalize();
+        let bars = |force: DVec3, world: &mut World| {
+            let mut links = Links::default();
+            links.force(world, &contact(force), 1.0, 1e-3);
+            links.drawn
+        };
+        let [push] = bars(-0.5 * along, &mut world)[..] else {
+            panic!("a push is one bar");
+        };
+        assert_eq!(push.from_radius, 0.15e-3);
+        assert_eq!(push.to_radius, push.from_radius);
+        let pull = bars(0.5 * along, &mut world);
+        assert_eq!(pull.len(), 2);
+        assert!(pull[0].to_radius < 0.5 * pull[0].from_radius);
+        assert!(bars(DVec3::splat(f64::NAN), &mut world).is_empty());
+    }
+}
