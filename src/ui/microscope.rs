@@ -469,28 +469,42 @@ fn spring_of_features(terms: &ForceTerms) -> LawCurve {
     }
 }
 
-/// Every term of the force of `contact`.
+/// How the two sides of `contact` stand and move, every term of its force, and the sum.
 fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
-    let newtons = |force: f64| number::with_prefix(force, "N");
-    let pushes =
-        |of: fn(&ForceTerms) -> DVec3| -> f64 { terms.iter().map(|t| -of(t).dot(t.normal)).sum() };
-    let along = |of: fn(&ForceTerms) -> DVec3| newtons(pushes(of));
-    let across = |of: fn(&ForceTerms) -> DVec3| {
-        let sum: DVec3 = terms.iter().map(of).sum();
-        newtons(sum.length())
+    let mut rows = motion_rows(terms);
+    rows.extend(normal_rows(contact, terms));
+    rows.extend(tangential_rows(contact, terms));
+    let sum: DVec3 = terms.iter().map(ForceTerms::force).sum();
+    rows.extend([
+        row(
+            "Sum of the terms",
+            newtons(sum.length()),
+            "Of all forces above",
+        ),
+        row(
+            "Applied",
+            newtons(contact.force.length()),
+            "What the solver applied in the last step",
+        ),
+    ]);
+    rows
+}
+
+fn newtons(force: f64) -> String {
+    number::with_prefix(force, "N")
+}
+
+fn deepest(terms: &[ForceTerms]) -> f64 {
+    (terms.iter().map(|t| t.overlap)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn motion_rows(terms: &[ForceTerms]) -> Vec<Row> {
+    let (approach, slip) = (terms.first()).map_or((0.0, 0.0), |t| (t.approach, t.slip.length()));
+    let (place, length) = match deepest(terms) {
+        overlap if overlap > 0.0 => ("Overlap δ", overlap),
+        gap => ("Gap D", -gap),
     };
-    let deepest = terms
-        .iter()
-        .map(|t| t.overlap)
-        .fold(f64::NEG_INFINITY, f64::max);
-    let (approach, slip) = terms
-        .first()
-        .map_or((0.0, 0.0), |t| (t.approach, t.slip.length()));
-    let (place, length) = if deepest > 0.0 {
-        ("Overlap δ", deepest)
-    } else {
-        ("Gap D", -deepest)
-    };
+    let speed = |v: f64| number::with_prefix(v, "m/s");
     let mut rows = vec![
         row(
             place,
@@ -499,32 +513,33 @@ fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
         ),
         row(
             "Approach",
-            number::with_prefix(approach, "m/s"),
+            speed(approach),
             "Along the normal, half a step ago; negative while parting",
         ),
-        row(
-            "Slip",
-            number::with_prefix(slip, "m/s"),
-            "Of one surface over the other",
-        ),
+        row("Slip", speed(slip), "Of one surface over the other"),
     ];
     if terms.iter().any(|t| t.feature.is_some()) {
-        rows.push(row(
-            "Places",
-            terms.len().to_string(),
-            "Pairs of features that touch",
-        ));
+        let places = terms.len().to_string();
+        rows.push(row("Places", places, "Pairs of features that touch"));
     }
-    rows.push(row(
-        "Normal spring",
-        along(|t| t.normal_spring),
-        "k_n δ, positive where it pushes apart",
-    ));
-    rows.push(row(
-        "Normal dashpot",
-        along(|t| t.normal_dashpot),
-        "η_n times the speed of approach",
-    ));
+    rows
+}
+
+fn normal_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
+    let along =
+        |of: fn(&ForceTerms) -> DVec3| newtons(terms.iter().map(|t| -of(t).dot(t.normal)).sum());
+    let mut rows = vec![
+        row(
+            "Normal spring",
+            along(|t| t.normal_spring),
+            "k_n δ, positive where it pushes apart",
+        ),
+        row(
+            "Normal dashpot",
+            along(|t| t.normal_dashpot),
+            "η_n times the speed of approach",
+        ),
+    ];
     if contact.bridge.is_some() {
         rows.push(row(
             "Capillary",
@@ -534,27 +549,37 @@ fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
         rows.push(row(
             "Viscous, normal",
             along(|t| t.viscous_normal),
-            "Eq. 16",
+            "Eq. 16 of Kasper et al. 2021",
         ));
     }
-    rows.push(row(
-        "Tangential spring",
-        across(|t| t.tangential_spring),
-        "k_t times the elastic slip ξ",
-    ));
-    rows.push(row(
-        "Tangential dashpot",
-        across(|t| t.tangential_dashpot),
-        "η_t times the slip velocity; none while it slides",
-    ));
+    rows
+}
+
+fn tangential_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
+    let across = |of: fn(&ForceTerms) -> DVec3| {
+        let sum: DVec3 = terms.iter().map(of).sum();
+        newtons(sum.length())
+    };
+    let mut rows = vec![
+        row(
+            "Tangential spring",
+            across(|t| t.tangential_spring),
+            "k_t times the elastic slip ξ",
+        ),
+        row(
+            "Tangential dashpot",
+            across(|t| t.tangential_dashpot),
+            "η_t times the slip velocity; none while it slides",
+        ),
+    ];
     if contact.bridge.is_some() {
         rows.push(row(
             "Viscous, tangential",
             across(|t| t.viscous_tangential),
-            "Eq. 17",
+            "Eq. 17 of Kasper et al. 2021",
         ));
     }
-    if deepest > 0.0 {
+    if deepest(terms) > 0.0 {
         rows.push(row(
             "Coulomb bound",
             bound(terms),
@@ -565,18 +590,7 @@ fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
     rows.push(row(
         "Rolling torque",
         number::with_prefix(rolling.length(), "N m"),
-        "Eq. 10, from the torque of now",
-    ));
-    let sum: DVec3 = terms.iter().map(ForceTerms::force).sum();
-    rows.push(row(
-        "Sum of the terms",
-        newtons(sum.length()),
-        "Of all forces above",
-    ));
-    rows.push(row(
-        "Applied",
-        newtons(contact.force.length()),
-        "What the solver applied in the last step",
+        "Eq. 10 of Kasper et al. 2021, from the torque of now",
     ));
     rows
 }

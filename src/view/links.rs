@@ -237,8 +237,7 @@ impl Links {
 
     fn force(&mut self, world: &World, contact: &Contact, reference: f64, radius: f64) {
         let share = contact.force.length() / reference;
-        // Written so that what is no number is not drawn.
-        if !(share > SMALLEST) {
+        if share.is_nan() || share < SMALLEST {
             return;
         }
         let [from, to] = ends(world, contact);

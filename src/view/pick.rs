@@ -152,14 +152,11 @@ mod tests {
     }
 
     fn camera(projection: ProjectionKind) -> OrbitCamera {
-        OrbitCamera {
-            yaw: 0.0,
-            pitch: 0.0,
-            height: 0.02,
-            projection,
-            viewport: Vec2::new(400.0, 200.0),
-            ..OrbitCamera::default()
-        }
+        let mut camera = OrbitCamera::default();
+        (camera.yaw, camera.pitch, camera.height) = (0.0, 0.0, 0.02);
+        camera.projection = projection;
+        camera.viewport = Vec2::new(400.0, 200.0);
+        camera
     }
 
     #[test]

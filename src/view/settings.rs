@@ -7,6 +7,7 @@ use bevy_egui::egui;
 
 /// Everything about the picture that a person can choose, and the two things that the panels need to know of it.
 #[derive(Resource, Clone, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of a panel")]
 pub struct ViewSettings {
     /// Which property of a grain gives its colour.
     pub colour_by: ColourBy,

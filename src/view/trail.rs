@@ -16,7 +16,8 @@ pub(super) fn follow(
 ) {
     let selected = settings.selected.filter(|_| settings.show_trail);
     let another = *last != selected;
-    if !another && !(shown.is_changed() && selected.is_some()) {
+    let moved = shown.is_changed() && selected.is_some();
+    if !another && !moved {
         return;
     }
     *last = selected;
