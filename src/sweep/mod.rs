@@ -6,7 +6,7 @@
 //! others go on from their checkpoints.
 
 mod case;
-mod chart;
+pub(crate) mod chart;
 mod checkpoint;
 mod column_plots;
 mod plan;

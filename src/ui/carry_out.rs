@@ -1,13 +1,15 @@
 //! What panels ask for, fulfilled: the only place that changes the run, opens scenes and writes pictures for them.
 
-use super::{Desk, OpenWith, Purpose, Request, Requests};
+use super::{Desk, OpenWith, Purpose, Recorder, Request, Requests};
 use crate::scene::Scene;
 use crate::simulation::{Claim, Options, Provenance, SavedFile, Session, SessionError, Simulation};
-use crate::view::{CameraRequest, ViewSettings, save_png};
+use crate::view::{CameraRequest, ViewSettings, save_part, save_png};
 use bevy::ecs::system::SystemParam;
+use bevy::math::URect;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
+use bevy_egui::egui::Rect;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,6 +24,7 @@ pub struct Opener<'w, 's> {
     opening: ResMut<'w, Opening>,
     options: Res<'w, OpenWith>,
     view: ResMut<'w, ViewSettings>,
+    recorder: ResMut<'w, Recorder>,
     commands: Commands<'w, 's>,
 }
 
@@ -77,6 +80,13 @@ pub fn fulfil_requests(
                     desk.notify(said("The list of changes", &path, saved));
                 }
             }
+            Request::ExportPlot(export) => {
+                desk.export = Some(export);
+                desk.path_dialog.ask(Purpose::Plot);
+            }
+            Request::SavePlot(path) => save_plot(path, &mut desk, &mut opener),
+            Request::ChooseFilm => desk.path_dialog.ask(Purpose::Film),
+            Request::Film(order) => opener.recorder.order = Some(order),
             Request::Show(sheet) => desk.show_sheet(sheet),
             Request::Quit => {
                 exit.write(AppExit::Success);
@@ -190,6 +200,39 @@ fn save_to(
         let saved = save_png(&captured.image, from.as_ref(), &path);
         desk.notify(said("The picture", &path, saved));
     }
+}
+
+/// Writes the plot that was asked for to `path`; one as PNG is cut out of the window.
+fn save_plot(path: PathBuf, desk: &mut Desk, opener: &mut Opener) {
+    let Some(export) = desk.export.take() else {
+        return;
+    };
+    if path.extension().is_some_and(|ending| ending == "png") {
+        let area = pixels(export.rect, opener.view.pixels_per_point);
+        let save = move |captured: On<ScreenshotCaptured>, mut desk: ResMut<Desk>| {
+            let saved = save_part(&captured.image, area, Some(&export.from), &path);
+            desk.notify(said("The plot", &path, saved));
+        };
+        opener
+            .commands
+            .spawn(Screenshot::primary_window())
+            .observe(save);
+    } else {
+        let written = export.write(&path);
+        desk.notify(said("The plot", &path, written));
+    }
+}
+
+/// The pixels of a rectangle in points.
+fn pixels(rect: Rect, pixels_per_point: f32) -> URect {
+    let corner = |x: f32, y: f32| {
+        let pixel = (Vec2::new(x, y) * pixels_per_point).round();
+        pixel.max(Vec2::ZERO).as_uvec2()
+    };
+    URect::from_corners(
+        corner(rect.left(), rect.top()),
+        corner(rect.right(), rect.bottom()),
+    )
 }
 
 /// Writes the changes of the present run to `path`, with what leads to the state shown.

@@ -8,6 +8,8 @@ use super::beside_paper::BesidePaper;
 use super::changes::Changes;
 use super::collapse_plots::CollapsePlots;
 use super::column_beside_paper::ColumnBesidePaper;
+use super::energy::Energy;
+use super::explorer::{Explorer, Export};
 use super::menu::{Shown, menu_ui};
 use super::microscope::Microscope;
 use super::parameters::Parameters;
@@ -44,6 +46,8 @@ pub struct Desk {
     badge: Badge,
     shown: Shown,
     recent: Vec<String>,
+    /// The plot that a file is being chosen for.
+    pub export: Option<Box<Export>>,
     /// Choosing a file.
     pub path_dialog: PathDialog,
     sheet: Option<Sheet>,
@@ -82,6 +86,8 @@ fn right() -> Vec<Section> {
         section(Microscope::default(), false),
         section(Plots::default(), true),
         section(CollapsePlots::default(), true),
+        section(Explorer::default(), false),
+        section(Energy, false),
         section(Velocity::default(), false),
         section(BesidePaper::default(), true),
         section(ColumnBesidePaper, true),
@@ -108,6 +114,7 @@ impl Default for Desk {
                 right: true,
             },
             recent: Vec::new(),
+            export: None,
             path_dialog: PathDialog::default(),
             sheet: None,
             open_error: None,

@@ -59,6 +59,9 @@ fn file_ui(ui: &mut egui::Ui, past: Option<&Past>, recent: &[String], out: &mut 
     });
     item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
     item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
+    ui.add_enabled_ui(past.is_some(), |ui| {
+        item_ui(ui, "Record a film…", Request::ChooseFilm, out);
+    });
     ui.separator();
     item_ui(ui, "Quit", Request::Quit, out);
 }

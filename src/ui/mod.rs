@@ -14,6 +14,8 @@
 //! | `about_scene`, `parameters`, `changes`, `picture`, `profile` | panels on the left |
 //! | `microscope` | one grain, its contacts, every term of their forces |
 //! | `plots`, `velocity`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
+//! | `explorer`, `energy` | any quantity over time or another, the energy ledger as a stack |
+//! | `recording` | what is asked of a film and how far it has come |
 //! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
 //! | `theme` | every colour, size and font |
@@ -29,6 +31,8 @@ mod collapse_plots;
 mod column_beside_paper;
 mod decimate;
 mod desk;
+mod energy;
+mod explorer;
 mod menu;
 mod microscope;
 mod number;
@@ -37,6 +41,7 @@ mod path_dialog;
 mod picture;
 mod plots;
 mod profile;
+mod recording;
 mod request;
 mod results;
 mod scrub;
@@ -53,12 +58,15 @@ pub use badge::{Check, Level, checks};
 pub use collapse_plots::CollapsePlots;
 pub use column_beside_paper::ColumnBesidePaper;
 pub use desk::Desk;
+pub use energy::Energy;
+pub use explorer::{Explorer, Export};
 pub use microscope::Microscope;
 pub use parameters::{Parameters, parameter_ui};
 pub use path_dialog::{PathDialog, Purpose};
 pub use picture::Picture;
 pub use plots::{Curves, Plots};
 pub use profile::{SolverProfile, advice_ui, profile_ui};
+pub use recording::{FilmOrder, FilmState, Recorder, recording_ui};
 pub use request::{Request, Sheet};
 pub use results::Results;
 pub use sheets::{open_error_ui, sheet_ui, unsaved_ui};
@@ -146,6 +154,7 @@ impl Plugin for DeskPlugin {
             .init_resource::<Requests>()
             .init_resource::<carry_out::Opening>()
             .init_resource::<Desk>()
+            .init_resource::<Recorder>()
             .init_resource::<ViewSettings>()
             .add_message::<FileDragAndDrop>()
             .add_message::<WindowCloseRequested>()
@@ -178,6 +187,7 @@ fn draw_panels(
     mut view: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
     mut requests: ResMut<Requests>,
+    recorder: Res<Recorder>,
     simulation: Option<Res<Simulation>>,
 ) -> Result {
     let ctx = contexts.ctx_mut()?.clone();
@@ -187,6 +197,7 @@ fn draw_panels(
     let mut root = egui::Ui::new(ctx, "root".into(), builder);
     let simulation = simulation.as_deref();
     desk.ui(&mut root, simulation, &mut view, &mut requests.0);
+    recording_ui(&mut root, &recorder, &mut requests.0);
     viewport_ui(&mut root, caption(simulation), &mut view, &mut camera);
     desk.over_picture_ui(&root, simulation);
     Ok(())

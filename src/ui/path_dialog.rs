@@ -3,7 +3,7 @@
 //! The system's dialog runs on a thread of its own and may fail to appear (no D-Bus session, no portal); then, or when
 //! it is asked for again while it has not answered, the field appears. Nothing here waits.
 
-use super::Request;
+use super::{FilmOrder, Request};
 use crate::simulation::SESSION_EXTENSION;
 use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
 use bevy_egui::egui::{self, Id, Key, Modal};
@@ -25,6 +25,10 @@ pub enum Purpose {
     Picture,
     /// Where the list of changes goes.
     Changes,
+    /// Where a plot goes.
+    Plot,
+    /// Where a film goes.
+    Film,
 }
 
 impl Purpose {
@@ -35,6 +39,8 @@ impl Purpose {
             Self::Session => SESSION_EXTENSION,
             Self::Picture => "png",
             Self::Changes => "json",
+            Self::Plot => "svg",
+            Self::Film => "gif",
         }
     }
 }
@@ -74,6 +80,8 @@ impl Purpose {
             Self::Session => "Save the session",
             Self::Picture => "Save a picture of the window",
             Self::Changes => "Save the list of changes",
+            Self::Plot => "Export the plot",
+            Self::Film => "Record a film of the picture",
         }
     }
 
@@ -83,6 +91,10 @@ impl Purpose {
             Self::Session => "Path of the session's file",
             Self::Picture => "Path of the PNG file",
             Self::Changes => "Path of the JSON file",
+            Self::Plot => "Path; it ends in .svg or .png for a picture, in .csv for all samples",
+            Self::Film => {
+                "Path; it ends in .gif, or in .mp4 where ffmpeg is installed; without an ending, a folder of PNG pictures"
+            }
         }
     }
 
@@ -92,6 +104,8 @@ impl Purpose {
             Self::Session => free_name("session", self.extension()),
             Self::Picture => free_name("grainfall", self.extension()),
             Self::Changes => free_name("changes", self.extension()),
+            Self::Plot => free_name("plot", self.extension()),
+            Self::Film => free_name("film", self.extension()),
         }
     }
 
@@ -101,6 +115,11 @@ impl Purpose {
             Self::Session => Request::SaveSession(path.with_extension(self.extension())),
             Self::Picture => Request::SavePicture(path.with_extension(self.extension())),
             Self::Changes => Request::SaveChanges(path.with_extension(self.extension())),
+            Self::Plot => Request::SavePlot(match path.extension() {
+                Some(_) => path,
+                None => path.with_extension(self.extension()),
+            }),
+            Self::Film => Request::Film(FilmOrder::Begin(path)),
         }
     }
 }
@@ -189,6 +208,14 @@ async fn ask_system(purpose: Purpose) -> Answered {
             let dialog = dialog.add_filter("Pictures", &["png"]);
             dialog.set_file_name("grainfall.png").save_file().await
         }
+        Purpose::Plot => {
+            let dialog = dialog.add_filter("Plots and their samples", &["svg", "png", "csv"]);
+            dialog.set_file_name("plot.svg").save_file().await
+        }
+        Purpose::Film => {
+            let dialog = dialog.add_filter("Films", &["gif", "mp4"]);
+            dialog.set_file_name("film.gif").save_file().await
+        }
         Purpose::Changes => {
             let dialog = dialog.add_filter("Lists of changes", &["json"]);
             dialog.set_file_name("changes.json").save_file().await
@@ -223,7 +250,8 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
         ui.horizontal(|ui| {
             let verb = match typed.purpose {
                 Purpose::Open => "Open",
-                Purpose::Session | Purpose::Picture | Purpose::Changes => "Save",
+                Purpose::Session | Purpose::Picture | Purpose::Changes | Purpose::Plot => "Save",
+                Purpose::Film => "Record",
             };
             let filled = !typed.text.trim().is_empty();
             let done = ui.add_enabled(filled, egui::Button::new(verb)).clicked();

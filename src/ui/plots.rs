@@ -10,7 +10,7 @@ use super::{Panel, Request, is_column, number};
 use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE, Series};
 use crate::simulation::{Command, Record, Simulation};
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
+use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b, WidgetInfo, WidgetType};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, MarkerShape, Plot,
     PlotBounds, PlotPoint, PlotUi, Points, Text, VLine,
@@ -151,9 +151,63 @@ impl Panel for Plots {
             kept: &simulation.past().kept,
             shown: shown(simulation),
         };
+        avalanches_ui(ui, simulation, out);
         let clicked = self.curves_ui(ui, &curves);
         out.extend(clicked.and_then(|time| seek(simulation, time)));
     }
+}
+
+/// Backwards or on in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// To what was before.
+    Back,
+    /// To what comes next.
+    On,
+}
+
+/// Buttons that go from avalanche to avalanche.
+fn avalanches_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let count = simulation.avalanches().len();
+    if count == 0 {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.label(format!("Avalanches: {count}"));
+        for (text, way, keys) in [
+            ("Before", Way::Back, "Page up"),
+            ("Next", Way::On, "Page down"),
+        ] {
+            let request = to_avalanche(simulation, way);
+            let button = ui.add_enabled(request.is_some(), egui::Button::new(text));
+            let name = format!("{text} avalanche");
+            button.widget_info(|| {
+                WidgetInfo::labeled(WidgetType::Button, request.is_some(), name.as_str())
+            });
+            if button
+                .on_hover_text(format!("Show where it starts ({keys})"))
+                .clicked()
+            {
+                out.extend(request);
+            }
+        }
+    });
+}
+
+/// The request to show the start of the avalanche before or after the moment shown, where there is one.
+pub(super) fn to_avalanche(simulation: &Simulation, way: Way) -> Option<Request> {
+    let time_step = simulation.world()?.clock.time_step;
+    let now = simulation.step() as f64 * time_step;
+    // A start that is shown already is neither before nor after.
+    let mut starts = simulation
+        .avalanches()
+        .iter()
+        .map(|avalanche| avalanche.start);
+    let start = match way {
+        Way::Back => starts.rfind(|start| *start < now - time_step),
+        Way::On => starts.find(|start| *start > now + time_step),
+    };
+    seek(simulation, start?)
 }
 
 /// When parameters were changed [s], ascending: once for each change, however many values it took.

@@ -1,6 +1,7 @@
 //! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push requests, and one
 //! function ([`super::carry_out`]) fulfils them.
 
+use super::{Export, FilmOrder};
 use crate::simulation::Command;
 use crate::view::CameraRequest;
 use std::path::PathBuf;
@@ -34,6 +35,14 @@ pub enum Request {
     ChoosePicture,
     /// Write a picture of the window to this PNG file.
     SavePicture(PathBuf),
+    /// Let the person choose where this plot goes.
+    ExportPlot(Box<Export>),
+    /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.
+    SavePlot(PathBuf),
+    /// Let the person choose where a film of the picture goes.
+    ChooseFilm,
+    /// Something asked of the recorder of films.
+    Film(FilmOrder),
     /// Show a sheet over the window.
     Show(Sheet),
     /// End the program.

@@ -1,5 +1,6 @@
 //! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from it.
 
+use super::plots::{Way, to_avalanche};
 use super::transport::{allows, play_or_pause, step_back};
 use super::{Request, Sheet};
 use crate::simulation::{Command, Simulation};
@@ -19,6 +20,7 @@ enum Action {
     PlayOrPause,
     StepBack,
     ToTheNewest,
+    Avalanche(Way),
     Ask(Request),
 }
 
@@ -172,6 +174,21 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: Action::Ask(Request::ChoosePicture),
     },
     Shortcut {
+        keys: &[ctrl(Key::R)],
+        name: "Record a film of the picture",
+        action: Action::Ask(Request::ChooseFilm),
+    },
+    Shortcut {
+        keys: &[key(Key::PageUp)],
+        name: "The avalanche before",
+        action: Action::Avalanche(Way::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::PageDown)],
+        name: "The next avalanche",
+        action: Action::Avalanche(Way::On),
+    },
+    Shortcut {
         keys: &[key(Key::F1)],
         name: "These shortcuts",
         action: Action::Ask(Request::Show(Sheet::Shortcuts)),
@@ -226,6 +243,7 @@ impl Shortcut {
             Action::Ask(request) => return Some(request.clone()),
             Action::PlayOrPause => play_or_pause(simulation?.status())?,
             Action::StepBack => step_back(simulation?)?,
+            Action::Avalanche(way) => return to_avalanche(simulation?, *way),
             Action::ToTheNewest => Command::Seek(simulation?.past().end.step),
         };
         allows(simulation?.status(), &command).then_some(Request::Command(command))

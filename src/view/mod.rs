@@ -24,12 +24,13 @@
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `rig` | Bevy's camera entity that follows it |
 //! | `overlay` | scale bar, clock, legend in the picture |
-//! | `png` | pictures as files |
+//! | `png`, `film` | pictures and films as files |
 
 mod camera;
 mod colour;
 mod container;
 mod facets;
+mod film;
 mod grains;
 mod links;
 mod occlusion;
@@ -45,9 +46,10 @@ mod trail;
 pub use camera::{OrbitCamera, apply_response};
 pub(crate) use colour::round_up;
 pub use colour::species_colour;
+pub use film::{FILM_RATE, Film, FilmKind};
 pub use grains::GrainBuffer;
 pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
-pub use png::save_png;
+pub use png::{save_part, save_png};
 pub use polyhedra::Meshing;
 pub use rig::WorldCamera;
 pub use settings::{

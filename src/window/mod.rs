@@ -6,6 +6,7 @@
 mod commission;
 pub mod environment;
 pub mod picture;
+mod recording;
 
 use crate::scene::Scene;
 use crate::simulation::{Options, Session, Simulation, SimulationPlugin};
@@ -24,6 +25,7 @@ use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use commission::{Commission, Outcome};
 use environment::{Missing, adapters, display};
 use picture::{CanvasPlugin, offscreen_plugins};
+pub use recording::RecordingPlugin;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -169,6 +171,7 @@ fn build(mut job: Job, software: bool, outcome: Outcome) -> App {
         .add_plugins((
             SimulationPlugin,
             ViewPlugin,
+            RecordingPlugin,
             UiPlugin {
                 options: job.options.clone(),
             },

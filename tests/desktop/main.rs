@@ -2,6 +2,7 @@
 
 mod panels;
 mod polyhedra;
+mod recording;
 mod session;
 mod timeline;
 mod view;

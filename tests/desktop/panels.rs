@@ -871,3 +871,95 @@ fn a_click_on_the_picture_picks_the_grain_under_it() {
     click(&mut harness, rect.min + egui::vec2(5.0, 5.0));
     assert_eq!(harness.state().0.selected, None);
 }
+
+/// A drum whose surface has slid twice, as its samples tell.
+fn with_samples() -> Simulation {
+    after(prepared(), 0.4)
+}
+
+#[test]
+fn any_quantity_is_plotted_over_any_other_and_can_be_taken_home() {
+    let mut harness = Window::of(with_samples());
+    harness.get_by_label("Any quantity").click();
+    harness.run_steps(10);
+    harness.get_by_label_contains("Kinetic energy E_kin [J] over Time t [s], now ");
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Over")
+        .click();
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::Button, "Coordination number Z")
+        .click();
+    harness.run_steps(5);
+    harness.get_by_label_contains("Kinetic energy E_kin [J] over Coordination number Z, now ");
+    harness.get_by_label("Export…").click();
+    harness.run_steps(2);
+    let asked = std::mem::take(&mut harness.state_mut().asked);
+    let [Request::ExportPlot(export)] = &asked[..] else {
+        panic!("{asked:?}");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let samples = harness.state().simulation.series().len();
+    let path = folder.path().join("plot.csv");
+    export.write(&path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().count(), samples + 1);
+    assert!(text.starts_with("run,time [s],coordination number [1],kinetic energy [J]\n"));
+    let path = folder.path().join("plot.svg");
+    export.write(&path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("Coordination number Z") && text.contains("</svg>"));
+}
+
+#[test]
+fn energy_stands_as_a_stack_with_its_residual() {
+    let mut harness = Window::of(with_samples());
+    harness.get_by_label("Energy").click();
+    harness.run_steps(10);
+    harness.get_by_label("Energy over time");
+    harness.get_by_label_contains("Dashpot loss D_d: ");
+    harness.get_by_label("Energy residual ΔE");
+}
+
+#[test]
+fn a_film_that_is_recorded_can_be_ended_or_cancelled() {
+    use grainfall::ui::{FilmOrder, FilmState, Recorder, recording_ui};
+    let recorder = Recorder {
+        order: None,
+        state: FilmState::Recording {
+            pictures: 7,
+            time: 0.24,
+        },
+    };
+    let mut harness = Harness::builder().with_size([600.0, 200.0]).build_ui_state(
+        |ui, (recorder, asked): &mut (Recorder, Vec<Request>)| recording_ui(ui, recorder, asked),
+        (recorder, Vec::new()),
+    );
+    harness.run_steps(2);
+    harness.get_by_label("Recording: 0.24 s, 7 pictures");
+    harness.get_by_label("Stop and save").click();
+    harness.get_by_label("Cancel the film").click();
+    harness.run_steps(2);
+    let orders = [FilmOrder::End, FilmOrder::Cancel].map(Request::Film);
+    assert_eq!(harness.state().1, orders);
+    harness.state_mut().0.state = FilmState::Writing(3);
+    harness.run_steps(2);
+    harness.get_by_label("Writing the film: 3 pictures left");
+    assert!(harness.query_by_label("Stop and save").is_none());
+    harness.state_mut().0.state = FilmState::Idle;
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Cancel the film").is_none());
+}
+
+#[test]
+fn a_film_is_asked_for_in_the_menu_and_by_its_key() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("File").click();
+    harness.run_steps(3);
+    harness.get_by_label_contains("Record a film…").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::ChooseFilm]);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::R);
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked.len(), 2);
+}

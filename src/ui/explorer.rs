@@ -1,0 +1,409 @@
+//! Any measured quantity over time or over another, of this run and of those kept beside it, to look at and to take home.
+//!
+//! In: the samples. Out: a plot with the numbers under the pointer, the moment that is clicked on, and the plot as a file:
+//! SVG, PNG as it stands in the window, or all samples as CSV.
+
+use super::decimate::decimate;
+use super::plots::{round_marks, seek, shown, shown_ui, tick};
+use super::theme::{Palette, dash};
+use super::{Panel, Request, number};
+use crate::files::write_whole;
+use crate::measure::{Avalanche, Measure, Series};
+use crate::simulation::{DisplayUnit, Provenance, Simulation};
+use crate::sweep::chart;
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, Rect, RichText, Stroke, WidgetInfo, WidgetType};
+use egui_plot::{HoverPosition, Line, LineStyle, Plot, VLine};
+use std::io;
+use std::path::Path;
+
+/// Most points of a curve over another quantity than time.
+const MOST_POINTS: usize = 4000;
+/// A click this near to the start of an avalanche means it, in points.
+const NEAR: f64 = 7.0;
+
+/// The panel.
+#[derive(Debug, PartialEq)]
+pub struct Explorer {
+    /// Upright.
+    quantity: Measure,
+    /// Across; none for time.
+    over: Option<Measure>,
+}
+
+impl Default for Explorer {
+    fn default() -> Self {
+        Self {
+            quantity: Measure::KineticEnergy,
+            over: None,
+        }
+    }
+}
+
+/// One of the two axes: what it shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown(Option<Measure>);
+
+impl Shown {
+    /// All samples [SI unit].
+    fn values(self, series: &Series) -> &[f64] {
+        match self.0 {
+            None => series.time(),
+            Some(measure) => series.column(measure),
+        }
+    }
+
+    fn unit(self) -> DisplayUnit {
+        match self.0 {
+            None => number::display_unit("s"),
+            Some(measure) => number::display_unit(measure.quantity().unit),
+        }
+    }
+
+    /// Name and unit: `Surface angle θ [°]`.
+    fn label(self) -> String {
+        let name = self.0.map_or_else(|| "Time t".to_owned(), number::title);
+        match self.unit().name {
+            "" => name,
+            unit => format!("{name} [{unit}]"),
+        }
+    }
+
+    /// Name and SI unit, as in the files of a run.
+    fn column(self) -> String {
+        match self.0.map(Measure::quantity) {
+            None => "time [s]".to_owned(),
+            Some(quantity) => format!("{} [{}]", quantity.name, quantity.unit),
+        }
+    }
+}
+
+/// A plot that is to become a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Export {
+    x: Shown,
+    y: Shown,
+    runs: Vec<Run>,
+    /// Where it came from.
+    pub from: Provenance,
+    /// Where it stands in the window, in points.
+    pub rect: Rect,
+}
+
+/// All samples of a run [SI units].
+#[derive(Clone, Debug, PartialEq)]
+struct Run {
+    name: String,
+    time: Vec<f64>,
+    points: Vec<[f64; 2]>,
+}
+
+impl Panel for Explorer {
+    fn title(&self) -> &'static str {
+        "Any quantity"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let Some(world) = simulation.world() else {
+            ui.weak("There is nothing measured yet.");
+            return;
+        };
+        let measures = Measure::of(world);
+        measure_ui(ui, "Plot", &mut self.quantity, &measures);
+        over_ui(ui, &mut self.over, &measures);
+        let rect = self.plot_ui(ui, simulation, out);
+        let export = ui.button("Export…").on_hover_text(
+            "As an SVG or PNG picture, or all samples as CSV: the ending of the file's name decides",
+        );
+        if export.clicked() {
+            let export = self.export(simulation, rect);
+            out.push(Request::ExportPlot(Box::new(export)));
+        }
+    }
+}
+
+fn measure_ui(ui: &mut egui::Ui, label: &str, value: &mut Measure, measures: &[Measure]) {
+    combo_ui(ui, label, &number::title(*value), |ui| {
+        for measure in measures {
+            ui.selectable_value(value, *measure, number::title(*measure));
+        }
+    });
+}
+
+fn over_ui(ui: &mut egui::Ui, over: &mut Option<Measure>, measures: &[Measure]) {
+    let name = over.map_or_else(|| "Time t".to_owned(), number::title);
+    combo_ui(ui, "Over", &name, |ui| {
+        ui.selectable_value(over, None, "Time t");
+        for measure in measures {
+            ui.selectable_value(over, Some(*measure), number::title(*measure));
+        }
+    });
+}
+
+fn combo_ui(ui: &mut egui::Ui, label: &str, chosen: &str, choices: impl FnOnce(&mut egui::Ui)) {
+    ui.horizontal(|ui| {
+        ui.label(label);
+        let response = egui::ComboBox::from_id_salt(label)
+            .selected_text(chosen)
+            .width(ui.available_width() - 8.0)
+            .height(360.0)
+            .show_ui(ui, choices)
+            .response;
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, label));
+    });
+}
+
+impl Explorer {
+    fn axes(&self) -> (Shown, Shown) {
+        (Shown(self.over), Shown(Some(self.quantity)))
+    }
+
+    /// The curve of `series` in the units of the axes, with no more points than a plot shows.
+    fn points(&self, series: &Series, columns: usize) -> Vec<[f64; 2]> {
+        let (x, y) = self.axes();
+        let (fx, fy) = (x.unit().factor, y.unit().factor);
+        let (xs, ys) = (x.values(series), y.values(series));
+        if self.over.is_none() {
+            let end = series.time().last().copied().unwrap_or(0.0);
+            return decimate(series.time(), &(0.0..=end), 4 * columns, |i| ys[i] * fy);
+        }
+        let stride = series.len().div_ceil(MOST_POINTS).max(1);
+        let samples = (0..series.len()).step_by(stride);
+        let points = samples.map(|i| [xs[i] * fx, ys[i] * fy]);
+        points
+            .filter(|[x, y]| x.is_finite() && y.is_finite())
+            .collect()
+    }
+
+    /// Draws the plot; returns where.
+    fn plot_ui(&self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) -> Rect {
+        let palette = Palette::of(ui.visuals());
+        let columns = (ui.available_width() * ui.ctx().pixels_per_point()) as usize;
+        let (x, y) = self.axes();
+        let own = self.points(simulation.series(), columns);
+        let kept = simulation.past().kept.iter().map(|record| {
+            let name = format!("Run {}", record.number);
+            (name, self.points(&record.series, columns))
+        });
+        let kept: Vec<_> = kept.collect();
+        let over_time = self.over.is_none();
+        let avalanches = if over_time {
+            simulation.avalanches()
+        } else {
+            &[]
+        };
+        let shown = shown(simulation).filter(|_| over_time);
+        let units = [x.unit().name, y.unit().name];
+        // Another pair of quantities begins with bounds of its own.
+        let name = format!("{} over {}", y.label(), x.label());
+        ui.label(RichText::new(&name).strong());
+        let plot = Plot::new(name.as_str())
+            .height((0.26 * ui.ctx().content_rect().height()).clamp(130.0, 340.0))
+            .show_crosshair(true)
+            .allow_scroll(false)
+            .grid_color(palette.grid)
+            .x_grid_spacer(|input| round_marks(input, 5.5, 0.0))
+            .y_grid_spacer(|input| round_marks(input, 3.5, 0.0))
+            .x_axis_formatter(|mark, _| tick(mark.value, false))
+            .y_axis_formatter(|mark, _| tick(mark.value, false))
+            .label_formatter(move |hover| Some(cursor(hover, units)));
+        let drawn = plot.show(ui, |plot| {
+            for avalanche in avalanches {
+                plot.vline(
+                    VLine::new("avalanche", avalanche.start)
+                        .stroke(Stroke::new(1.0, palette.maximum))
+                        .style(LineStyle::dotted_dense())
+                        .allow_hover(false),
+                );
+            }
+            for (index, (name, points)) in kept.into_iter().enumerate() {
+                let style = LineStyle::Dashed {
+                    length: dash(index),
+                };
+                plot.line(Line::new(name, points).color(palette.kept).style(style));
+            }
+            plot.line(Line::new("this run", own).color(palette.angle).width(1.7));
+            if let Some(time) = shown {
+                shown_ui(plot, time, palette);
+            }
+        });
+        let response = drawn.response;
+        let latest = (y.values(simulation.series()).last())
+            .copied()
+            .unwrap_or(f64::NAN);
+        response.widget_info(|| {
+            let value = number::short(latest * y.unit().factor);
+            let text = format!("{name}, now {value}");
+            WidgetInfo::labeled(WidgetType::Image, true, text)
+        });
+        let pointer = response.interact_pointer_pos();
+        if let Some(pointer) = pointer.filter(|_| over_time && response.clicked()) {
+            let time = drawn.transform.value_from_position(pointer).x;
+            let reach = NEAR / drawn.transform.dpos_dvalue_x().abs();
+            out.extend(seek(simulation, near_start(avalanches, time, reach)));
+        }
+        response.rect
+    }
+
+    fn export(&self, simulation: &Simulation, rect: Rect) -> Export {
+        let (x, y) = self.axes();
+        let run = |name: String, series: &Series| Run {
+            name,
+            time: series.time().to_vec(),
+            points: (x.values(series).iter().zip(y.values(series)))
+                .map(|(x, y)| [*x, *y])
+                .collect(),
+        };
+        let mut runs = vec![run("this run".to_owned(), simulation.series())];
+        let kept = simulation.past().kept.iter();
+        runs.extend(kept.map(|record| run(format!("run {}", record.number), &record.series)));
+        let scene = simulation.scene();
+        let from = simulation.world().map_or_else(
+            || Provenance::of_scene(scene),
+            |world| Provenance::of(scene, world),
+        );
+        Export {
+            x,
+            y,
+            runs,
+            from,
+            rect,
+        }
+    }
+}
+
+/// The start of the avalanche within `reach` of `time` [s], else that time.
+fn near_start(avalanches: &[Avalanche], time: f64, reach: f64) -> f64 {
+    let starts = avalanches.iter().map(|avalanche| avalanche.start);
+    let near = starts.filter(|start| (start - time).abs() < reach);
+    let nearest = near.min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()));
+    nearest.unwrap_or(time)
+}
+
+/// The numbers under the pointer.
+fn cursor(hover: &HoverPosition, [x, y]: [&str; 2]) -> String {
+    let (name, at) = match hover {
+        HoverPosition::NearDataPoint {
+            plot_name,
+            position,
+            ..
+        } => (*plot_name, *position),
+        HoverPosition::Elsewhere { position } => ("", *position),
+    };
+    let numbers = format!("{} {x}\n{} {y}", number::short(at.x), number::short(at.y));
+    if name.is_empty() {
+        numbers
+    } else {
+        format!("{name}\n{numbers}")
+    }
+}
+
+impl Export {
+    /// Writes it as SVG or CSV, as the ending of `path` says; a table's origin stands in a file beside it.
+    ///
+    /// # Errors
+    /// Where it cannot be drawn or written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        if path.extension().is_none_or(|ending| ending != "csv") {
+            let svg = self.from.in_svg(&self.svg()?);
+            return write_whole(path, |file| file.write_all(svg.as_bytes()));
+        }
+        let text = self.csv()?;
+        write_whole(path, |file| file.write_all(text.as_bytes()))?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let beside = path.with_file_name(format!("{name}-metadata.json"));
+        write_whole(&beside, |file| self.from.write_tables(&[&name], file))
+    }
+
+    fn svg(&self) -> io::Result<String> {
+        let (fx, fy) = (self.x.unit().factor, self.y.unit().factor);
+        let line = |run: &Run| {
+            let points = run.points.iter().map(|[x, y]| (x * fx, y * fy));
+            let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
+            chart::Line {
+                name: run.name.clone(),
+                points: points.filter(finite).collect(),
+                is_law: false,
+            }
+        };
+        let plot = chart::Plot {
+            file: String::new(),
+            title: format!("{} over {}", self.y.label(), self.x.label()),
+            x: chart::Axis::linear(&self.x.label()),
+            y: chart::Axis::linear(&self.y.label()),
+            lines: self.runs.iter().map(line).collect(),
+        };
+        if !plot.has_points() {
+            return Err(io::Error::other("there is nothing to draw yet"));
+        }
+        plot.draw()
+            .map_err(|reason| io::Error::other(reason.to_string()))
+    }
+
+    fn csv(&self) -> io::Result<String> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let mut header = vec!["run".to_owned(), "time [s]".to_owned()];
+        header.extend([self.x, self.y].map(Shown::column));
+        if self.x.0.is_none() {
+            header.remove(2);
+        }
+        table.write_record(&header)?;
+        for run in &self.runs {
+            for (time, [x, y]) in run.time.iter().zip(&run.points) {
+                let mut row = vec![run.name.clone(), time.to_string()];
+                if self.x.0.is_some() {
+                    row.push(x.to_string());
+                }
+                row.push(y.to_string());
+                table.write_record(&row)?;
+            }
+        }
+        let bytes = table.into_inner().map_err(|e| e.into_error())?;
+        String::from_utf8(bytes).map_err(io::Error::other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn export(over: Option<Measure>) -> Export {
+        Export {
+            x: Shown(over),
+            y: Shown(Some(Measure::SurfaceAngle)),
+            runs: vec![Run {
+                name: "this run".to_owned(),
+                time: vec![0.0, 0.5],
+                points: vec![[0.0, 0.25], [0.5, f64::NAN]],
+            }],
+            from: Provenance::of_scene(&crate::scene::Scene::open("small-drum").unwrap()),
+            rect: Rect::NOTHING,
+        }
+    }
+
+    #[test]
+    fn table_holds_every_sample_in_si_units() {
+        let text = export(None).csv().unwrap();
+        let expected = "run,time [s],surface angle [rad]\nthis run,0,0.25\nthis run,0.5,NaN\n";
+        assert_eq!(text, expected);
+        let over = export(Some(Measure::MeanSpeed)).csv().unwrap();
+        assert!(over.starts_with("run,time [s],mean speed [m/s],surface angle [rad]\n"));
+        assert!(over.contains("this run,0.5,0.5,NaN"));
+    }
+
+    #[test]
+    fn drawing_shows_units_of_the_panel_and_leaves_out_what_is_no_number() {
+        let svg = export(None).svg().unwrap();
+        assert!(svg.contains("Surface angle θ [°]") && svg.contains("Time t [s]"));
+        assert!(!svg.contains("NaN"));
+        let mut empty = export(None);
+        empty.runs[0].points.clear();
+        assert!(empty.svg().is_err());
+    }
+}

@@ -1,0 +1,136 @@
+//! Claims about films: every picture of one stands at its simulated time, and a film is whole or not there.
+
+use crate::view::studio;
+use bevy::math::UVec2;
+use bevy::prelude::*;
+use grainfall::scene::Scene;
+use grainfall::simulation::{
+    BedStore, Command, DriverKind, Options, Simulation, SimulationPlugin, Status,
+};
+use grainfall::ui::{FilmOrder, FilmState, Recorder};
+use grainfall::view::{FILM_RATE, ViewPlugin};
+use grainfall::window::RecordingPlugin;
+use grainfall::window::picture::{CanvasPlugin, make_ready, offscreen_plugins};
+use std::path::Path;
+
+/// A laboratory without panels that draws a grain that falls.
+fn laboratory() -> App {
+    let options = Options {
+        driver: DriverKind::Inline,
+        threads: 1,
+        autoplay: false,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    let mut app = App::new();
+    app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
+        .add_plugins((
+            CanvasPlugin(UVec2::new(160, 120)),
+            SimulationPlugin,
+            ViewPlugin,
+            RecordingPlugin,
+        ));
+    let scene = Scene::open("bouncing-grain").unwrap();
+    app.insert_resource(Simulation::open(scene, options));
+    make_ready(&mut app);
+    until(&mut app, |app| {
+        let status = app.world().resource::<Simulation>().status().clone();
+        !matches!(status, Status::Preparing { .. })
+    });
+    app
+}
+
+/// Updates until `done`.
+fn until(app: &mut App, done: impl Fn(&App) -> bool) {
+    for _ in 0..5000 {
+        app.update();
+        if done(app) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    panic!("it does not come to an end");
+}
+
+fn order(app: &mut App, order: FilmOrder) {
+    app.world_mut().resource_mut::<Recorder>().order = Some(order);
+}
+
+fn state(app: &App) -> FilmState {
+    app.world().resource::<Recorder>().state
+}
+
+fn pictures(app: &App) -> usize {
+    match state(app) {
+        FilmState::Recording { pictures, .. } => pictures,
+        _ => 0,
+    }
+}
+
+fn record(app: &mut App, path: &Path, count: usize) {
+    let mut simulation = app.world_mut().resource_mut::<Simulation>();
+    simulation.send(Command::Speed(1.0));
+    simulation.send(Command::Play);
+    order(app, FilmOrder::Begin(path.to_owned()));
+    until(app, |app| pictures(app) >= count);
+}
+
+#[test]
+fn film_has_a_picture_for_every_frame_of_simulated_time() {
+    let Some(_studio) = studio("film_has_a_picture_for_every_frame_of_simulated_time") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film");
+    let mut app = laboratory();
+    let begun = app.world().resource::<Simulation>().world().unwrap().time();
+    record(&mut app, &path, 4);
+    let FilmState::Recording { pictures, time } = state(&app) else {
+        panic!("{:?}", state(&app));
+    };
+    // One 25th of a second from picture to picture, to a step.
+    let expected = (pictures - 1) as f64 / f64::from(FILM_RATE);
+    assert!((time - expected).abs() < 1e-3, "{time} {expected}");
+    // The run waits for its next picture.
+    let world = app
+        .world()
+        .resource::<Simulation>()
+        .world()
+        .unwrap()
+        .clone();
+    let reached = (world.time() - begun) * f64::from(FILM_RATE);
+    assert!(reached < pictures as f64 + 0.01, "{reached}");
+    order(&mut app, FilmOrder::End);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    let written: Vec<_> = std::fs::read_dir(&path).unwrap().collect();
+    assert!(written.len() >= 4, "{}", written.len());
+    let [first, last] = ["00000.png", "00003.png"].map(|name| {
+        let picture = image::open(path.join(name)).unwrap().to_rgb8();
+        assert_eq!(picture.dimensions(), (160, 120));
+        picture
+    });
+    assert!(first != last, "the grain has fallen");
+    // Afterwards the run goes on by itself.
+    let before = app.world().resource::<Simulation>().step();
+    until(&mut app, |app| {
+        app.world().resource::<Simulation>().step() > before
+    });
+}
+
+#[test]
+fn cancelled_film_leaves_nothing_and_lets_the_run_go() {
+    let Some(_studio) = studio("cancelled_film_leaves_nothing_and_lets_the_run_go") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = laboratory();
+    record(&mut app, &folder.path().join("film.gif"), 2);
+    order(&mut app, FilmOrder::Cancel);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    // A film of a kind that there is not is refused.
+    order(&mut app, FilmOrder::Begin(folder.path().join("film.avi")));
+    app.update();
+    app.update();
+    assert_eq!(state(&app), FilmState::Idle);
+}
