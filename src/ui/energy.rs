@@ -47,7 +47,7 @@ impl Stack {
         // The newest sample is always drawn.
         let newest = series.len().saturating_sub(1);
         let samples: Vec<usize> = (0..series.len())
-            .filter(|i| (newest - i) % stride == 0)
+            .filter(|i| (newest - i).is_multiple_of(stride))
             .collect();
         // What has no meaning in a scene takes no room.
         let value = |measure: Measure, i: usize| {

@@ -364,7 +364,9 @@ impl Export {
                 table.write_record(&row)?;
             }
         }
-        let bytes = table.into_inner().map_err(|e| e.into_error())?;
+        let bytes = table
+            .into_inner()
+            .map_err(csv::IntoInnerError::into_error)?;
         String::from_utf8(bytes).map_err(io::Error::other)
     }
 }
