@@ -918,7 +918,9 @@ fn energy_stands_as_a_stack_with_its_residual() {
     harness.run_steps(10);
     harness.get_by_label("Energy over time");
     harness.get_by_label_contains("Dashpot loss D_d: ");
-    harness.get_by_label("Energy residual ΔE");
+    // Here, and among the results.
+    let residuals = harness.get_all_by_label("Energy residual ΔE").count();
+    assert_eq!(residuals, 2);
 }
 
 #[test]

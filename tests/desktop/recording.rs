@@ -67,11 +67,12 @@ fn pictures(app: &App) -> usize {
     }
 }
 
+/// Records the state that stands, then what follows, until there are `count` pictures.
 fn record(app: &mut App, path: &Path, count: usize) {
-    let mut simulation = app.world_mut().resource_mut::<Simulation>();
-    simulation.send(Command::Speed(1.0));
-    simulation.send(Command::Play);
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Speed(1.0));
     order(app, FilmOrder::Begin(path.to_owned()));
+    until(app, |app| pictures(app) == 1);
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Play);
     until(app, |app| pictures(app) >= count);
 }
 
