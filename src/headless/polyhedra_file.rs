@@ -9,13 +9,15 @@ use crate::world::{Polyhedra, Polyhedron, World};
 use glam::{DMat3, DVec3};
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::iter::once;
 
 /// VTK's numbers of the kinds of cell.
 const VERTEX: u8 = 1;
 const POLYHEDRON: u8 = 42;
 
-/// Writes the grains of `world`, whose shapes are `polyhedra` and which come `from` there, to `file` with `radius` and `rounding` [m], `velocity` [m/s],
-/// `spin` [rad/s] and `species`.
+/// Writes the grains of `world`, whose shapes are `polyhedra` and which come `from` there, to `file` with `radius` and
+/// `rounding` [m], `velocity` [m/s], `spin` [rad/s] and `species`. Number by number: the file is larger than the world, and is
+/// never held whole.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -26,103 +28,145 @@ pub fn write_polyhedra(
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let grains = &world.grains;
-    let cells = Cells::of(world, polyhedra);
-    let rounding = (0..grains.len()).map(|i| polyhedra.shape_of(i).rounding);
-    let species = grains.species.iter().map(|species| i64::from(species.0));
-    let points = [Array::vectors("points", &cells.points)];
-    let topology = [
-        Array::integers("connectivity", cells.connectivity),
-        Array::integers("offsets", cells.offsets),
-        Array::bytes("types", cells.types),
-        Array::integers("faces", cells.faces),
-        Array::integers("faceoffsets", cells.face_offsets),
-    ];
-    let data = [
-        Array::scalars("radius", grains.radius.iter().copied()),
-        Array::scalars("rounding", rounding),
-        Array::vectors("velocity", &grains.velocity),
-        Array::vectors("spin", &grains.spin),
-        Array::integers("species", species),
+    let cells = Cells { world, polyhedra };
+    let points = cells.shapes().map(|shape| shape.vertices.len()).sum();
+    let faces = cells.shapes().map(face_entries).sum();
+    let rounding = || cells.shapes().map(|shape| shape.rounding);
+    let species = || grains.species.iter().map(|species| i64::from(species.0));
+    let elements = [
+        (
+            "Points",
+            vec![Array::vectors("points", points, || cells.points())],
+        ),
+        (
+            "Cells",
+            vec![
+                Array::integers("connectivity", points, || cells.connectivity()),
+                Array::integers("offsets", grains.len(), || cells.offsets()),
+                Array::bytes("types", grains.len(), || cells.shapes().map(kind)),
+                Array::integers("faces", faces, || cells.faces()),
+                Array::integers("faceoffsets", grains.len(), || cells.face_offsets()),
+            ],
+        ),
+        (
+            "CellData",
+            vec![
+                Array::scalars("radius", grains.len(), || grains.radius.iter().copied()),
+                Array::scalars("rounding", grains.len(), rounding),
+                Array::vectors("velocity", grains.len(), || grains.velocity.iter().copied()),
+                Array::vectors("spin", grains.len(), || grains.spin.iter().copied()),
+                Array::integers("species", grains.len(), species),
+            ],
+        ),
     ];
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\">\n<UnstructuredGrid>\n",
     );
-    let counts = (cells.points.len(), grains.len());
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">",
-        counts.0, counts.1
+        "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{}\">",
+        grains.len()
     );
     let mut offset = 0;
-    for (element, arrays) in [
-        ("Points", points.as_slice()),
-        ("Cells", topology.as_slice()),
-        ("CellData", data.as_slice()),
-    ] {
+    for (element, arrays) in &elements {
         let _ = writeln!(text, "<{element}>");
         for array in arrays {
             let _ = writeln!(text, "{}", array.element(offset));
-            offset += array.size();
+            offset += size_of::<u64>() + array.size;
         }
         let _ = writeln!(text, "</{element}>");
     }
     text.push_str("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
     file.write_all(from.in_xml(&text).as_bytes())?;
-    for array in points.iter().chain(&topology).chain(&data) {
-        file.write_all(&(array.bytes.len() as u64).to_le_bytes())?;
-        file.write_all(&array.bytes)?;
+    for array in elements.iter().flat_map(|(_, arrays)| arrays) {
+        file.write_all(&(array.size as u64).to_le_bytes())?;
+        (array.write)(file)?;
     }
     file.write_all(b"\n</AppendedData>\n</VTKFile>\n")
 }
 
+/// Bytes that are gathered before they are written.
+const PIECE: usize = 1 << 16;
+
+/// Writes the numbers of an array.
+type Writing<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
+
 /// One array of numbers, as it stands in the file behind its length.
-struct Array {
+struct Array<'a> {
     name: &'static str,
     kind: &'static str,
     components: usize,
-    bytes: Vec<u8>,
+    /// Bytes that its numbers take.
+    size: usize,
+    write: Box<Writing<'a>>,
 }
 
-impl Array {
-    fn scalars(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
+impl<'a> Array<'a> {
+    /// `count` numbers of `N` bytes each, made anew whenever they are written.
+    fn new<const N: usize, I: Iterator<Item = [u8; N]>>(
+        name: &'static str,
+        kind: &'static str,
+        count: usize,
+        numbers: impl Fn() -> I + 'a,
+    ) -> Self {
         Self {
             name,
-            kind: "Float64",
+            kind,
             components: 1,
-            bytes: values.flat_map(f64::to_le_bytes).collect(),
+            size: N * count,
+            write: Box::new(move |file| {
+                let mut piece = Vec::with_capacity(PIECE + N);
+                for number in numbers() {
+                    piece.extend_from_slice(&number);
+                    if piece.len() >= PIECE {
+                        file.write_all(&piece)?;
+                        piece.clear();
+                    }
+                }
+                file.write_all(&piece)
+            }),
         }
     }
 
-    fn vectors(name: &'static str, values: &[DVec3]) -> Self {
+    fn scalars<I: Iterator<Item = f64>>(
+        name: &'static str,
+        count: usize,
+        values: impl Fn() -> I + 'a,
+    ) -> Self {
+        let numbers = move || values().map(f64::to_le_bytes);
+        Self::new(name, "Float64", count, numbers)
+    }
+
+    fn vectors<I: Iterator<Item = DVec3>>(
+        name: &'static str,
+        count: usize,
+        values: impl Fn() -> I + 'a,
+    ) -> Self {
+        let numbers = move || values().flat_map(|v| v.to_array());
         Self {
             components: 3,
-            ..Self::scalars(name, values.iter().flat_map(DVec3::to_array))
+            ..Self::scalars(name, 3 * count, numbers)
         }
     }
 
-    fn integers(name: &'static str, values: impl IntoIterator<Item = i64>) -> Self {
-        Self {
-            name,
-            kind: "Int64",
-            components: 1,
-            bytes: values.into_iter().flat_map(i64::to_le_bytes).collect(),
-        }
+    fn integers<I: Iterator<Item = i64>>(
+        name: &'static str,
+        count: usize,
+        values: impl Fn() -> I + 'a,
+    ) -> Self {
+        let numbers = move || values().map(i64::to_le_bytes);
+        Self::new(name, "Int64", count, numbers)
     }
 
-    fn bytes(name: &'static str, bytes: Vec<u8>) -> Self {
-        Self {
-            name,
-            kind: "UInt8",
-            components: 1,
-            bytes,
-        }
-    }
-
-    /// Bytes it takes in the file.
-    fn size(&self) -> usize {
-        size_of::<u64>() + self.bytes.len()
+    fn bytes<I: Iterator<Item = u8>>(
+        name: &'static str,
+        count: usize,
+        values: impl Fn() -> I + 'a,
+    ) -> Self {
+        let numbers = move || values().map(u8::to_le_bytes);
+        Self::new(name, "UInt8", count, numbers)
     }
 
     /// The element that describes it.
@@ -140,57 +184,82 @@ impl Array {
     }
 }
 
-/// The grains as VTK numbers them.
-#[derive(Default)]
-struct Cells {
-    points: Vec<DVec3>,
-    /// The points of each cell, one cell after another.
-    connectivity: Vec<i64>,
-    /// Where each cell's points end.
-    offsets: Vec<i64>,
-    types: Vec<u8>,
-    /// For each polyhedron its number of faces, then for each of them its number of points and these.
-    faces: Vec<i64>,
-    /// Where each cell's faces end; −1 for a cell that is no polyhedron.
-    face_offsets: Vec<i64>,
+/// The grains as VTK numbers them: each cell has points of its own, one cell's after another's.
+#[derive(Clone, Copy)]
+struct Cells<'a> {
+    world: &'a World,
+    polyhedra: &'a Polyhedra,
 }
 
-impl Cells {
-    fn of(world: &World, polyhedra: &Polyhedra) -> Self {
-        let solids: Vec<Vec<DVec3>> = polyhedra.shapes.iter().map(solid).collect();
-        let mut cells = Self::default();
-        for i in 0..world.grains.len() {
-            let turn = polyhedra.orientation[i];
-            let corners = &solids[polyhedra.shape[i] as usize];
-            let placed = corners.iter().map(|x| world.grains.position[i] + turn * *x);
-            cells.push(polyhedra.shape_of(i), placed);
-        }
-        cells
+#[expect(
+    clippy::cast_possible_wrap,
+    reason = "numbers of points in memory are far below 2⁶³"
+)]
+impl<'a> Cells<'a> {
+    /// The shape of each cell.
+    fn shapes(self) -> impl Iterator<Item = &'a Polyhedron> {
+        (0..self.world.grains.len()).map(move |i| self.polyhedra.shape_of(i))
     }
 
-    #[expect(
-        clippy::cast_possible_wrap,
-        reason = "numbers of points in memory are far below 2⁶³"
-    )]
-    fn push(&mut self, shape: &Polyhedron, corners: impl Iterator<Item = DVec3>) {
-        let first = self.points.len();
-        self.points.extend(corners);
-        let own = first as i64..self.points.len() as i64;
-        self.connectivity.extend(own);
-        self.offsets.push(self.connectivity.len() as i64);
-        if shape.faces.is_empty() {
-            self.types.push(VERTEX);
-            self.face_offsets.push(-1);
-            return;
-        }
-        self.types.push(POLYHEDRON);
-        self.faces.push(shape.faces.len() as i64);
-        for face in &shape.faces {
-            self.faces.push(face.len() as i64);
-            let corners = face.iter().map(|&k| first as i64 + i64::from(k));
-            self.faces.extend(corners);
-        }
-        self.face_offsets.push(self.faces.len() as i64);
+    /// The points of each cell [m].
+    fn points(self) -> impl Iterator<Item = DVec3> {
+        self.shapes().enumerate().flat_map(move |(i, shape)| {
+            let turn = self.polyhedra.orientation[i];
+            let centre = self.world.grains.position[i];
+            solid(shape).into_iter().map(move |x| centre + turn * x)
+        })
+    }
+
+    /// The points of each cell.
+    fn connectivity(self) -> impl Iterator<Item = i64> {
+        0..self.offsets().last().unwrap_or(0)
+    }
+
+    /// Where each cell's points end.
+    fn offsets(self) -> impl Iterator<Item = i64> {
+        self.shapes().scan(0, |end, shape| {
+            *end += shape.vertices.len() as i64;
+            Some(*end)
+        })
+    }
+
+    /// For each polyhedron its number of faces, then for each of them its number of points and these.
+    fn faces(self) -> impl Iterator<Item = i64> {
+        let shapes = self.shapes().zip(self.offsets());
+        let polyhedra = shapes.filter(|(shape, _)| !shape.faces.is_empty());
+        polyhedra.flat_map(|(shape, end)| {
+            let first = end - shape.vertices.len() as i64;
+            let faces = shape.faces.iter().flat_map(move |face| {
+                let corners = face.iter().map(move |&corner| first + i64::from(corner));
+                once(face.len() as i64).chain(corners)
+            });
+            once(shape.faces.len() as i64).chain(faces)
+        })
+    }
+
+    /// Where each cell's faces end; −1 for a cell that is no polyhedron.
+    fn face_offsets(self) -> impl Iterator<Item = i64> {
+        self.shapes().scan(0, |end, shape| {
+            let entries = face_entries(shape) as i64;
+            *end += entries;
+            Some(if entries == 0 { -1 } else { *end })
+        })
+    }
+}
+
+/// Numbers that tell the faces of a cell of this shape.
+fn face_entries(shape: &Polyhedron) -> usize {
+    let faces = shape.faces.iter();
+    let entries: usize = faces.map(|face| 1 + face.len()).sum();
+    if entries == 0 { 0 } else { 1 + entries }
+}
+
+/// The kind of a cell of this shape.
+fn kind(shape: &Polyhedron) -> u8 {
+    if shape.faces.is_empty() {
+        VERTEX
+    } else {
+        POLYHEDRON
     }
 }
 
