@@ -119,7 +119,7 @@ impl Solver {
     }
 
     fn advance_polyhedra(&mut self, world: &mut World, steps: u64) -> Result<(), Fault> {
-        self.exchange(|solver| solver.polyhedra.load(world));
+        self.exchange(|solver| solver.polyhedra.load(solver.processor, world));
         let Self {
             team,
             processor,

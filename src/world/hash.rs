@@ -80,7 +80,9 @@ impl World {
                 vectors(&mut number, [*momentum]);
             }
             for contact in &polyhedra.features {
-                number(contact.overlap);
+                [contact.overlap, contact.dashpot]
+                    .into_iter()
+                    .for_each(&mut number);
                 vectors(&mut number, [contact.spring]);
             }
         }

@@ -38,6 +38,8 @@ pub struct FeatureContact {
     pub feature: Feature,
     /// Overlap of the rounded features at the last force evaluation [m].
     pub overlap: f64,
+    /// What the normal dashpot added to the spring's push then [N].
+    pub dashpot: f64,
     /// Tangential spring ξ [m].
     pub spring: DVec3,
     /// Stiffness `k_t` with which the spring was last stretched [N/m].

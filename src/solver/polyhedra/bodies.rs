@@ -2,6 +2,7 @@
 //!
 //! Vertices are turned anew from the body frame in every step, so that shapes never drift.
 
+use super::super::lanes::{Lanes, Quad, Work, prefetch};
 use super::super::row::{Row, length_squared, row, vector};
 use super::nearest::Places;
 use crate::world::{Polyhedron, World};
@@ -47,6 +48,8 @@ pub struct Place {
     pub edge: u32,
     /// First face.
     pub face: u32,
+    /// First entry of the faces' outlines.
+    pub corner: u32,
 }
 
 /// The shapes of all bodies, feature by feature.
@@ -55,7 +58,7 @@ pub struct Shapes {
     /// Where each body's features begin.
     pub places: Vec<Place>,
     /// Vertices along the body axes [m].
-    pub body_vertices: Vec<Row>,
+    pub body_vertices: Vec<[f64; 3]>,
     /// Outward normals along the body axes; the face's first vertex, by its number in the body.
     pub body_normals: Vec<(DVec3, u16)>,
     /// Ends of the edges, by their numbers in the body.
@@ -98,13 +101,14 @@ impl Shapes {
             vertex: self.body_vertices.len() as u32,
             edge: self.edges.len() as u32,
             face: self.body_normals.len() as u32,
+            corner: self.loops.len() as u32,
         }
     }
 
     fn push(&mut self, shape: &Polyhedron) {
         self.places.push(self.end());
         self.body_vertices
-            .extend(shape.vertices.iter().map(|&v| row(v, 0.0)));
+            .extend(shape.vertices.iter().map(DVec3::to_array));
         self.edges.extend_from_slice(&shape.edges);
         for face in &shape.faces {
             self.loop_starts.push(self.loops.len() as u32);
@@ -118,27 +122,36 @@ impl Shapes {
         }
     }
 
+    /// Whether body `i` is a sphere: a core of one vertex.
+    pub fn is_sphere(&self, i: usize) -> bool {
+        self.places[i + 1].vertex - self.places[i].vertex == 1
+    }
+
     /// Puts the vertices and planes of body `i` where `body` is.
     #[inline(always)]
-    pub fn place(&self, i: usize, body: &Body, vertices: &mut [Row], planes: &mut [Row]) {
+    pub fn place<Q: Quad>(
+        &self,
+        processor: Q::Processor,
+        i: usize,
+        body: &Body,
+        vertices: &mut [Row],
+        planes: &mut [Row],
+    ) {
         let (from, to) = (self.places[i], self.places[i + 1]);
-        let [x, y, z] = axes(body.orientation);
-        let centre = body.position;
+        let [cx, cy, cz, _] = body.position;
+        let centre = Q::load(processor, &[cx, cy, cz, 0.0]);
+        let [x, y, z] = axes(body.orientation).map(|[x, y, z]| Q::load(processor, &[x, y, z, 0.0]));
         let turned = |v: [f64; 3]| {
-            [
-                x[0] * v[0] + y[0] * v[1] + z[0] * v[2],
-                x[1] * v[0] + y[1] * v[1] + z[1] * v[2],
-                x[2] * v[0] + y[2] * v[1] + z[2] * v[2],
-            ]
+            let along = v.map(|x| Q::repeat(processor, x));
+            x * along[0] + y * along[1] + z * along[2]
         };
         let own = &self.body_vertices[from.vertex as usize..to.vertex as usize];
         for (vertex, own) in vertices.iter_mut().zip(own) {
-            let t = turned([own[0], own[1], own[2]]);
-            *vertex = [centre[0] + t[0], centre[1] + t[1], centre[2] + t[2], 0.0];
+            *vertex = (centre + turned(*own)).row();
         }
         let own = &self.body_normals[from.face as usize..to.face as usize];
         for (plane, (normal, corner)) in planes.iter_mut().zip(own) {
-            let n = turned(normal.to_array());
+            let n = turned(normal.to_array()).row();
             let v = vertices[usize::from(*corner)];
             *plane = [n[0], n[1], n[2], n[0] * v[0] + n[1] * v[1] + n[2] * v[2]];
         }
@@ -155,10 +168,44 @@ impl Shapes {
         ]
     }
 
+    /// Ends of the edges of body `i`, by their numbers in the body.
+    #[inline(always)]
+    pub fn edges_of(&self, i: usize) -> &[[u16; 2]] {
+        let [_, edges, _] = self.features_of(i);
+        &self.edges[edges]
+    }
+
     /// Vertices of a face of the tables, by their numbers in the body.
     #[inline(always)]
     pub fn outline(&self, face: usize) -> &[u16] {
         &self.loops[self.loop_starts[face] as usize..self.loop_starts[face + 1] as usize]
+    }
+}
+
+/// Puts the vertices and planes of all bodies where those are.
+pub struct Placing<'a> {
+    /// The shapes.
+    pub shapes: &'a Shapes,
+    /// Every body.
+    pub bodies: &'a [Body],
+    /// Where to put their vertices.
+    pub vertices: &'a mut [Row],
+    /// Where to put their faces' planes.
+    pub planes: &'a mut [Row],
+}
+
+impl Work for Placing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) {
+        for (i, body) in self.bodies.iter().enumerate() {
+            let [vertices, _, faces] = self.shapes.features_of(i);
+            let vertices = &mut self.vertices[vertices];
+            let planes = &mut self.planes[faces];
+            self.shapes
+                .place::<N::Quad>(processor, i, body, vertices, planes);
+        }
     }
 }
 
@@ -177,6 +224,17 @@ impl<'a> Geometry<'a> {
     pub fn vertices_of(&self, i: usize) -> &'a [Row] {
         let [vertices, ..] = self.shapes.features_of(i);
         &self.places.vertices[vertices]
+    }
+
+    /// Asks for all that the features of body `i` are measured by.
+    #[inline(always)]
+    pub fn fetch(&self, i: usize) {
+        let (shapes, [vertices, _, faces]) = (self.shapes, self.shapes.features_of(i));
+        let corners = shapes.places[i].corner as usize..shapes.places[i + 1].corner as usize;
+        prefetch::<_, 16>(&self.places.vertices[vertices]);
+        prefetch::<_, 8>(&self.places.planes[faces.clone()]);
+        prefetch::<_, 2>(&shapes.loop_starts[faces]);
+        prefetch::<_, 4>(&shapes.loops[corners]);
     }
 
     /// The planes of its faces.

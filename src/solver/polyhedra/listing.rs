@@ -8,23 +8,67 @@
 
 use super::super::lanes::{Lanes, Row, dot, side_by_side};
 use super::super::row::{sub, vector};
-use super::bodies::{Geometry, Shapes};
+use super::bodies::{Geometry, Place, Shapes};
 use super::nearest::{EdgeJob, FaceJob, Jobs, Nearest, OutlineJob, Places};
 use crate::world::Feature;
 
-/// The features of a pair that may touch, in order.
-#[derive(Clone, Debug, Default)]
-pub struct List {
+/// Two features that may touch before long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Listed {
     /// Which.
-    pub features: Vec<Feature>,
-    /// What to compute for them, numbered in that order.
-    pub jobs: Jobs,
+    pub feature: Feature,
+    /// Of two edges their ends, by their numbers in the bodies; of a vertex and a face the edges of its outline that matter,
+    /// bit by bit in two halves: none where the vertex is over the inside.
+    marks: [u16; 4],
+}
+
+impl Listed {
+    /// A vertex and a face, with those edges of its outline that matter.
+    pub fn face(feature: Feature, sides: u32) -> Self {
+        let marks = [sides as u16, (sides >> 16) as u16, 0, 0];
+        Self { feature, marks }
+    }
+
+    /// Two features of `bodies` wherever they are: of a face the whole outline matters.
+    pub fn of(shapes: &Shapes, bodies: [usize; 2], feature: Feature) -> Self {
+        match feature {
+            Feature::VertexFace(..) | Feature::FaceVertex(..) => Self::face(feature, u32::MAX),
+            Feature::VertexVertex => Self::edges(feature, [0; 2], [0; 2]),
+            Feature::EdgeEdge(first, second) => {
+                let [along, across] = bodies.map(|body| shapes.edges_of(body));
+                let (along, across) = (along[usize::from(first)], across[usize::from(second)]);
+                Self::edges(feature, along, across)
+            }
+        }
+    }
+
+    /// Two edges and their ends.
+    fn edges(feature: Feature, [p, q]: [u16; 2], [r, s]: [u16; 2]) -> Self {
+        let marks = [p, q, r, s];
+        Self { feature, marks }
+    }
+
+    /// Whether it is a vertex and a face: these come before edges.
+    #[inline(always)]
+    pub fn is_face(&self) -> bool {
+        matches!(
+            self.feature,
+            Feature::VertexFace(..) | Feature::FaceVertex(..)
+        )
+    }
+
+    /// Edges of the outline that matter, bit by bit.
+    #[inline(always)]
+    fn sides(&self) -> u32 {
+        u32::from(self.marks[0]) | u32::from(self.marks[1]) << 16
+    }
 }
 
 /// What a search needs again and again.
 #[derive(Default)]
 pub struct Search {
-    candidates: List,
+    candidates: Vec<Listed>,
+    jobs: Jobs,
     results: Vec<Nearest>,
     near: [NearFeatures; 2],
     marks: Vec<bool>,
@@ -67,8 +111,8 @@ impl Axis {
 pub struct Wanted {
     /// The two bodies.
     pub bodies: [usize; 2],
-    /// The direction that parted them best last time; zero at the first time.
-    pub axis: Row,
+    /// The direction that parted them best last time, or about that; zero at the first time.
+    pub axis: [f64; 3],
     /// Distance of cores at which they touch [m].
     pub touch: f64,
     /// How far the list reaches beyond [m].
@@ -81,7 +125,7 @@ pub struct Found {
     /// How far the two may move relative to each other before the list must be made anew [m].
     pub slack: f64,
     /// The direction that parts them best.
-    pub axis: Row,
+    pub axis: [f64; 3],
 }
 
 /// Smallest and largest coordinate of some vertices along a direction.
@@ -141,16 +185,15 @@ impl Search {
         processor: N::Processor,
         geometry: &Geometry<'_>,
         wanted: &Wanted,
-        list: &mut List,
+        list: &mut Vec<Listed>,
     ) -> Found {
         list.clear();
         let vertices = wanted.bodies.map(|body| geometry.vertices_of(body));
         let planes = wanted.bodies.map(|body| geometry.planes_of(body));
         let axis = parting_axis::<N>(processor, vertices, planes, wanted.axis);
-        let [x, y, z] = axis.direction;
         let mut found = Found {
             slack: wanted.skin,
-            axis: [x, y, z, 0.0],
+            axis: axis.direction,
         };
         let cutoff = wanted.touch + wanted.skin;
         if axis.gap() > cutoff {
@@ -161,22 +204,21 @@ impl Search {
         self.collect_candidates(geometry.shapes, wanted);
         self.results.clear();
         self.results
-            .resize(self.candidates.features.len(), Nearest::default());
-        let jobs = &self.candidates.jobs;
-        jobs.run::<N, true>(processor, &geometry.places, &mut self.results);
+            .resize(self.candidates.len(), Nearest::default());
+        self.jobs
+            .run::<N, true>(processor, &geometry.places, &mut self.results);
         let mut nearest = f64::INFINITY;
         for result in &self.results {
             let [nx, ny, nz, distance] = result.normal;
             if distance < nearest {
                 nearest = distance;
-                found.axis = [nx, ny, nz, 0.0];
+                found.axis = [nx, ny, nz];
             }
         }
         self.keep_near(&geometry.places, cutoff, wanted.skin, list);
-        if list.features.is_empty() {
+        if list.is_empty() {
             // The nearest features tell a better direction, which may part the two by more.
-            let [x, y, z, _] = found.axis;
-            let gap = Axis::between(vertices, [x, y, z]).gap();
+            let gap = Axis::between(vertices, found.axis).gap();
             found.slack = found.slack.max(gap - wanted.touch);
         }
         found
@@ -222,107 +264,66 @@ impl Search {
 
     /// Every pair of near features, in order.
     fn collect_candidates(&mut self, shapes: &Shapes, wanted: &Wanted) {
-        let [a, b] = wanted.bodies.map(|body| shapes.features_of(body));
         let [near_a, near_b] = &self.near;
-        let list = &mut self.candidates;
-        list.clear();
-        let [starts_a, starts_b] = [&a, &b].map(|of| [0, 1, 2].map(|kind| of[kind].start as u32));
+        let candidates = &mut self.candidates;
+        candidates.clear();
+        let whole = |feature| Listed::face(feature, u32::MAX);
         for &vertex in &near_a.vertices {
-            for &face in &near_b.faces {
-                let job = FaceJob {
-                    vertex: starts_a[0] + u32::from(vertex),
-                    face: starts_b[2] + u32::from(face),
-                    side: 0,
-                    out: 0,
-                };
-                list.push_outline(shapes, Feature::VertexFace(vertex, face), job, starts_b[0]);
-            }
+            let meets = |&face: &u16| whole(Feature::VertexFace(vertex, face));
+            candidates.extend(near_b.faces.iter().map(meets));
         }
         for &face in &near_a.faces {
-            for &vertex in &near_b.vertices {
-                let job = FaceJob {
-                    vertex: starts_b[0] + u32::from(vertex),
-                    face: starts_a[2] + u32::from(face),
-                    side: 1,
-                    out: 0,
-                };
-                list.push_outline(shapes, Feature::FaceVertex(face, vertex), job, starts_a[0]);
-            }
+            let meets = |&vertex: &u16| whole(Feature::FaceVertex(face, vertex));
+            candidates.extend(near_b.vertices.iter().map(meets));
         }
-        let spheres = [&a[0], &b[0]].map(|vertices| vertices.len() == 1);
-        if spheres[0] != spheres[1] {
+        let spheres = wanted.bodies.map(|body| shapes.is_sphere(body));
+        if spheres == [true; 2] {
+            candidates.push(Listed::edges(Feature::VertexVertex, [0; 2], [0; 2]));
+        } else if spheres == [false; 2] {
             // A sphere has a vertex, which meets faces, and no edge.
-            return;
-        }
-        for &first in &near_a.edges {
-            for &second in &near_b.edges {
-                let [p, q] = shapes.edges[a[1].start + usize::from(first)];
-                let [r, s] = shapes.edges[b[1].start + usize::from(second)];
-                let [p, q] = [p, q].map(|vertex| starts_a[0] + u32::from(vertex));
-                let [r, s] = [r, s].map(|vertex| starts_b[0] + u32::from(vertex));
-                list.jobs.edges.push(EdgeJob {
-                    ends: [p, q, r, s],
-                    out: list.features.len() as u32,
-                });
-                list.features.push(if spheres[0] {
-                    Feature::VertexVertex
-                } else {
-                    Feature::EdgeEdge(first, second)
-                });
+            let [edges_a, edges_b] = wanted.bodies.map(|body| shapes.edges_of(body));
+            for &first in &near_a.edges {
+                let along = edges_a[usize::from(first)];
+                candidates.extend(near_b.edges.iter().map(|&second| {
+                    let across = edges_b[usize::from(second)];
+                    Listed::edges(Feature::EdgeEdge(first, second), along, across)
+                }));
             }
         }
+        self.jobs.clear();
+        let starts = wanted.bodies.map(|body| shapes.places[body]);
+        self.jobs.extend_sorted(shapes, &starts, candidates, 0);
     }
 
     /// Keeps the candidates nearer than `cutoff`, each with what matters while the bodies move by `skin`.
-    fn keep_near(&self, places: &Places<'_>, cutoff: f64, skin: f64, list: &mut List) {
-        let Jobs {
-            outlines,
-            sides,
-            edges,
-            ..
-        } = &self.candidates.jobs;
-        for job in outlines {
-            let candidate = job.face.out as usize;
-            let result = &self.results[candidate];
+    fn keep_near(&self, places: &Places<'_>, cutoff: f64, skin: f64, list: &mut Vec<Listed>) {
+        for (number, (listed, result)) in self.candidates.iter().zip(&self.results).enumerate() {
             if result.normal[3] >= cutoff {
                 continue;
             }
-            let face = FaceJob {
-                out: list.features.len() as u32,
-                ..job.face
-            };
-            list.features.push(self.candidates.features[candidate]);
-            if result.middle[3] > skin {
-                list.jobs.above.push(face);
-                continue;
-            }
-            let first = list.jobs.sides.len() as u32;
-            let all = &sides[job.first as usize..(job.first + job.count) as usize];
-            let beside = || all.iter().map(|side| along_side(places, &face, *side));
-            let nearest = beside().fold(f64::INFINITY, |least, (_, distance)| least.min(distance));
-            // Every distance changes by the skin at most.
-            let matters = |(margin, distance): (f64, f64)| {
-                margin <= 1.01 * skin || distance <= nearest + 2.02 * skin
-            };
-            let kept = all
-                .iter()
-                .zip(beside())
-                .filter(|(_, place)| matters(*place));
-            list.jobs.sides.extend(kept.map(|(side, _)| *side));
-            let count = list.jobs.sides.len() as u32 - first;
-            list.jobs.outlines.push(OutlineJob { face, first, count });
-        }
-        for job in edges {
-            let candidate = job.out as usize;
-            if self.results[candidate].normal[3] < cutoff {
-                list.jobs.edges.push(EdgeJob {
-                    out: list.features.len() as u32,
-                    ..*job
-                });
-                list.features.push(self.candidates.features[candidate]);
-            }
+            // Vertices and faces come before edges: their numbers are those of the outlines.
+            list.push(match self.jobs.outlines.get(number) {
+                Some(job) if result.middle[3] <= skin => {
+                    Listed::face(listed.feature, sides_near(places, job, skin))
+                }
+                Some(_) => Listed::face(listed.feature, 0),
+                None => *listed,
+            });
         }
     }
+}
+
+/// Which edges of a face matter to a vertex while the bodies move by `skin`, bit by bit.
+fn sides_near(places: &Places<'_>, job: &OutlineJob, skin: f64) -> u32 {
+    let ends = |side: u32| job.ends(places.corners, side);
+    let beside = || (0..job.count).map(|side| along_side(places, &job.face, ends(side)));
+    let nearest = beside().fold(f64::INFINITY, |least, (_, distance)| least.min(distance));
+    // Every distance changes by the skin at most.
+    let matters =
+        |(margin, distance): (f64, f64)| margin <= 1.01 * skin || distance <= nearest + 2.02 * skin;
+    // Where there are more edges than bits, all matter.
+    let marked = (0..).zip(beside()).filter(|(_, place)| matters(*place));
+    marked.fold(0, |marks, (side, _)| marks | 1 << (side % u32::BITS))
 }
 
 /// How far inside a `side` of a face the foot of a vertex lies, and how far the vertex is from that edge [m].
@@ -336,91 +337,89 @@ fn along_side(places: &Places<'_>, job: &FaceJob, side: [u32; 2]) -> (f64, f64) 
     (margin, (foot * edge - away).length())
 }
 
-impl List {
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.features.clear();
-        self.jobs.clear();
-    }
-
-    /// Becomes a copy of `other`, in no more memory than that takes: there are a few of these for every grain.
-    pub fn copy(&mut self, other: &Self) {
-        self.features.clone_from(&other.features);
-        self.jobs.above.clone_from(&other.jobs.above);
-        self.jobs.outlines.clone_from(&other.jobs.outlines);
-        self.jobs.sides.clone_from(&other.jobs.sides);
-        self.jobs.edges.clone_from(&other.jobs.edges);
-    }
-
-    /// Becomes the part of `all` that is nearer than `cutoff` [m] by `results`, of which its own move to the front. Returns the
-    /// distance of the nearest of the others [m]. `numbers` is room to work in.
-    pub fn choose(
+impl Jobs {
+    /// Adds what there is to compute for features of the bodies whose features begin at `starts`: vertices with faces, then
+    /// edges with edges. The results begin at `out`.
+    #[inline(always)]
+    pub fn extend(
         &mut self,
-        all: &Self,
-        results: &mut [Nearest],
-        cutoff: f64,
-        numbers: &mut Vec<u32>,
-    ) -> f64 {
-        const GONE: u32 = u32::MAX;
-        self.clear();
-        numbers.clear();
-        let mut nearest = f64::INFINITY;
-        for (slot, feature) in all.features.iter().enumerate() {
-            let distance = results[slot].normal[3];
-            if distance < cutoff {
-                let number = self.features.len();
-                numbers.push(number as u32);
-                self.features.push(*feature);
-                results[number] = results[slot];
-            } else {
-                numbers.push(GONE);
-                nearest = nearest.min(distance);
-            }
-        }
-        let moved = |job: &FaceJob| {
-            let out = numbers[job.out as usize];
-            (out != GONE).then_some(FaceJob { out, ..*job })
-        };
-        let jobs = &mut self.jobs;
-        jobs.above.extend(all.jobs.above.iter().filter_map(moved));
-        for job in &all.jobs.outlines {
-            let Some(face) = moved(&job.face) else {
-                continue;
+        shapes: &Shapes,
+        starts: &[Place; 2],
+        [faces, edges]: [impl ExactSizeIterator<Item = Listed>; 2],
+        out: u32,
+    ) {
+        let edge_out = out + faces.len() as u32;
+        // Either kind is written to the end of both queues and stays in its own: a branch would be foretold wrongly half of
+        // the time.
+        let (mut above, mut outlines) = (self.above.len(), self.outlines.len());
+        self.above.resize(above + faces.len(), FaceJob::default());
+        self.outlines
+            .resize(outlines + faces.len(), OutlineJob::default());
+        for (listed, out) in faces.zip(out..) {
+            let (side, vertex, face) = match listed.feature {
+                Feature::VertexFace(vertex, face) => (0, vertex, face),
+                Feature::FaceVertex(face, vertex) => (1, vertex, face),
+                Feature::EdgeEdge(..) | Feature::VertexVertex => (0, 0, 0),
             };
-            let first = jobs.sides.len() as u32;
-            let sides = &all.jobs.sides[job.first as usize..];
-            jobs.sides.extend_from_slice(&sides[..job.count as usize]);
-            jobs.outlines.push(OutlineJob {
-                face,
-                first,
-                ..*job
-            });
+            let (of_vertex, of_face) = (&starts[side as usize], &starts[1 - side as usize]);
+            let job = FaceJob {
+                vertex: of_vertex.vertex + u32::from(vertex),
+                face: of_face.face + u32::from(face),
+                side,
+                out,
+            };
+            let [corner, end] = [0, 1].map(|k| shapes.loop_starts[job.face as usize + k]);
+            let bits = (end - corner).min(u32::BITS);
+            let sides = listed.sides() & (u32::MAX >> (u32::BITS - bits));
+            self.above[above] = job;
+            self.outlines[outlines] = OutlineJob {
+                face: job,
+                sides,
+                corner,
+                count: end - corner,
+                start: of_face.vertex,
+            };
+            above += usize::from(sides == 0);
+            outlines += usize::from(sides != 0);
         }
-        jobs.edges.extend(all.jobs.edges.iter().filter_map(|job| {
-            let out = numbers[job.out as usize];
-            (out != GONE).then_some(EdgeJob { out, ..*job })
-        }));
-        nearest
+        self.above.truncate(above);
+        self.outlines.truncate(outlines);
+        let starts = starts.map(|start| start.vertex);
+        self.edges
+            .extend(edges.zip(edge_out..).map(|(listed, out)| {
+                let [p, q, r, s] = listed.marks.map(u32::from);
+                let ends = [starts[0] + p, starts[0] + q, starts[1] + r, starts[1] + s];
+                EdgeJob { ends, out }
+            }));
     }
 
-    /// A vertex and a face with all its edges; the vertices of the face's body begin at `start`.
-    fn push_outline(&mut self, shapes: &Shapes, feature: Feature, job: FaceJob, start: u32) {
-        let outline = shapes.outline(job.face as usize);
-        let first = self.jobs.sides.len() as u32;
-        let next = outline.iter().skip(1).chain(outline.first());
-        let sides = outline.iter().zip(next);
-        let placed = |(a, b): (&u16, &u16)| [*a, *b].map(|corner| start + u32::from(corner));
-        self.jobs.sides.extend(sides.map(placed));
-        self.jobs.outlines.push(OutlineJob {
-            face: FaceJob {
-                out: self.features.len() as u32,
-                ..job
-            },
-            first,
-            count: outline.len() as u32,
-        });
-        self.features.push(feature);
+    /// Likewise, for features in their order.
+    pub fn extend_sorted(
+        &mut self,
+        shapes: &Shapes,
+        starts: &[Place; 2],
+        listed: &[Listed],
+        out: u32,
+    ) {
+        let (faces, edges) = listed.split_at(listed.partition_point(Listed::is_face));
+        let kinds = [faces, edges].map(|kind| kind.iter().copied());
+        self.extend(shapes, starts, kinds, out);
     }
+}
+
+/// Those of `near` that are nearer than `cutoff` by `results` [m]; returns the distance of the nearest of the others [m].
+pub fn choose(near: &[Listed], results: &[Nearest], cutoff: f64, chosen: &mut Vec<Listed>) -> f64 {
+    chosen.clear();
+    let mut nearest = f64::INFINITY;
+    for (listed, result) in near.iter().zip(results) {
+        let distance = result.normal[3];
+        if distance < cutoff {
+            chosen.push(*listed);
+        } else {
+            nearest = nearest.min(distance);
+        }
+    }
+    nearest
 }
 
 /// The direction that parts the two bodies best among the normals of their faces and `known`, that of last time.
@@ -429,7 +428,7 @@ fn parting_axis<N: Lanes>(
     processor: N::Processor,
     vertices: [&[Row]; 2],
     planes: [&[Row]; 2],
-    known: Row,
+    known: [f64; 3],
 ) -> Axis {
     let of_first = best_face::<N>(processor, planes[0], vertices[1]);
     let of_second = best_face::<N>(processor, planes[1], vertices[0]);
@@ -444,8 +443,9 @@ fn parting_axis<N: Lanes>(
         }
         _ => None,
     };
-    let [x, y, z, _] = known;
-    let known = (x * x + y * y + z * z > 0.0).then_some([x, y, z]);
+    let [x, y, z] = known;
+    let length = (x * x + y * y + z * z).sqrt();
+    let known = (length > 0.0).then(|| known.map(|x| x / length));
     // Two spheres at the first time: along the line of their centres.
     let centres = || {
         let (p, q) = (vertices[0][0], vertices[1][0]);

@@ -25,7 +25,7 @@ pub use terms::force_terms;
 
 use super::contacts::WallBody;
 use super::grid::CellGrid;
-use super::lanes::Processor;
+use super::lanes::{Lanes, Processor, Work, prefetch};
 use super::law::{PairConstants, Pairing};
 use super::row::{Row, length_squared, row, sub, vector};
 use super::state::move_walls;
@@ -33,9 +33,10 @@ use super::team::{Barrier, Shared, Team, share};
 use super::{Fault, FaultKind, Profile, Stage, Stretch};
 use crate::scene::{ContactLaw, FeatureRule};
 use crate::world::{Contact, FeatureContact, Materials, Partner, Polyhedron, SpeciesId, World};
-use bodies::{Body, Geometry, Load, Shapes};
+use bodies::{Body, Geometry, Load, Placing, Shapes};
+use listing::Listed;
 use nearest::Places;
-use pairs::{Action, DEEPEST, Desk, Forces, Pair, Surroundings};
+use pairs::{Action, Active, BLOCK, DEEPEST, Desk, Forces, Pair, Spot, Surroundings, Terms};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -53,7 +54,7 @@ pub struct State {
     vertices: Vec<Row>,
     planes: Vec<Row>,
     walls: Vec<WallBody>,
-    pairs: Vec<Pair>,
+    pairs: Pairs,
     actions: Vec<Action>,
     /// Which pairs act.
     busy: Vec<bool>,
@@ -76,6 +77,35 @@ struct Known {
     materials: Materials,
     species: Vec<SpeciesId>,
     masses: Vec<f64>,
+}
+
+/// The pairs near each other, sorted by [`key`].
+#[derive(Default)]
+struct Pairs {
+    list: Vec<Pair>,
+    terms: Vec<Terms>,
+    /// What the active features of each block remember.
+    spots: Vec<Vec<Spot>>,
+}
+
+impl Pairs {
+    /// Adds a pair after all others.
+    fn push(&mut self, mut pair: Pair, terms: Terms, spots: &[Spot]) {
+        if self.list.len().is_multiple_of(BLOCK) {
+            self.spots.push(Vec::new());
+        }
+        if let Some(block) = self.spots.last_mut() {
+            pair.active = Active::at(block.len(), spots);
+            block.extend_from_slice(spots);
+        }
+        self.list.push(pair);
+        self.terms.push(terms);
+    }
+
+    /// What the active features of pair `k` remember.
+    fn spots_of(&self, k: usize) -> &[Spot] {
+        &self.spots[k / BLOCK][self.list[k].active.spots()]
+    }
 }
 
 /// The pairs of each body.
@@ -133,7 +163,7 @@ fn key(pair: &Pair) -> (u32, u32) {
 
 impl State {
     /// Takes `world` in. What is known of it from the last call is kept.
-    pub fn load(&mut self, world: &World) {
+    pub fn load(&mut self, processor: Processor, world: &World) {
         let count = world.grains.len();
         self.dt = world.clock.time_step;
         self.gravity = row(world.gravity, 0.0);
@@ -162,8 +192,8 @@ impl State {
         if !unmoved {
             self.known_shapes = world.polyhedra.as_ref().map(|p| p.shapes.clone());
             self.shapes = Shapes::of(world);
-            self.place_all();
-            self.pairs.clear();
+            self.place_all(processor);
+            self.pairs = Pairs::default();
             self.find_pairs(world);
             self.adopt(world);
         }
@@ -182,42 +212,38 @@ impl State {
     /// Every feature contact with its history.
     fn contacts(&self) -> impl Iterator<Item = FeatureContact> {
         let count = self.bodies.len();
-        self.pairs.iter().flat_map(move |pair| {
-            let features = pair
-                .memory
-                .active
-                .features
-                .iter()
-                .zip(&pair.memory.springs)
-                .zip(&pair.memory.overlaps);
-            features.filter(|(_, overlap)| **overlap > 0.0).map(
-                move |((feature, spring), overlap)| FeatureContact {
+        self.pairs
+            .list
+            .iter()
+            .enumerate()
+            .flat_map(move |(k, pair)| {
+                let touching = self
+                    .pairs
+                    .spots_of(k)
+                    .iter()
+                    .filter(|spot| spot.overlap > 0.0);
+                touching.map(move |spot| FeatureContact {
                     grain: pair.first,
                     partner: partner(pair, count),
-                    feature: *feature,
-                    overlap: *overlap,
-                    spring: vector(*spring),
-                    stiffness: spring[3],
-                },
-            )
-        })
+                    feature: spot.listed.feature,
+                    overlap: spot.overlap,
+                    dashpot: spot.dashpot,
+                    spring: vector(spot.spring),
+                    stiffness: spot.spring[3],
+                })
+            })
     }
 
-    fn place_all(&mut self) {
-        self.vertices.clear();
+    fn place_all(&mut self, processor: Processor) {
         self.vertices
             .resize(self.shapes.body_vertices.len(), [0.0; 4]);
-        self.planes.clear();
         self.planes.resize(self.shapes.body_normals.len(), [0.0; 4]);
-        for (i, body) in self.bodies.iter().enumerate() {
-            let (from, to) = (self.shapes.places[i], self.shapes.places[i + 1]);
-            self.shapes.place(
-                i,
-                body,
-                &mut self.vertices[from.vertex as usize..to.vertex as usize],
-                &mut self.planes[from.face as usize..to.face as usize],
-            );
-        }
+        processor.run(Placing {
+            shapes: &self.shapes,
+            bodies: &self.bodies,
+            vertices: &mut self.vertices,
+            planes: &mut self.planes,
+        });
     }
 
     /// Finds the pairs that are near each other; those known keep what they hold.
@@ -229,7 +255,9 @@ impl State {
             self.bodies.iter().map(|body| (body.position, body.spin[3])),
             skin,
         );
-        let mut known = std::mem::take(&mut self.pairs).into_iter().peekable();
+        let Pairs { list, terms, spots } = std::mem::take(&mut self.pairs);
+        let mut known = list.into_iter().zip(terms).enumerate().peekable();
+        let mut pairs = Pairs::default();
         let mut partners = Vec::new();
         for (i, body) in self.bodies.iter().enumerate() {
             partners.clear();
@@ -249,21 +277,23 @@ impl State {
             }));
             for &second in &partners {
                 let wanted = (i as u32, second);
-                while known.next_if(|pair| key(pair) < wanted).is_some() {}
-                let pair = known.next_if(|pair| key(pair) == wanted);
-                self.pairs.push(pair.unwrap_or_else(|| Pair {
-                    first: wanted.0,
-                    second,
-                    slack: -1.0,
-                    ..Pair::default()
-                }));
+                while known.next_if(|(_, (pair, _))| key(pair) < wanted).is_some() {}
+                match known.next_if(|(_, (pair, _))| key(pair) == wanted) {
+                    Some((k, (pair, terms))) => {
+                        let spots = &spots[k / BLOCK][pair.active.spots()];
+                        pairs.push(pair, terms, spots);
+                    }
+                    None => pairs.push(new_pair(wanted), Terms::default(), &[]),
+                }
             }
         }
+        self.pairs = pairs;
         self.actions.clear();
-        self.actions.resize(self.pairs.len(), Action::default());
+        self.actions
+            .resize(self.pairs.list.len(), Action::default());
         self.busy.clear();
-        self.busy.resize(self.pairs.len(), false);
-        self.sides = Sides::of(&self.pairs, count);
+        self.busy.resize(self.pairs.list.len(), false);
+        self.sides = Sides::of(&self.pairs.list, count);
         self.reference.clear();
         self.reference
             .extend(self.bodies.iter().map(|body| body.position));
@@ -273,15 +303,12 @@ impl State {
     }
 
     fn set_geometry_constants(&mut self) {
-        let count = self.bodies.len();
-        for pair in &mut self.pairs {
+        for (pair, terms) in self.pairs.list.iter().zip(&mut self.pairs.terms) {
             let own = self.bodies[pair.first as usize].rounding();
-            let other = match self.bodies.get(pair.second as usize) {
-                Some(body) if (pair.second as usize) < count => body.rounding(),
-                _ => 0.0,
-            };
-            pair.touch = own + other;
-            pair.memory.offset = 0.5 * (own - other);
+            let other = self.bodies.get(pair.second as usize);
+            let other = other.map_or(0.0, Body::rounding);
+            terms.touch = own + other;
+            terms.offset = 0.5 * (own - other);
         }
     }
 
@@ -298,21 +325,14 @@ impl State {
         }
         self.known = known;
         let count = self.bodies.len();
-        for pair in &mut self.pairs {
+        for (pair, terms) in self.pairs.list.iter().zip(&mut self.pairs.terms) {
             let pairing = Pairing::of(world, pair.first as usize, partner(pair, count));
             let PairConstants {
                 coefficients,
                 contact,
             } = pairing.constants(world.law, &world.materials, false);
-            pair.memory.law = [
-                coefficients[0],
-                coefficients[1],
-                coefficients[2],
-                contact[0],
-            ];
-            if self.rule == FeatureRule::Shared {
-                pair.memory.stored = pair.memory.stored_energy(pair.memory.part());
-            }
+            let [stiffness, damping, tangential_stiffness, _] = coefficients;
+            terms.law = [stiffness, damping, tangential_stiffness, contact[0]];
         }
     }
 
@@ -323,24 +343,23 @@ impl State {
         };
         let count = self.bodies.len();
         let mut features = polyhedra.features.iter().peekable();
-        for pair in &mut self.pairs {
-            let wanted = (pair.first, partner(pair, count));
+        let mut spots = Vec::new();
+        let Pairs { list, terms, .. } = std::mem::take(&mut self.pairs);
+        for (pair, terms) in list.into_iter().zip(terms) {
+            let wanted = (pair.first, partner(&pair, count));
             while features
                 .next_if(|contact| (contact.grain, contact.partner) < wanted)
                 .is_some()
             {}
-            while let Some(contact) =
-                features.next_if(|contact| (contact.grain, contact.partner) == wanted)
-            {
-                pair.memory.active.features.push(contact.feature);
-                pair.memory
-                    .springs
-                    .push(row(contact.spring, contact.stiffness));
-                pair.memory.overlaps.push(contact.overlap);
-            }
-            if self.rule == FeatureRule::Shared {
-                pair.memory.stored = pair.memory.stored_energy(pair.memory.part());
-            }
+            let next = || features.next_if(|contact| (contact.grain, contact.partner) == wanted);
+            spots.clear();
+            spots.extend(std::iter::from_fn(next).map(|contact| Spot {
+                spring: row(contact.spring, contact.stiffness),
+                overlap: contact.overlap,
+                dashpot: contact.dashpot,
+                listed: Listed::face(contact.feature, 0),
+            }));
+            self.pairs.push(pair, terms, &spots);
         }
     }
 
@@ -360,6 +379,7 @@ impl State {
                 polyhedra.angular_momentum[i] = vector(body.angular_momentum);
             }
             polyhedra.features.clear();
+            polyhedra.features.reserve_exact(self.contacts().count());
             polyhedra.features.extend(self.contacts());
         }
         world.clock.step += steps;
@@ -370,7 +390,7 @@ impl State {
             wall.surface = body.surface;
         }
         let count = self.bodies.len();
-        let acting = self.pairs.iter().zip(&self.actions).zip(&self.busy);
+        let acting = self.pairs.list.iter().zip(&self.actions).zip(&self.busy);
         let touching = acting
             .filter(|((_, action), busy)| **busy && action.force[3] > 0.0)
             .map(|((pair, action), _)| Contact {
@@ -388,10 +408,7 @@ impl State {
 
     /// Number of listed pairs of features.
     pub fn listed(&self) -> usize {
-        self.pairs
-            .iter()
-            .map(|pair| pair.memory.near.features.len())
-            .sum()
+        self.pairs.list.iter().map(|pair| pair.near.len()).sum()
     }
 
     /// Takes `steps` steps; on a fault, says after how many.
@@ -406,7 +423,7 @@ impl State {
         self.desks
             .resize_with(team.size().max(self.desks.len()), Mutex::default);
         let mut done = 0;
-        let mut refresh = self.start();
+        let mut refresh = self.start(processor);
         while done < steps {
             if refresh {
                 let begin = Instant::now();
@@ -425,14 +442,14 @@ impl State {
     }
 
     /// Starts the first step of a call; true when the pairs must be found anew.
-    fn start(&mut self) -> bool {
+    fn start(&mut self, processor: Processor) -> bool {
         move_walls(&mut self.walls, self.dt);
         let half = 0.5 * self.dt;
         for (body, load) in self.bodies.iter_mut().zip(&self.loads) {
             body.kick(load, half, self.gravity);
             body.drift(self.dt);
         }
-        self.place_all();
+        self.place_all(processor);
         let slack = 0.5 * self.near_skin;
         let moved = self.bodies.iter().zip(&self.reference);
         moved
@@ -487,7 +504,7 @@ impl State {
                 steps += 1;
                 let last = steps == remaining;
                 // SAFETY: likewise, one barrier further.
-                let outcome = unsafe { phase.finish(member, size, last) };
+                let outcome = unsafe { phase.finish(processor, member, size, last) };
                 refresh.fetch_or(outcome.refresh, Ordering::Relaxed);
                 fault.fetch_or(outcome.fault || too_deep, Ordering::Relaxed);
                 if !last {
@@ -519,14 +536,17 @@ impl State {
 
     /// Lends the state to a team of `size`.
     fn phase(&mut self, size: usize) -> Phase<'_> {
-        let shares = shares(&self.pairs, size);
+        let shares = shares(&self.pairs.spots, size);
         Phase {
             shares,
+            pair_count: self.pairs.list.len(),
             bodies: Shared::new(&mut self.bodies),
             loads: Shared::new(&mut self.loads),
             vertices: Shared::new(&mut self.vertices),
             planes: Shared::new(&mut self.planes),
-            pairs: Shared::new(&mut self.pairs),
+            pairs: Shared::new(&mut self.pairs.list),
+            terms: Shared::new(&mut self.pairs.terms),
+            spots: Shared::new(&mut self.pairs.spots),
             actions: Shared::new(&mut self.actions),
             busy: Shared::new(&mut self.busy),
             shapes: &self.shapes,
@@ -565,8 +585,9 @@ impl State {
             };
             return (grain, kind);
         }
-        let deep = self.pairs.iter().find_map(|pair| {
-            let deepest = pair.memory.overlaps.iter().copied().fold(0.0, f64::max) / pair.touch;
+        let deep = self.pairs.list.iter().enumerate().find_map(|(k, pair)| {
+            let overlaps = self.pairs.spots_of(k).iter().map(|spot| spot.overlap);
+            let deepest = overlaps.fold(0.0, f64::max) / self.pairs.terms[k].touch;
             (deepest > DEEPEST).then_some((pair.first as usize, FaultKind::TooDeep(deepest)))
         });
         deep.unwrap_or((0, FaultKind::NotFinite("state")))
@@ -581,17 +602,27 @@ fn partner(pair: &Pair, count: usize) -> Partner {
     }
 }
 
-/// Ranges of pairs that take about equally long.
-fn shares(pairs: &[Pair], size: usize) -> Vec<Range<usize>> {
-    let cost = |pair: &Pair| 1 + pair.memory.active.features.len();
-    let all: usize = pairs.iter().map(cost).sum();
+/// Two bodies of which nothing is known yet.
+fn new_pair((first, second): (u32, u32)) -> Pair {
+    Pair {
+        first,
+        second,
+        slack: -1.0,
+        ..Pair::default()
+    }
+}
+
+/// Ranges of blocks that take about equally long.
+fn shares(blocks: &[Vec<Spot>], size: usize) -> Vec<Range<usize>> {
+    let cost = |block: &Vec<Spot>| BLOCK + block.len();
+    let all: usize = blocks.iter().map(cost).sum();
     let mut shares = Vec::with_capacity(size);
     let (mut begin, mut spent) = (0, 0);
     for member in 0..size {
         let goal = all * (member + 1) / size;
         let mut end = begin;
-        while end < pairs.len() && (spent < goal || member + 1 == size) {
-            spent += cost(&pairs[end]);
+        while end < blocks.len() && (spent < goal || member + 1 == size) {
+            spent += cost(&blocks[end]);
             end += 1;
         }
         shares.push(begin..end);
@@ -602,12 +633,16 @@ fn shares(pairs: &[Pair], size: usize) -> Vec<Range<usize>> {
 
 /// The state on loan to a team for a stretch of steps: each member presses and moves its own share.
 struct Phase<'a> {
+    /// Each member's blocks of pairs.
     shares: Vec<Range<usize>>,
     bodies: Shared<'a, Body>,
     loads: Shared<'a, Load>,
     vertices: Shared<'a, Row>,
     planes: Shared<'a, Row>,
     pairs: Shared<'a, Pair>,
+    terms: Shared<'a, Terms>,
+    spots: Shared<'a, Vec<Spot>>,
+    pair_count: usize,
     actions: Shared<'a, Action>,
     busy: Shared<'a, bool>,
     shapes: &'a Shapes,
@@ -643,19 +678,33 @@ impl Phase<'_> {
         walls: &[WallBody],
         member: usize,
     ) -> pairs::Outcome {
-        let own = self.shares[member].clone();
+        let blocks = self.shares[member].clone();
+        let pair = |block: usize| (block * BLOCK).min(self.pair_count);
+        let own = pair(blocks.start)..pair(blocks.end);
         // SAFETY: in this phase bodies and features are only read, pairs and actions only written, each member its own
         // share.
-        let (bodies, vertices, planes, pairs, actions, busy) = unsafe {
+        let (bodies, vertices, planes, pairs, terms, spots, actions, busy) = unsafe {
             (
                 self.bodies.all(),
                 self.vertices.all(),
                 self.planes.all(),
                 self.pairs.range_mut(own.clone()),
+                self.terms.range_mut(own.clone()),
+                self.spots.range_mut(blocks),
                 self.actions.range_mut(own.clone()),
                 self.busy.range_mut(own),
             )
         };
+        let wall_motions: Vec<[Row; 3]> = walls
+            .iter()
+            .map(|wall| {
+                [
+                    [0.0; 4],
+                    row(wall.motion.velocity, 0.0),
+                    row(wall.motion.spin, 0.0),
+                ]
+            })
+            .collect();
         let Ok(mut desk) = self.desks[member].lock() else {
             return pairs::Outcome {
                 fault: true,
@@ -669,11 +718,18 @@ impl Phase<'_> {
                 bodies,
                 geometry: Geometry {
                     shapes: self.shapes,
-                    places: Places { vertices, planes },
+                    places: Places {
+                        vertices,
+                        planes,
+                        corners: &self.shapes.loops,
+                    },
                 },
                 walls,
+                wall_motions: &wall_motions,
             },
             pairs,
+            terms,
+            spots,
             actions,
             busy,
             desk: &mut desk,
@@ -684,7 +740,13 @@ impl Phase<'_> {
     ///
     /// # Safety
     /// As for [`Phase::forces`].
-    unsafe fn finish(&self, member: usize, size: usize, last: bool) -> Outcome {
+    unsafe fn finish(
+        &self,
+        processor: Processor,
+        member: usize,
+        size: usize,
+        last: bool,
+    ) -> Outcome {
         let own = share(self.reference.len(), member, size);
         let (from, to) = (self.shapes.places[own.start], self.shapes.places[own.end]);
         // SAFETY: in this phase actions are only read, bodies and features only written, each member its own share.
@@ -699,13 +761,63 @@ impl Phase<'_> {
                 self.busy.all(),
             )
         };
+        processor.run(Finish {
+            own,
+            bodies,
+            loads,
+            vertices,
+            planes,
+            incidence: Incidence {
+                actions,
+                busy,
+                sides: self.sides,
+            },
+            shapes: self.shapes,
+            reference: self.reference,
+            slack_squared: self.slack_squared,
+            dt: self.dt,
+            gravity: self.gravity,
+            last,
+        })
+    }
+}
+
+/// What every pair does, and which are whose.
+#[derive(Clone, Copy)]
+struct Incidence<'a> {
+    actions: &'a [Action],
+    busy: &'a [bool],
+    sides: &'a Sides,
+}
+
+/// Finishes a step for a range of bodies and, unless it is the last of a call, starts the next.
+struct Finish<'a> {
+    own: Range<usize>,
+    bodies: &'a mut [Body],
+    loads: &'a mut [Load],
+    vertices: &'a mut [Row],
+    planes: &'a mut [Row],
+    incidence: Incidence<'a>,
+    shapes: &'a Shapes,
+    reference: &'a [Row],
+    slack_squared: f64,
+    dt: f64,
+    gravity: Row,
+    last: bool,
+}
+
+impl Work for Finish<'_> {
+    type Output = Outcome;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) -> Outcome {
         let half = 0.5 * self.dt;
         let mut outcome = Outcome::default();
-        for (k, (body, load)) in bodies.iter_mut().zip(loads).enumerate() {
-            let i = own.start + k;
-            self.sum(i, actions, busy, load);
+        let from = self.shapes.places[self.own.start];
+        for (i, (body, load)) in self.own.zip(self.bodies.iter_mut().zip(self.loads)) {
+            self.incidence.sum(i, load);
             body.kick(load, half, self.gravity);
-            if last {
+            if self.last {
                 body.update_spin();
                 outcome.fault |= !body.is_sane();
                 continue;
@@ -715,28 +827,45 @@ impl Phase<'_> {
             outcome.fault |= !body.is_sane();
             let (begin, end) = (self.shapes.places[i], self.shapes.places[i + 1]);
             let span = |a: u32, b: u32, start: u32| (a - start) as usize..(b - start) as usize;
-            self.shapes.place(
+            self.shapes.place::<N::Quad>(
+                processor,
                 i,
                 body,
-                &mut vertices[span(begin.vertex, end.vertex, from.vertex)],
-                &mut planes[span(begin.face, end.face, from.face)],
+                &mut self.vertices[span(begin.vertex, end.vertex, from.vertex)],
+                &mut self.planes[span(begin.face, end.face, from.face)],
             );
             let moved = length_squared(sub(body.position, self.reference[i]));
             outcome.refresh |= moved > self.slack_squared;
         }
         outcome
     }
+}
+
+impl Incidence<'_> {
+    /// Asks for what the pairs do of which body `i` is the second: it lies scattered.
+    #[inline(always)]
+    fn fetch(&self, i: usize) {
+        if i + 1 < self.sides.second_starts.len() {
+            for &pair in self.sides.of_body(i).0 {
+                if self.busy[pair as usize] {
+                    prefetch::<_, 2>(&self.actions[pair as usize..=pair as usize]);
+                }
+            }
+        }
+    }
 
     /// Sums what the pairs of body `i` do to it, in the pairs' order.
-    fn sum(&self, i: usize, actions: &[Action], busy: &[bool], load: &mut Load) {
+    #[inline(always)]
+    fn sum(&self, i: usize, load: &mut Load) {
         let (as_second, as_first) = self.sides.of_body(i);
+        self.fetch(i + 2);
         load.force = [0.0; 4];
         load.torque = [0.0; 4];
         for pair in as_second.iter().map(|&pair| pair as usize) {
-            if !busy[pair] {
+            if !self.busy[pair] {
                 continue;
             }
-            let action = &actions[pair];
+            let action = &self.actions[pair];
             for axis in 0..3 {
                 load.force[axis] -= action.force[axis];
                 load.torque[axis] += action.second[axis];
@@ -744,10 +873,10 @@ impl Phase<'_> {
             load.force[3] += action.force[3];
         }
         for pair in as_first {
-            if !busy[pair] {
+            if !self.busy[pair] {
                 continue;
             }
-            let action = &actions[pair];
+            let action = &self.actions[pair];
             for axis in 0..4 {
                 load.force[axis] += action.force[axis];
                 load.torque[axis] += action.first[axis];

@@ -43,10 +43,47 @@ pub struct FaceJob {
 pub struct OutlineJob {
     /// Vertex and face.
     pub face: FaceJob,
-    /// The first of the edges of the face that matter, in [`Jobs::sides`].
-    pub first: u32,
-    /// How many they are, at least one.
+    /// The edges of the face that matter, bit by bit, at least one; of more than 32 all do.
+    pub sides: u32,
+    /// Where the face's vertices begin in [`Places::corners`], anticlockwise seen from outside.
+    pub corner: u32,
+    /// How many they are.
     pub count: u32,
+    /// Where the vertices of the face's body begin.
+    pub start: u32,
+}
+
+impl OutlineJob {
+    /// How many edges matter.
+    #[inline(always)]
+    fn side_count(&self) -> u32 {
+        if self.count > u32::BITS {
+            self.count
+        } else {
+            self.sides.count_ones()
+        }
+    }
+
+    /// The first edge that matters from `side` on; the last one again after the last one.
+    #[inline(always)]
+    fn side_from(&self, side: u32) -> u32 {
+        if self.count > u32::BITS {
+            return side.min(self.count - 1);
+        }
+        let rest = self.sides & u32::MAX.checked_shl(side).unwrap_or(0);
+        if rest == 0 {
+            u32::BITS - 1 - self.sides.leading_zeros()
+        } else {
+            rest.trailing_zeros()
+        }
+    }
+
+    /// Where the ends of `side` are.
+    #[inline(always)]
+    pub fn ends(&self, corners: &[u16], side: u32) -> [u32; 2] {
+        let next = if side + 1 < self.count { side + 1 } else { 0 };
+        [side, next].map(|k| self.start + u32::from(corners[(self.corner + k) as usize]))
+    }
 }
 
 /// Features to compute the nearest points of.
@@ -56,8 +93,6 @@ pub struct Jobs {
     pub above: Vec<FaceJob>,
     /// Vertices near the outlines of faces.
     pub outlines: Vec<OutlineJob>,
-    /// Where the ends are of edges of those faces, anticlockwise seen from outside.
-    pub sides: Vec<[u32; 2]>,
     /// Pairs of edges.
     pub edges: Vec<EdgeJob>,
 }
@@ -67,30 +102,7 @@ impl Jobs {
     pub fn clear(&mut self) {
         self.above.clear();
         self.outlines.clear();
-        self.sides.clear();
         self.edges.clear();
-    }
-
-    /// Takes over the jobs of `other`, whose results begin at `out`.
-    #[inline(always)]
-    pub fn extend(&mut self, other: &Self, out: u32) {
-        let sides = self.sides.len() as u32;
-        let moved = |job: &FaceJob| FaceJob {
-            out: job.out + out,
-            ..*job
-        };
-        self.above.extend(other.above.iter().map(moved));
-        self.outlines
-            .extend(other.outlines.iter().map(|job| OutlineJob {
-                face: moved(&job.face),
-                first: job.first + sides,
-                count: job.count,
-            }));
-        self.sides.extend_from_slice(&other.sides);
-        self.edges.extend(other.edges.iter().map(|job| EdgeJob {
-            ends: job.ends,
-            out: job.out + out,
-        }));
     }
 
     /// Computes all; without `MARGIN` no companion of a middle counts.
@@ -102,7 +114,7 @@ impl Jobs {
         results: &mut [Nearest],
     ) {
         above_faces::<N>(processor, places, &self.above, results);
-        at_outlines::<N, MARGIN>(processor, places, &self.outlines, &self.sides, results);
+        at_outlines::<N, MARGIN>(processor, places, &self.outlines, results);
         between_edges::<N>(processor, places, &self.edges, results);
     }
 }
@@ -114,6 +126,8 @@ pub struct Places<'a> {
     pub vertices: &'a [Row],
     /// Outward unit normals of the faces; distances of their planes from the origin [m].
     pub planes: &'a [Row],
+    /// Vertices of the faces, face by face, by their numbers in the body.
+    pub corners: &'a [u16],
 }
 
 impl<'a> Places<'a> {
@@ -128,13 +142,11 @@ impl<'a> Places<'a> {
     }
 }
 
-/// As many jobs as there are lanes; where fewer are left, the last one fills up.
+/// As many items as there are lanes; where fewer are left, the last one fills up.
 #[inline(always)]
-pub fn group<J: Copy>(jobs: &[J]) -> [J; WIDEST] {
-    match jobs.first_chunk() {
-        Some(group) => *group,
-        None => std::array::from_fn(|k| jobs[k.min(jobs.len() - 1)]),
-    }
+pub fn group<N: Lanes, T>(items: &[T]) -> [&T; WIDEST] {
+    let last = items.len() - 1;
+    side_by_side::<N, _>(|k| &items[k.min(last)])
 }
 
 /// Sines squared below which two edges count as parallel: the middle of their overlap is taken then.
@@ -165,7 +177,7 @@ fn between_edges<N: Lanes>(
     results: &mut [Nearest],
 ) {
     for chunk in jobs.chunks(N::COUNT) {
-        let all = group(chunk);
+        let all = group::<N, _>(chunk);
         let p0 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[0]));
         let p1 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[1]));
         let q0 = side_by_side::<N, _>(|k| places.vertex(all[k].ends[2]));
@@ -232,7 +244,7 @@ fn above_faces<N: Lanes>(
     results: &mut [Nearest],
 ) {
     for chunk in jobs.chunks(N::COUNT) {
-        let all = group(chunk);
+        let all = group::<N, _>(chunk);
         let vertex = side_by_side::<N, _>(|k| places.vertex(all[k].vertex));
         let plane = side_by_side::<N, _>(|k| places.plane(all[k].face));
         let point = vector(N::gather(processor, vertex));
@@ -277,12 +289,11 @@ fn at_outlines<N: Lanes, const MARGIN: bool>(
     processor: N::Processor,
     places: &Places<'_>,
     jobs: &[OutlineJob],
-    sides: &[[u32; 2]],
     results: &mut [Nearest],
 ) {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
     for chunk in jobs.chunks(N::COUNT) {
-        let all = group(chunk);
+        let all = group::<N, _>(chunk);
         let vertex = side_by_side::<N, _>(|k| places.vertex(all[k].face.vertex));
         let plane = side_by_side::<N, _>(|k| places.plane(all[k].face.face));
         let point = vector(N::gather(processor, vertex));
@@ -295,15 +306,17 @@ fn at_outlines<N: Lanes, const MARGIN: bool>(
         let mut inside = N::splat(processor, f64::INFINITY);
         let mut count = 0;
         for job in chunk {
-            count = count.max(job.count);
+            count = count.max(job.side_count());
         }
-        for index in 0..count {
-            let side = side_by_side::<N, _>(|k| {
-                let job = &all[k];
-                &sides[(job.first + index.min(job.count - 1)) as usize]
+        let mut next = [0; WIDEST];
+        for _ in 0..count {
+            let ends = side_by_side::<N, _>(|k| {
+                let side = all[k].side_from(next[k]);
+                (side, all[k].ends(places.corners, side))
             });
-            let begin = side_by_side::<N, _>(|k| places.vertex(side[k][0]));
-            let end = side_by_side::<N, _>(|k| places.vertex(side[k][1]));
+            next = ends.map(|(side, _)| side + 1);
+            let begin = side_by_side::<N, _>(|k| places.vertex(ends[k].1[0]));
+            let end = side_by_side::<N, _>(|k| places.vertex(ends[k].1[1]));
             let edge = vector(N::gather_difference(processor, end, begin));
             let away = vector(N::gather_difference(processor, vertex, begin));
             let length = dot(edge, edge);
@@ -343,5 +356,38 @@ fn at_outlines<N: Lanes, const MARGIN: bool>(
                 middle: middles[k].row(),
             };
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The edges that are looked at, in order.
+    fn looked_at(sides: u32, count: u32) -> Vec<u32> {
+        let job = OutlineJob {
+            sides,
+            count,
+            ..OutlineJob::default()
+        };
+        let mut next = 0;
+        let mut step = |_| {
+            let side = job.side_from(next);
+            next = side + 1;
+            side
+        };
+        (0..job.side_count())
+            .map(&mut step)
+            .chain([99, 99].map(|_| job.side_from(count)))
+            .collect()
+    }
+
+    #[test]
+    fn marked_sides_are_looked_at_one_by_one_and_the_last_again() {
+        assert_eq!(looked_at(0b1011, 5), [0, 1, 3, 3, 3]);
+        assert_eq!(looked_at(1 << 31 | 1, 32), [0, 31, 31, 31]);
+        assert_eq!(looked_at(1, 3), [0, 0, 0]);
+        assert_eq!(looked_at(1, 34).len(), 36);
+        assert_eq!(looked_at(1, 34)[33..], [33, 33, 33]);
     }
 }

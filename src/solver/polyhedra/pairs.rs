@@ -3,7 +3,10 @@
 //! In: bodies and where their features are. Out: force and torques of every pair, its springs one step on. A pair lives as
 //! long as its bodies are near each other; which of its features may touch is listed anew when the two have moved relative
 //! to each other by the list's skin ([`super::listing`]), each pair in its own time, so that a crowd that moves as one
-//! lists nothing.
+//! lists nothing. Of those listed the ones that may touch within a few steps are active: only they are measured.
+//!
+//! Pairs are worked on in blocks. What the active features of a block remember lies in one piece of memory, in order, a
+//! cache line each: a step reads it from beginning to end.
 //!
 //! The contacts of a pair are summed in the order of their features: neither lists nor threads nor lanes show in a sum.
 
@@ -15,10 +18,11 @@ use super::super::law::{Hooke, Law};
 use super::super::row::{length_squared, row, sub, vector};
 use super::super::spring::{UNLOADED, stretch};
 use super::bodies::{Body, Geometry};
-use super::listing::{List, Search, Wanted};
+use super::listing::{Listed, Search, Wanted, choose};
 use super::nearest::{Jobs, Nearest, group};
 use crate::scene::FeatureRule;
 use crate::world::{Feature, Surface};
+use std::ops::Range;
 
 /// Steps that a list is made to last at the pace at which its bodies move.
 const LIFE: f64 = 60.0;
@@ -32,8 +36,12 @@ const ACTIVE_SKIN: f64 = 1e-4;
 const CAUTION: f64 = 1.05;
 /// Two cores that come nearer than the rest of this share of the touching distance could pass through each other.
 pub const DEEPEST: f64 = 0.8;
-/// Features that are measured in one go: enough to fill the lanes, few enough to stay in the nearest cache.
-const BATCH: usize = 192;
+/// Pairs that are worked on in one go, whose active features lie together: enough to fill the lanes, few enough to stay in
+/// the nearest cache.
+pub const BLOCK: usize = 32;
+
+/// Bodies are asked for so many pairs ahead.
+const AHEAD: usize = 8;
 
 /// Two bodies near each other: what is looked at in every step.
 #[derive(Clone, Debug, Default)]
@@ -43,38 +51,84 @@ pub struct Pair {
     pub first: u32,
     /// The other grain; from the number of grains on, a wall.
     pub second: u32,
-    /// Distance of cores at which the two touch: the sum of their rounding radii [m].
-    pub touch: f64,
-    /// How far the two may still move relative to each other until [`Memory::near`] must be made anew [m].
+    /// How far the two may still move relative to each other until [`Self::near`] must be made anew [m].
     pub slack: f64,
     /// How far they may still move before anything else than what is active can touch [m].
     pub active_slack: f64,
     /// How far they may still move before anything active can touch; none where something does [m].
     pub quiet: f64,
-    /// What it remembers.
-    pub memory: Box<Memory>,
+    /// Where the active features are among the spots of the block.
+    pub active: Active,
+    /// What may touch until the slack is used up, in the order of the features.
+    pub near: Box<[Listed]>,
 }
 
-/// What a pair remembers, what is looked at in most steps first.
-#[derive(Clone, Debug, Default)]
+/// Where a pair's active features are among the spots of its block.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Active {
+    start: u32,
+    count: u32,
+    /// How many of them are vertices with faces: they come before edges.
+    faces: u32,
+    room: u32,
+}
+
+impl Active {
+    /// `own` spots that begin at `start`, with no room beyond.
+    pub fn at(start: usize, own: &[Spot]) -> Self {
+        Self {
+            start: start as u32,
+            count: own.len() as u32,
+            faces: own.partition_point(|spot| spot.listed.is_face()) as u32,
+            room: own.len() as u32,
+        }
+    }
+
+    /// Its spots.
+    #[inline(always)]
+    pub fn spots(&self) -> Range<usize> {
+        self.start as usize..(self.start + self.count) as usize
+    }
+}
+
+/// What a pair's contacts depend on, and where to look for them first.
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
-pub struct Memory {
+pub struct Terms {
     /// `K_n`, the normal dashpot `m_e γ_n`, `K_t`, μ.
     pub law: Row,
+    /// Distance of cores at which the two touch: the sum of their rounding radii [m].
+    pub touch: f64,
     /// Half the difference of the rounding radii [m].
     pub offset: f64,
-    /// What may touch before long.
-    pub active: List,
-    /// Tangential spring of each active feature [m], and the stiffness of its last stretch [N/m].
-    pub springs: Vec<Row>,
-    /// Overlap of each, zero where it does not touch [m].
-    pub overlaps: Vec<f64>,
-    /// What the normal springs store, where they share their stiffness [J].
-    pub stored: f64,
-    /// The direction that parted the two best when `near` was last made; zero when never.
-    pub axis: Row,
-    /// What may touch until the slack is used up.
-    pub near: List,
+    /// About the direction that parted the two best when they were last listed; zero when never.
+    pub axis: [f32; 3],
+}
+
+/// What an active feature of a pair remembers: a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Spot {
+    /// Its tangential spring [m], and the stiffness of its last stretch [N/m].
+    pub spring: Row,
+    /// Overlap, zero where it does not touch [m].
+    pub overlap: f64,
+    /// What the normal dashpot adds to the spring's push [N].
+    pub dashpot: f64,
+    /// Which features.
+    pub listed: Listed,
+}
+
+impl Spot {
+    /// Features that do not touch.
+    const fn apart(listed: Listed) -> Self {
+        Self {
+            spring: UNLOADED,
+            overlap: 0.0,
+            dashpot: 0.0,
+            listed,
+        }
+    }
 }
 
 /// What a pair does to its bodies.
@@ -105,51 +159,47 @@ pub struct Surroundings<'a> {
     pub geometry: Geometry<'a>,
     /// Every wall.
     pub walls: &'a [WallBody],
+    /// The origin, and the velocity and the spin of every wall.
+    pub wall_motions: &'a [[Row; 3]],
 }
 
 /// How the bodies of a pair move relative to each other.
-#[derive(Clone, Copy, Default)]
 struct Relative {
     /// Velocity of the first relative to the second at the first's centroid [m/s].
     velocity: Row,
     /// Relative spin [rad/s].
     spin: Row,
-    /// Centroid of the second; of a wall, the origin [m].
-    second: Row,
+    /// A speed that no point of the first exceeds relative to the second [m/s].
+    pace: f64,
 }
 
-/// A pair on its way through a batch.
+/// A pair on its way through a block.
 #[derive(Clone, Copy, Default)]
 struct Span {
     /// Velocity of the first relative to the second at the first's centroid [m/s]; part of the pair's stiffness that each
     /// contact has.
     velocity: Row,
-    /// Relative spin [rad/s].
+    /// Relative spin [rad/s]; the part that each contact had a step ago.
     spin: Row,
     /// Centroid of the first [m]; half the difference of the rounding radii [m].
     centre: Row,
-    /// As [`Memory::law`].
-    law: Row,
-    /// Centroid of the second; of a wall, the origin [m].
-    second: Row,
-    /// Number of the pair.
-    pair: usize,
+    /// Number of the pair in the block.
+    pair: u32,
     /// Where its results begin.
-    results: usize,
-    /// Where its contacts begin.
-    contacts: usize,
+    results: u32,
     /// By how much it moved in this step, where its active features are to be chosen [m].
     choose: Option<f64>,
-    /// What the springs stored that lost their contact in this step [J].
-    released: f64,
+    /// What the normal springs store more than a step ago, where they share their stiffness [J].
+    stored: f64,
+    /// Whether anything touches.
+    touches: bool,
 }
 
-/// A contact on its way through a batch: where its span and its result are, and its number among the active features.
+/// Where the span and the spot of a result are.
 #[derive(Clone, Copy)]
-struct Touch {
+struct Place {
     span: u32,
-    result: u32,
-    slot: u32,
+    spot: u32,
 }
 
 /// What a contact does.
@@ -157,6 +207,7 @@ struct Touch {
 struct Effect {
     force: Row,
     moment: Row,
+    /// Energy lost in the dashpot, by the tangential spring, and put into the normal spring [J].
     energy: Row,
 }
 
@@ -164,16 +215,13 @@ struct Effect {
 #[derive(Default)]
 pub struct Desk {
     search: Search,
-    found: List,
-    old_features: Vec<Feature>,
-    old_springs: Vec<Row>,
-    numbers: Vec<u32>,
+    found: Vec<Listed>,
+    known: Vec<Spot>,
+    moved_spots: Vec<Spot>,
     spans: Vec<Span>,
     jobs: Jobs,
     results: Vec<Nearest>,
-    touching: Vec<Touch>,
-    /// The springs of what touches.
-    springs: Vec<Row>,
+    places: Vec<Place>,
     effects: Vec<Effect>,
 }
 
@@ -186,18 +234,29 @@ pub struct Outcome {
     pub fault: bool,
 }
 
-/// The forces of a range of pairs.
+/// The forces of a range of pairs: whole blocks, but for the last.
 pub struct Forces<'a> {
     /// What they depend on.
     pub surroundings: Surroundings<'a>,
     /// The pairs.
     pub pairs: &'a mut [Pair],
-    /// What they do; of those that do nothing, whatever they did before.
+    /// What their contacts depend on.
+    pub terms: &'a mut [Terms],
+    /// What the active features of each block remember.
+    pub spots: &'a mut [Vec<Spot>],
+    /// What the pairs do; of those that do nothing, whatever they did before.
     pub actions: &'a mut [Action],
     /// Whether they do anything.
     pub busy: &'a mut [bool],
     /// Room to work in.
     pub desk: &'a mut Desk,
+}
+
+/// A block of pairs.
+struct Block<'a> {
+    pairs: &'a mut [Pair],
+    terms: &'a mut [Terms],
+    spots: &'a mut Vec<Spot>,
 }
 
 impl Work for Forces<'_> {
@@ -208,64 +267,31 @@ impl Work for Forces<'_> {
         let Self {
             surroundings: all,
             pairs,
+            terms,
+            spots,
             actions,
             busy,
             desk,
         } = self;
         let mut outcome = Outcome::default();
         busy.fill(false);
-        desk.clear();
-        for index in 0..pairs.len() {
-            fetch_ahead(pairs, index);
-            let pair = &mut pairs[index];
-            let relative = all.relative(pair);
-            let moved = CAUTION * all.dt * pace(&relative, all.bodies[pair.first as usize].spin[3]);
-            pair.slack -= moved;
-            pair.active_slack -= moved;
-            pair.quiet -= moved;
-            if pair.slack < 0.0 {
-                outcome.listed += 1;
-                desk.list::<N>(processor, &all, moved, pair);
-            }
-            let choose = pair.active_slack < 0.0;
-            if !choose && pair.quiet > 0.0 {
-                continue;
-            }
-            desk.queue(&all, pair, &relative, index, choose.then_some(moved));
-            if desk.results.len() >= BATCH {
-                outcome.fault |= desk.finish::<N>(processor, &all, pairs, actions, busy);
-            }
+        let blocks = pairs.chunks_mut(BLOCK).zip(terms.chunks_mut(BLOCK));
+        let effects = actions.chunks_mut(BLOCK).zip(busy.chunks_mut(BLOCK));
+        for (((pairs, terms), spots), (actions, busy)) in blocks.zip(spots).zip(effects) {
+            let mut block = Block {
+                pairs,
+                terms,
+                spots,
+            };
+            outcome.listed += desk.gather::<N>(processor, &all, &mut block);
+            desk.choose::<N>(processor, &all, &mut block);
+            desk.measure::<N>(processor, &all, &block);
+            outcome.fault |= desk.weigh(&all, &mut block);
+            desk.press::<N>(processor, all.dt, &mut block);
+            desk.sum(&all, &block, actions, busy);
         }
-        outcome.fault |= desk.finish::<N>(processor, &all, pairs, actions, busy);
         outcome
     }
-}
-
-/// Asks for what the pairs after `index` remember: it lies scattered in memory.
-#[inline(always)]
-fn fetch_ahead(pairs: &[Pair], index: usize) {
-    const FAR: usize = 12;
-    const NEAR: usize = 6;
-    let wanted = |ahead: usize| pairs.get(index + ahead).filter(|pair| pair.quiet <= 0.0);
-    if let Some(pair) = wanted(FAR) {
-        prefetch::<_, 4>(std::slice::from_ref(&*pair.memory));
-    }
-    if let Some(pair) = wanted(NEAR) {
-        let memory = &pair.memory;
-        let jobs = &memory.active.jobs;
-        prefetch::<_, 2>(&jobs.above);
-        prefetch::<_, 2>(&jobs.outlines);
-        prefetch::<_, 2>(&jobs.sides);
-        prefetch::<_, 3>(&jobs.edges);
-        prefetch::<_, 2>(&memory.overlaps);
-        prefetch::<_, 8>(&memory.springs);
-    }
-}
-
-/// A speed that no point of the first body, `reach` from its centroid at most, exceeds relative to the second [m/s].
-#[inline(always)]
-fn pace(relative: &Relative, reach: f64) -> f64 {
-    length_squared(relative.velocity).sqrt() + length_squared(relative.spin).sqrt() * reach
 }
 
 #[inline(always)]
@@ -291,44 +317,110 @@ impl Surroundings<'_> {
         Some(&self.walls[wall])
     }
 
-    /// Position, velocity and spin of the second side; a wall moves about the origin.
+    /// Position, velocity and spin of a side of a pair; a wall moves about the origin.
     #[inline(always)]
-    fn second(&self, pair: &Pair) -> [Row; 3] {
-        if let Some(wall) = self.wall(pair) {
-            return [
-                [0.0; 4],
-                row(wall.motion.velocity, 0.0),
-                row(wall.motion.spin, 0.0),
-            ];
+    fn motion(&self, side: u32) -> [&Row; 3] {
+        match (side as usize).checked_sub(self.bodies.len()) {
+            None => {
+                let body = &self.bodies[side as usize];
+                [&body.position, &body.velocity, &body.spin]
+            }
+            Some(wall) => self.wall_motions[wall].each_ref(),
         }
-        let body = &self.bodies[pair.second as usize];
-        [body.position, body.velocity, body.spin]
+    }
+
+    /// Asks for the second side of `pair`.
+    #[inline(always)]
+    fn fetch(&self, pair: &Pair) {
+        if let Some(body) = self.bodies.get(pair.second as usize) {
+            prefetch::<_, 3>(std::slice::from_ref(body));
+        }
     }
 
     /// How the two move relative to each other.
     #[inline(always)]
     fn relative(&self, pair: &Pair) -> Relative {
         let first = &self.bodies[pair.first as usize];
-        let [position, velocity, spin] = self.second(pair);
-        let turning = crossed(spin, sub(first.position, position));
+        let [position, velocity, spin] = self.motion(pair.second);
+        let turning = crossed(*spin, sub(first.position, *position));
+        let velocity = sub(sub(first.velocity, *velocity), turning);
+        let (reach, spin) = (first.spin[3], sub(first.spin, *spin));
         Relative {
-            velocity: sub(sub(first.velocity, velocity), turning),
-            spin: sub(first.spin, spin),
-            second: position,
+            velocity,
+            spin,
+            pace: length_squared(velocity).sqrt() + length_squared(spin).sqrt() * reach,
         }
     }
 }
 
+impl Block<'_> {
+    /// Gives the pair `wanted` room for `count` active features, more than it has; the new spots are `spare` ones.
+    fn make_room(&mut self, wanted: usize, count: usize, spare: Spot, room: &mut Vec<Spot>) {
+        room.clear();
+        for (number, pair) in self.pairs.iter_mut().enumerate() {
+            let (old, start) = (pair.active.spots(), room.len());
+            let needed = if number == wanted { count } else { old.len() };
+            room.extend_from_slice(&self.spots[old]);
+            room.resize(start + needed + needed / 8, spare);
+            pair.active.start = start as u32;
+            pair.active.room = (room.len() - start) as u32;
+        }
+        self.spots.clear();
+        self.spots.reserve_exact(room.len());
+        self.spots.extend_from_slice(room);
+    }
+}
+
 impl Desk {
-    fn clear(&mut self) {
+    /// Collects the pairs of a block whose features are to be measured; lists anew those that have used up their slack, and
+    /// returns how many these are.
+    #[inline(always)]
+    fn gather<N: Lanes>(
+        &mut self,
+        processor: N::Processor,
+        all: &Surroundings<'_>,
+        block: &mut Block<'_>,
+    ) -> u64 {
+        let mut listed = 0;
         self.spans.clear();
-        self.jobs.clear();
-        self.results.clear();
-        self.touching.clear();
-        self.springs.clear();
+        for index in 0..block.pairs.len() {
+            if let Some(ahead) = block.pairs.get(index + AHEAD) {
+                all.fetch(ahead);
+            }
+            let pair = &mut block.pairs[index];
+            let relative = all.relative(pair);
+            let moved = CAUTION * all.dt * relative.pace;
+            pair.slack -= moved;
+            pair.active_slack -= moved;
+            pair.quiet -= moved;
+            if pair.slack < 0.0 {
+                listed += 1;
+                self.list::<N>(processor, all, moved, pair, &mut block.terms[index]);
+            }
+            let choose = pair.active_slack < 0.0;
+            if !choose && pair.quiet > 0.0 {
+                continue;
+            }
+            prefetch::<_, 16>(&block.spots[pair.active.spots()]);
+            if (pair.second as usize) < all.bodies.len() {
+                all.geometry.fetch(pair.second as usize);
+            }
+            let [vx, vy, vz, _] = relative.velocity;
+            let [wx, wy, wz, _] = relative.spin;
+            let [x, y, z, _] = all.bodies[pair.first as usize].position;
+            self.spans.push(Span {
+                velocity: [vx, vy, vz, 1.0],
+                spin: [wx, wy, wz, 1.0],
+                centre: [x, y, z, block.terms[index].offset],
+                pair: index as u32,
+                choose: choose.then_some(moved),
+                ..Span::default()
+            });
+        }
+        listed
     }
 
-    /// Makes the list of `pair`, which has `moved` by so much in this step, anew; springs follow their features.
+    /// Makes the list of `pair`, which has `moved` by so much in this step, anew.
     #[inline(always)]
     fn list<N: Lanes>(
         &mut self,
@@ -336,232 +428,238 @@ impl Desk {
         all: &Surroundings<'_>,
         moved: f64,
         pair: &mut Pair,
+        terms: &mut Terms,
     ) {
-        let skin = (LIFE * moved).clamp(SKIN.start() * pair.touch, SKIN.end() * pair.touch);
+        let skin = (LIFE * moved).clamp(SKIN.start() * terms.touch, SKIN.end() * terms.touch);
         pair.slack = if let Some(wall) = all.wall(pair) {
-            list_at_wall(all, &wall.surface, skin, pair)
+            let (first, reach) = (pair.first as usize, [terms.touch, skin]);
+            list_at_wall(all, &wall.surface, first, reach, &mut self.found)
         } else {
             let wanted = Wanted {
                 bodies: [pair.first as usize, pair.second as usize],
-                axis: pair.memory.axis,
-                touch: pair.touch,
+                axis: terms.axis.map(f64::from),
+                touch: terms.touch,
                 skin,
             };
             let found = self
                 .search
                 .run::<N>(processor, &all.geometry, &wanted, &mut self.found);
-            let memory = &mut *pair.memory;
-            memory.near.copy(&self.found);
-            memory.axis = found.axis;
+            terms.axis = found.axis.map(|x| x as f32);
             found.slack
         };
+        pair.near = self.found.as_slice().into();
         pair.active_slack = -1.0;
     }
 
-    /// Puts a pair's features into the batch: the near ones where its active features are to be chosen, else those.
+    /// Measures features of a pair with a wall, or has them measured.
     #[inline(always)]
     fn queue(
         &mut self,
         all: &Surroundings<'_>,
         pair: &Pair,
-        relative: &Relative,
-        index: usize,
-        choose: Option<f64>,
+        [faces, edges]: [impl ExactSizeIterator<Item = Listed>; 2],
     ) {
-        let memory = &pair.memory;
-        let list = if choose.is_some() {
-            &memory.near
-        } else {
-            &memory.active
-        };
-        let results = self.results.len();
+        let shapes = all.geometry.shapes;
         if let Some(wall) = all.wall(pair) {
             let vertices = all.geometry.vertices_of(pair.first as usize);
-            self.results.extend(list.features.iter().map(|feature| {
-                let Feature::VertexFace(vertex, _) = feature else {
+            self.results.extend(faces.map(|listed| {
+                let Feature::VertexFace(vertex, _) = listed.feature else {
                     return Nearest::default();
                 };
-                to_wall(&wall.surface, vertices[usize::from(*vertex)])
+                to_wall(&wall.surface, vertices[usize::from(vertex)])
             }));
-        } else {
-            self.jobs.extend(&list.jobs, results as u32);
-            let end = results + list.features.len();
-            self.results.resize(end, Nearest::default());
+            return;
         }
-        let [vx, vy, vz, _] = relative.velocity;
-        let [cx, cy, cz, _] = all.bodies[pair.first as usize].position;
-        self.spans.push(Span {
-            velocity: [vx, vy, vz, 1.0],
-            spin: relative.spin,
-            centre: [cx, cy, cz, memory.offset],
-            law: memory.law,
-            second: relative.second,
-            pair: index,
-            results,
-            choose,
-            ..Span::default()
-        });
+        let starts = [pair.first, pair.second].map(|body| shapes.places[body as usize]);
+        let out = self.results.len();
+        let end = out + faces.len() + edges.len();
+        self.jobs
+            .extend(shapes, &starts, [faces, edges], out as u32);
+        self.results.resize(end, Nearest::default());
     }
 
-    /// Does what the batch holds and empties it. True where two cores came too near each other.
+    /// Makes active what may touch within a few steps, for those pairs of the block that have used up their active slack.
     #[inline(always)]
-    fn finish<N: Lanes>(
+    fn choose<N: Lanes>(
         &mut self,
         processor: N::Processor,
         all: &Surroundings<'_>,
-        pairs: &mut [Pair],
-        actions: &mut [Action],
-        busy: &mut [bool],
-    ) -> bool {
+        block: &mut Block<'_>,
+    ) {
+        if self.spans.iter().all(|span| span.choose.is_none()) {
+            return;
+        }
+        self.jobs.clear();
+        self.results.clear();
+        for number in 0..self.spans.len() {
+            if self.spans[number].choose.is_none() {
+                continue;
+            }
+            let pair = &block.pairs[self.spans[number].pair as usize];
+            self.spans[number].results = self.results.len() as u32;
+            let faces = pair.near.partition_point(Listed::is_face);
+            let (faces, edges) = pair.near.split_at(faces);
+            let kinds = [faces, edges].map(|kind| kind.iter().copied());
+            self.queue(all, pair, kinds);
+        }
         let places = &all.geometry.places;
         self.jobs
             .run::<N, false>(processor, places, &mut self.results);
+        for number in 0..self.spans.len() {
+            if let Some(moved) = self.spans[number].choose {
+                self.activate(number, moved, block);
+            }
+        }
+    }
+
+    /// Makes active what may touch within a few steps of the measured near features of a pair; what they remember follows
+    /// them. Whatever touched a step ago is among them: no pair moves that far in a step.
+    fn activate(&mut self, number: usize, moved: f64, block: &mut Block<'_>) {
+        let span = &self.spans[number];
+        let own = span.pair as usize;
+        let (pair, terms) = (&mut block.pairs[own], &block.terms[own]);
+        let skin = (ACTIVE_LIFE * moved).max(ACTIVE_SKIN * terms.touch);
+        let results = &self.results[span.results as usize..];
+        let nearest = choose(&pair.near, results, terms.touch + skin, &mut self.found);
+        pair.active_slack = nearest - terms.touch;
+        let old = &block.spots[pair.active.spots()];
+        self.known.clear();
+        self.known.extend_from_slice(old);
+        let count = self.found.len();
+        if count > pair.active.room as usize {
+            let spare = Spot::apart(self.found[0]);
+            block.make_room(own, count, spare, &mut self.moved_spots);
+        }
+        let active = &mut block.pairs[own].active;
+        active.count = count as u32;
+        active.faces = self.found.partition_point(Listed::is_face) as u32;
+        let mut known = self.known.iter().peekable();
+        for (spot, listed) in block.spots[active.spots()].iter_mut().zip(&self.found) {
+            while known
+                .next_if(|old| old.listed.feature < listed.feature)
+                .is_some()
+            {}
+            let same = known.next_if(|old| old.listed.feature == listed.feature);
+            *spot = Spot {
+                listed: *listed,
+                ..same.copied().unwrap_or(Spot::apart(*listed))
+            };
+        }
+    }
+
+    /// Measures the active features of the collected pairs.
+    #[inline(always)]
+    fn measure<N: Lanes>(
+        &mut self,
+        processor: N::Processor,
+        all: &Surroundings<'_>,
+        block: &Block<'_>,
+    ) {
+        self.jobs.clear();
+        self.results.clear();
+        self.places.clear();
+        for number in 0..self.spans.len() {
+            let pair = &block.pairs[self.spans[number].pair as usize];
+            self.spans[number].results = self.results.len() as u32;
+            let range = pair.active.spots();
+            let spots = range.start as u32..range.end as u32;
+            let span = number as u32;
+            self.places.extend(spots.map(|spot| Place { span, spot }));
+            let (faces, edges) = block.spots[range].split_at(pair.active.faces as usize);
+            let kinds = [faces, edges].map(|kind| kind.iter().map(|spot| spot.listed));
+            self.queue(all, pair, kinds);
+        }
+        let places = &all.geometry.places;
+        self.jobs
+            .run::<N, false>(processor, places, &mut self.results);
+    }
+
+    /// Where the results of the span `number` are.
+    #[inline(always)]
+    fn results_of(&self, number: usize) -> Range<usize> {
+        let next = self.spans.get(number + 1);
+        let end = next.map_or(self.results.len(), |next| next.results as usize);
+        self.spans[number].results as usize..end
+    }
+
+    /// Finds the overlaps, how they share the stiffness, and how far nothing touches yet. True where two cores are so near
+    /// each other that they might pass through.
+    #[inline(always)]
+    fn weigh(&mut self, all: &Surroundings<'_>, block: &mut Block<'_>) -> bool {
         let mut fault = false;
         for number in 0..self.spans.len() {
-            let pair = &mut pairs[self.spans[number].pair];
-            fault |= self.find_touching(all, number, pair);
-        }
-        self.effects.clear();
-        self.effects.resize(self.touching.len(), Effect::default());
-        self.press::<N>(processor, all.dt);
-        for (number, span) in self.spans.iter().enumerate() {
-            let next = self.spans.get(number + 1);
-            let contacts = span.contacts..next.map_or(self.touching.len(), |next| next.contacts);
-            if contacts.is_empty() && span.released == 0.0 {
-                continue;
+            let range = self.results_of(number);
+            let (span, results) = (&mut self.spans[number], &mut self.results[range]);
+            let own = span.pair as usize;
+            let (pair, terms) = (&mut block.pairs[own], &block.terms[own]);
+            let mut deepest = f64::NEG_INFINITY;
+            for result in results.iter_mut() {
+                let overlap = terms.touch - result.normal[3];
+                result.middle[3] = overlap;
+                deepest = if overlap > deepest { overlap } else { deepest };
             }
-            let pair = &mut pairs[span.pair];
-            let touching = self.touching[contacts.clone()].iter();
-            for (touch, spring) in touching.zip(&self.springs[contacts.clone()]) {
-                pair.memory.springs[touch.slot as usize] = *spring;
+            span.touches = deepest > 0.0;
+            pair.quiet = if span.touches { 0.0 } else { -deepest };
+            fault |= deepest > DEEPEST * terms.touch && !all.has_sides(pair);
+            if all.rule == FeatureRule::Shared {
+                let spots = &block.spots[pair.active.spots()];
+                let before = Sums::of(spots.iter().map(|spot| spot.overlap));
+                let now = Sums::of(results.iter().map(|result| result.middle[3]));
+                (span.spin[3], span.velocity[3]) = (before.part(), now.part());
+                span.stored = 0.5 * terms.law[0] * (now.shared() - before.shared());
             }
-            actions[span.pair] = all.action(pair, span, &self.effects[contacts]);
-            busy[span.pair] = true;
         }
-        self.clear();
         fault
     }
 
-    /// Makes active what may touch within a few steps of the measured near features of a pair; springs follow their
-    /// features.
+    /// The contact law of every active feature of the block.
     #[inline(always)]
-    fn activate(&mut self, number: usize, moved: f64, pair: &mut Pair) {
-        let span = &mut self.spans[number];
-        let skin = (ACTIVE_LIFE * moved).max(ACTIVE_SKIN * pair.touch);
-        let memory = &mut *pair.memory;
-        std::mem::swap(&mut self.old_features, &mut memory.active.features);
-        std::mem::swap(&mut self.old_springs, &mut memory.springs);
-        let results = &mut self.results[span.results..];
-        let cutoff = pair.touch + skin;
-        let nearest = self
-            .found
-            .choose(&memory.near, results, cutoff, &mut self.numbers);
-        memory.active.copy(&self.found);
-        pair.active_slack = nearest - pair.touch;
-        memory.springs.clear();
-        memory.overlaps.clear();
-        let mut known = self.old_features.iter().zip(&self.old_springs).peekable();
-        let mut let_go = |spring: &Row| span.released += 0.5 * spring[3] * length_squared(*spring);
-        for feature in &memory.active.features {
-            while let Some((_, spring)) = known.next_if(|(old, _)| *old < feature) {
-                let_go(spring);
-            }
-            let same = known.next_if(|(old, _)| *old == feature);
-            let spring = same.map_or(UNLOADED, |(_, spring)| *spring);
-            // That it touched before is all that its overlap tells until it is found touching.
-            memory.overlaps.push(spring[3]);
-            memory.springs.push(spring);
-        }
-        known.for_each(|(_, spring)| let_go(spring));
-    }
-
-    /// Finds the contacts of a pair among the results. Springs of what does not touch are gone, and their energy is lost.
-    /// True where the cores are so near each other that they might pass through.
-    #[inline(always)]
-    fn find_touching(&mut self, all: &Surroundings<'_>, number: usize, pair: &mut Pair) -> bool {
-        if let Some(moved) = self.spans[number].choose {
-            self.activate(number, moved, pair);
-        }
-        let span = &mut self.spans[number];
-        span.contacts = self.touching.len();
-        let (mut sum, mut squares) = (0.0, 0.0);
-        let (mut deepest, mut nearest) = (0.0, f64::INFINITY);
-        let memory = &mut *pair.memory;
-        let results = self.results[span.results..].iter_mut();
-        for (slot, (known, result)) in memory.overlaps.iter_mut().zip(results).enumerate() {
-            let overlap = pair.touch - result.normal[3];
-            if overlap > 0.0 {
-                result.middle[3] = overlap;
-                *known = overlap;
-                sum += overlap;
-                squares += overlap * overlap;
-                deepest = if overlap > deepest { overlap } else { deepest };
-                self.touching.push(Touch {
-                    span: number as u32,
-                    result: (span.results + slot) as u32,
-                    slot: slot as u32,
-                });
-                self.springs.push(memory.springs[slot]);
-                continue;
-            }
-            nearest = if -overlap < nearest {
-                -overlap
-            } else {
-                nearest
-            };
-            if *known > 0.0 {
-                *known = 0.0;
-                let spring = std::mem::replace(&mut memory.springs[slot], UNLOADED);
-                span.released += 0.5 * spring[3] * length_squared(spring);
-            }
-        }
-        pair.quiet = if sum > 0.0 { 0.0 } else { nearest };
-        if all.rule == FeatureRule::Shared && sum > 0.0 {
-            span.velocity[3] = squares / (sum * sum);
-        }
-        deepest > DEEPEST * pair.touch && !all.has_sides(pair)
-    }
-
-    /// The contact law of every contact of the batch.
-    #[inline(always)]
-    fn press<N: Lanes>(&mut self, processor: N::Processor, dt: f64) {
-        let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    fn press<N: Lanes>(&mut self, processor: N::Processor, dt: f64, block: &mut Block<'_>) {
+        let (terms, spots) = (&*block.terms, &mut *block.spots);
+        self.effects.resize(self.results.len(), Effect::default());
+        let zero = N::splat(processor, 0.0);
         let step = N::splat(processor, dt);
-        let always = one.exceeds(zero);
-        let outputs = self
-            .springs
-            .chunks_mut(N::COUNT)
-            .zip(self.effects.chunks_mut(N::COUNT));
-        for (chunk, (springs, effects)) in self.touching.chunks(N::COUNT).zip(outputs) {
-            let all = group(chunk);
-            let last = chunk.len() - 1;
+        let half_step = N::splat(processor, 0.5 * dt);
+        let outputs = self.effects.chunks_mut(N::COUNT);
+        let results = self.results.chunks(N::COUNT);
+        for ((places, results), effects) in self.places.chunks(N::COUNT).zip(results).zip(outputs) {
+            let all = group::<N, _>(places);
             let span = side_by_side::<N, _>(|k| &self.spans[all[k].span as usize]);
-            let result = side_by_side::<N, _>(|k| &self.results[all[k].result as usize]);
-            let old = side_by_side::<N, _>(|k| &springs[k.min(last)]);
+            let result = group::<N, _>(results);
+            let spot = side_by_side::<N, _>(|k| &spots[all[k].spot as usize]);
+            let before = side_by_side::<N, _>(|k| [spot[k].overlap, spot[k].dashpot, 0.0, 0.0]);
             let [nx, ny, nz, _] = N::gather(processor, side_by_side::<N, _>(|k| &result[k].normal));
             let normal = [nx, ny, nz];
-            let [mx, my, mz, overlap] =
+            let [mx, my, mz, depth] =
                 N::gather(processor, side_by_side::<N, _>(|k| &result[k].middle));
             let [cx, cy, cz, offset] =
                 N::gather(processor, side_by_side::<N, _>(|k| &span[k].centre));
             let [vx, vy, vz, part] =
                 N::gather(processor, side_by_side::<N, _>(|k| &span[k].velocity));
-            let [wx, wy, wz, _] = N::gather(processor, side_by_side::<N, _>(|k| &span[k].spin));
-            let [normal_stiffness, damping, tangential_stiffness, friction] =
-                N::gather(processor, side_by_side::<N, _>(|k| &span[k].law));
+            let [wx, wy, wz, part_before] =
+                N::gather(processor, side_by_side::<N, _>(|k| &span[k].spin));
+            let [normal_stiffness, damping, tangential_stiffness, friction] = N::gather(
+                processor,
+                side_by_side::<N, _>(|k| &terms[span[k].pair as usize].law),
+            );
+            let [overlap_before, dashpot_before, ..] =
+                N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
+            let touching = depth.exceeds(zero);
+            let overlap = N::choose(touching, depth, zero);
             let arm = plus(minus([mx, my, mz], [cx, cy, cz]), times(normal, offset));
             let velocity = plus([vx, vy, vz], cross([wx, wy, wz], arm));
             let approach = dot(velocity, normal);
             let elastic = normal_stiffness * part * overlap;
-            let repulsion = Hooke.normal_force(elastic, damping * part * approach, zero);
+            let damped = N::choose(touching, damping * part * approach, zero);
+            let repulsion = Hooke.normal_force(elastic, damped, zero);
             let slip = minus(velocity, times(normal, approach));
-            let stiffness = tangential_stiffness * part;
+            let stiffness = N::choose(touching, tangential_stiffness * part, zero);
             let stretched = stretch::<N>(
                 processor,
-                old,
+                side_by_side::<N, _>(|k| &spot[k].spring),
                 times(slip, step),
                 normal,
-                always,
+                touching,
                 stiffness,
                 friction * Hooke.coulomb_force(elastic, repulsion, zero),
             );
@@ -570,18 +668,77 @@ impl Desk {
                 times(normal, repulsion),
             );
             let moment = cross(arm, force);
-            let in_dashpot = step * ((repulsion - elastic) * approach);
-            let pressed = step * (elastic * approach);
-            let forces = N::rows([force[0], force[1], force[2], zero]);
-            let moments = N::rows([moment[0], moment[1], moment[2], zero]);
+            // The mean of the old and the new push, along the way from one to the other.
+            let dashpot = repulsion - elastic;
+            let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
+            let elastic_before = normal_stiffness * part_before * overlap_before;
+            let pressed = half_step * ((elastic_before + elastic) * approach);
+            let forces = N::rows([force[0], force[1], force[2], overlap]);
+            let moments = N::rows([moment[0], moment[1], moment[2], dashpot]);
             let energies = N::rows([in_dashpot, stretched.lost, pressed, zero]);
-            for (k, (effect, spring)) in effects.iter_mut().zip(springs).enumerate() {
+            for (k, (effect, place)) in effects.iter_mut().zip(places).enumerate() {
                 effect.force = forces[k].row();
                 effect.moment = moments[k].row();
                 effect.energy = energies[k].row();
-                *spring = stretched.rows[k].row();
+                let spot = &mut spots[place.spot as usize];
+                spot.spring = stretched.rows[k].row();
+                spot.overlap = effect.force[3];
+                spot.dashpot = effect.moment[3];
             }
         }
+    }
+
+    /// Sums what the contacts of each collected pair do.
+    #[inline(always)]
+    fn sum(
+        &self,
+        all: &Surroundings<'_>,
+        block: &Block<'_>,
+        actions: &mut [Action],
+        busy: &mut [bool],
+    ) {
+        for (number, span) in self.spans.iter().enumerate() {
+            let pair = span.pair as usize;
+            let effects = &self.effects[self.results_of(number)];
+            let action = all.action(&block.pairs[pair], span, effects);
+            let exchanges = action.exchanged != [0.0; 4];
+            if span.touches || exchanges {
+                actions[pair] = action;
+                busy[pair] = true;
+            }
+        }
+    }
+}
+
+/// Sums over the overlaps of a pair's contacts.
+#[derive(Default)]
+struct Sums {
+    overlaps: f64,
+    squares: f64,
+}
+
+impl Sums {
+    /// Those of `overlaps`, of which negative ones do not count.
+    fn of(overlaps: impl Iterator<Item = f64>) -> Self {
+        let touching = overlaps.filter(|overlap| *overlap > 0.0);
+        touching.fold(Self::default(), |sums, overlap| Self {
+            overlaps: sums.overlaps + overlap,
+            squares: sums.squares + overlap * overlap,
+        })
+    }
+
+    /// The part of the pair's stiffness that each contact has where they share it.
+    fn part(&self) -> f64 {
+        if self.overlaps > 0.0 {
+            self.squares / (self.overlaps * self.overlaps)
+        } else {
+            1.0
+        }
+    }
+
+    /// The sum of the squares, each with its part of the stiffness.
+    fn shared(&self) -> f64 {
+        self.part() * self.squares
     }
 }
 
@@ -596,9 +753,9 @@ impl Surroundings<'_> {
         })
     }
 
-    /// What `pair` does, from the `effects` of its contacts.
+    /// What `pair` does, from the `effects` of its active features: nothing where they do not touch.
     #[inline(always)]
-    fn action(&self, pair: &mut Pair, span: &Span, effects: &[Effect]) -> Action {
+    fn action(&self, pair: &Pair, span: &Span, effects: &[Effect]) -> Action {
         let mut action = Action::default();
         let mut pressed = 0.0;
         for effect in effects {
@@ -610,14 +767,12 @@ impl Surroundings<'_> {
             action.exchanged[1] += effect.energy[1];
             pressed += effect.energy[2];
         }
-        action.exchanged[1] += span.released;
         if self.rule == FeatureRule::Shared {
             // Stiffness that is shared anew is no potential's: what it takes or gives is booked with the springs.
-            let stored = pair.memory.stored_energy(span.velocity[3]);
-            action.exchanged[1] += pressed - (stored - pair.memory.stored);
-            pair.memory.stored = stored;
+            action.exchanged[1] += pressed - span.stored;
         }
-        let across = crossed(sub(span.centre, span.second), action.force);
+        let [second, ..] = self.motion(pair.second);
+        let across = crossed(sub(span.centre, *second), action.force);
         for axis in 0..3 {
             action.second[axis] = -action.first[axis] - across[axis];
         }
@@ -626,46 +781,30 @@ impl Surroundings<'_> {
             let torque = -vector(action.second).dot(wall.motion.spin);
             action.exchanged[3] = self.dt * (force + torque);
         }
-        action.force[3] = if effects.is_empty() { 0.0 } else { 1.0 };
+        action.force[3] = if span.touches { 1.0 } else { 0.0 };
         action
     }
 }
 
-impl Memory {
-    /// What its normal springs store where each contact has `part` of the stiffness [J].
-    pub fn stored_energy(&self, part: f64) -> f64 {
-        let squares: f64 = self.overlaps.iter().map(|x| x * x).sum();
-        0.5 * self.law[0] * part * squares
-    }
-
-    /// The part of the stiffness that each contact has where they share it.
-    pub fn part(&self) -> f64 {
-        let sum: f64 = self.overlaps.iter().sum();
-        let squares: f64 = self.overlaps.iter().map(|x| x * x).sum();
-        if sum > 0.0 {
-            squares / (sum * sum)
-        } else {
-            1.0
-        }
-    }
-}
-
-/// Lists the vertices of the first body that may touch a wall; returns how far it may move until the next time.
-fn list_at_wall(all: &Surroundings<'_>, surface: &Surface, skin: f64, pair: &mut Pair) -> f64 {
-    pair.memory.near.clear();
+/// Lists in `found` the vertices of body `first` nearer to a wall than `touch` and `skin`; returns how far it may move until
+/// the next time.
+fn list_at_wall(
+    all: &Surroundings<'_>,
+    surface: &Surface,
+    first: usize,
+    [touch, skin]: [f64; 2],
+    found: &mut Vec<Listed>,
+) -> f64 {
+    found.clear();
     let mut nearest = f64::INFINITY;
-    let vertices = all.geometry.vertices_of(pair.first as usize);
-    for (vertex, place) in (0..).zip(vertices) {
+    for (vertex, place) in (0..).zip(all.geometry.vertices_of(first)) {
         let distance = surface.distance(vector(*place)).0;
         nearest = nearest.min(distance);
-        if distance < pair.touch + skin {
-            pair.memory
-                .near
-                .features
-                .push(Feature::VertexFace(vertex, 0));
+        if distance < touch + skin {
+            found.push(Listed::face(Feature::VertexFace(vertex, 0), 0));
         }
     }
-    skin.max(nearest - pair.touch)
+    skin.max(nearest - touch)
 }
 
 /// The point of a wall nearest to a vertex.

@@ -5,7 +5,8 @@ use super::super::law::{Hooke, Law, Pairing};
 use super::super::row::vector;
 use super::super::terms::{ForceTerms, velocity_half_a_step_ago};
 use super::bodies::{Body, Shapes};
-use super::nearest::{EdgeJob, FaceJob, Jobs, Nearest, OutlineJob, Places};
+use super::listing::Listed;
+use super::nearest::{Jobs, Nearest, Places};
 use crate::scene::{ContactLaw, FeatureRule};
 use crate::world::{Contact, Feature, FeatureContact, Partner, World};
 use glam::DVec3;
@@ -94,7 +95,8 @@ impl<'a> Meeting<'a> {
         let (from, to) = (self.shapes.places[body], self.shapes.places[body + 1]);
         self.vertices.resize(to.vertex as usize, [0.0; 4]);
         self.planes.resize(to.face as usize, [0.0; 4]);
-        self.shapes.place(
+        self.shapes.place::<<One as Lanes>::Quad>(
+            (),
             body,
             &Body::of(self.world, i, self.world.clock.time_step),
             &mut self.vertices[from.vertex as usize..],
@@ -108,64 +110,18 @@ impl<'a> Meeting<'a> {
             let surface = &self.world.container.walls[w as usize].surface;
             return super::pairs::to_wall(surface, self.vertices[usize::from(vertex)]);
         }
+        let starts = [0, 1].map(|body| self.shapes.places[body]);
+        let listed = Listed::of(&self.shapes, [0, 1], feature);
         let mut jobs = Jobs::default();
-        match feature {
-            Feature::VertexFace(vertex, face) => self.outline(&mut jobs, [0, 1], vertex, face, 0),
-            Feature::FaceVertex(face, vertex) => self.outline(&mut jobs, [1, 0], vertex, face, 1),
-            Feature::EdgeEdge(first, second) => jobs.edges.push(EdgeJob {
-                ends: self.ends(first, second),
-                out: 0,
-            }),
-            // Two spheres meet as two edges of no length.
-            Feature::VertexVertex => jobs.edges.push(EdgeJob {
-                ends: self.ends(0, 0),
-                out: 0,
-            }),
-        }
+        jobs.extend_sorted(&self.shapes, &starts, &[listed], 0);
         let places = Places {
             vertices: &self.vertices,
             planes: &self.planes,
+            corners: &self.shapes.loops,
         };
         let mut results = [Nearest::default()];
         jobs.run::<One, false>((), &places, &mut results);
         results[0]
-    }
-
-    fn outline(
-        &self,
-        jobs: &mut Jobs,
-        [own, other]: [usize; 2],
-        vertex: u16,
-        face: u16,
-        side: u32,
-    ) {
-        let of_face = self.shapes.places[other];
-        let face = of_face.face + u32::from(face);
-        let corners = self.shapes.outline(face as usize);
-        let place = |corner: usize| of_face.vertex + u32::from(corners[corner % corners.len()]);
-        jobs.sides
-            .extend((0..corners.len()).map(|k| [place(k), place(k + 1)]));
-        jobs.outlines.push(OutlineJob {
-            face: FaceJob {
-                vertex: self.shapes.places[own].vertex + u32::from(vertex),
-                face,
-                side,
-                out: 0,
-            },
-            first: 0,
-            count: corners.len() as u32,
-        });
-    }
-
-    /// Where the ends of an edge of either are.
-    fn ends(&self, first: u16, second: u16) -> [u32; 4] {
-        let ends = |body: usize, edge: u16| {
-            let place = self.shapes.places[body];
-            let ends = self.shapes.edges[place.edge as usize + usize::from(edge)];
-            ends.map(|end| place.vertex + u32::from(end))
-        };
-        let ([a, b], [c, d]) = (ends(0, first), ends(1, second));
-        [a, b, c, d]
     }
 
     fn terms(&self, contact: &FeatureContact, part: f64) -> ForceTerms {

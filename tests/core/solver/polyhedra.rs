@@ -443,28 +443,40 @@ fn restored_collapse_goes_on_to_the_same_bits() {
     assert_eq!(fresh.hash(), whole);
 }
 
+/// A handful of grains on softer springs, which comes to rest soon.
+fn small_column(rule: &str) -> World {
+    let text = COLUMN
+        .replace("radius_mm: 8, height_mm: 16", "radius_mm: 6, height_mm: 12")
+        .replace(
+            "normal_stiffness: 4000, tangential_stiffness: 2000",
+            "normal_stiffness: 1000, tangential_stiffness: 500",
+        );
+    world(&text.replace("RULE", rule), 4e-6)
+}
+
 #[test]
 fn collapse_closes_its_energy_balance_and_comes_to_rest() {
     for rule in ["Full", "Shared"] {
-        let mut world = column(rule);
+        let mut world = small_column(rule);
         let mut solver = Solver::new(2);
         let mut fastest = 0.0_f64;
-        for _ in 0..60 {
+        for _ in 0..25 {
             solver.advance(&mut world, 2000).unwrap();
             fastest = fastest.max(world.kinetic_energy());
         }
         let ledger = EnergyLedger::of(&world);
         println!(
-            "{rule}: kinetic {:e} of at most {fastest:e}, {ledger:?}",
-            world.kinetic_energy()
+            "{rule}: {} grains, kinetic {:e} of at most {fastest:e}, residual {:e}, {ledger:?}",
+            world.grains.len(),
+            world.kinetic_energy(),
+            ledger.relative_residual(),
         );
         assert!(
             world.kinetic_energy() < 0.02 * fastest,
             "{rule}: it has come to rest"
         );
-        // Dashpots are booked with the velocities of half a step ago: first order in the step.
         assert!(
-            ledger.relative_residual().abs() < 0.05,
+            ledger.relative_residual().abs() < 2e-3,
             "{rule}: {}",
             ledger.relative_residual()
         );
