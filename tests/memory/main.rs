@@ -55,7 +55,7 @@ fn column_of_polyhedra_takes_less_than_twenty_kilobytes_a_grain_with_its_output(
     PEAK.store(0, Ordering::Relaxed);
     let mut solver = Solver::new(2);
     // All faces of the packing lie on each other: nowhere do more features touch than soon after the release.
-    for _ in 0..20 {
+    for _ in 0..6 {
         solver.advance(&mut world, 100).unwrap();
     }
     let stepped = per_grain(PEAK.load(Ordering::Relaxed));
