@@ -106,7 +106,7 @@ fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
         let field = egui::DragValue::new(grain).range(0..=count - 1).speed(0.2);
         ui.add(field).labelled_by(label.id);
         ui.weak(format!("of {count}, counted from 0"));
-        let close = ui.button("✕").on_hover_text("Look at no grain");
+        let close = ui.button("×").on_hover_text("Look at no grain");
         close.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Look at no grain"));
         if close.clicked() {
             view.selected = None;
@@ -169,7 +169,7 @@ fn numbers(world: &World, i: usize) -> Vec<Row> {
         ));
         rows.push(row(
             "Film",
-            format!("{} nL", number::short(1e12 * grains.film[i])),
+            number::with_prefix(1e3 * grains.film[i], "L"),
             "Liquid on it, its part in bridges included",
         ));
     }
@@ -292,7 +292,7 @@ impl Microscope {
             .legend(egui_plot::Legend::default().position(egui_plot::Corner::RightTop))
             .show(ui, |plot| {
                 plot.vline(
-                    VLine::new("touching", 0.0)
+                    VLine::new("", 0.0)
                         .color(palette.threshold)
                         .allow_hover(false),
                 );
@@ -420,7 +420,7 @@ fn curves(world: &World, contact: &Contact, terms: &ForceTerms) -> Vec<LawCurve>
     curves
 }
 
-/// The gaps to draw [m]: as deep as the contact is or a little more, as far as a bridge reaches.
+/// The gaps to draw [m]: as deep as the contact is or a little more; of grains that do not touch, as far as a bridge reaches.
 fn reach(
     world: &World,
     contact: &Contact,
@@ -432,7 +432,12 @@ fn reach(
     let rupture = (laws.iter())
         .filter_map(|(_, law)| NormalLaw::of(world, contact, *law).rupture_gap())
         .fold(0.0, f64::max);
-    (-deepest, (1.1 * rupture).max(0.8 * deepest))
+    if terms.overlap > 0.0 {
+        // Bridges reach a hundred times as far as grains overlap: drawn whole they would hide the contact.
+        (-deepest, 3.0 * deepest)
+    } else {
+        (-deepest, (1.1 * rupture).max(0.8 * deepest))
+    }
 }
 
 /// The points of a curve; close together near the moment of touching and on either side of a rupture.

@@ -14,6 +14,10 @@ use std::time::{Duration, Instant};
 /// A dialog that ends sooner than this without a file was never seen by a person.
 const SHORTEST_CHOICE: Duration = Duration::from_millis(800);
 
+/// Why the field stands where a dialog is expected.
+const NO_DIALOG: &str =
+    "The system offers no file dialog here (it needs a D-Bus session and xdg-desktop-portal).";
+
 /// What a path is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -129,6 +133,8 @@ impl PathDialog {
     pub fn ask(&mut self, purpose: Purpose) {
         if self.asked.take().is_some() {
             self.type_path(purpose, "The system's file dialog has not answered.");
+        } else if self.typed.is_none() && !dialogs_are_there() {
+            self.type_path(purpose, NO_DIALOG);
         } else if self.typed.is_none() {
             let answer = IoTaskPool::get().spawn(ask_system(purpose));
             self.asked = Some(Asked { purpose, answer });
@@ -181,13 +187,21 @@ impl PathDialog {
         self.asked = None;
         match answer.file {
             Some(file) => out.push(purpose.request(file.path().to_owned())),
-            None if answer.after < SHORTEST_CHOICE => self.type_path(
-                purpose,
-                "The system offers no file dialog here (it needs a D-Bus session and xdg-desktop-portal).",
-            ),
+            None if answer.after < SHORTEST_CHOICE => self.type_path(purpose, NO_DIALOG),
             None => {}
         }
     }
+}
+
+/// Whether a dialog can appear at all: on Linux it takes a D-Bus session. To find out by asking may take seconds.
+fn dialogs_are_there() -> bool {
+    let bus = || {
+        let folder = std::env::var_os("XDG_RUNTIME_DIR")?;
+        Path::new(&folder).join("bus").exists().then_some(())
+    };
+    !cfg!(target_os = "linux")
+        || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
+        || bus().is_some()
 }
 
 async fn ask_system(purpose: Purpose) -> Answered {

@@ -158,9 +158,9 @@ impl Film {
 
 impl Drop for Film {
     fn drop(&mut self) {
-        if self.writer.is_some() {
-            self.cancel();
-        }
+        self.cancel();
+        // What is half written goes away with its thread.
+        let _ = self.outcome();
     }
 }
 

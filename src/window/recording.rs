@@ -84,7 +84,8 @@ fn record(
             }
             end(&mut running, &mut simulation);
         }
-        _ => {}
+        Some(FilmOrder::Begin(_)) => say("A film is being recorded already".to_owned()),
+        None => {}
     }
     let Some(film) = &mut *running else {
         return;
