@@ -284,7 +284,7 @@ impl Microscope {
             .show_crosshair(false)
             .allow_scroll(false)
             .grid_color(palette.grid)
-            .x_grid_spacer(|input| round_marks(input, 5.5, 0.0))
+            .x_grid_spacer(|input| round_marks(input, 10.0, 0.0))
             .y_grid_spacer(|input| round_marks(input, 3.5, 0.0))
             .x_axis_formatter(|mark, _| tick(mark.value, false))
             .y_axis_formatter(|mark, _| tick(mark.value, false))
