@@ -56,6 +56,9 @@ struct PictureArguments {
     /// Take the picture without a display
     #[arg(long, requires = "screenshot")]
     offscreen: bool,
+    /// Take the picture of the grains alone, without panels
+    #[arg(long, requires = "screenshot")]
+    plain: bool,
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "screenshot", value_parser = size)]
     size: (u32, u32),
@@ -302,6 +305,7 @@ fn open_window(name: String, opened: Opened, options: Options, picture: PictureA
         at: picture.at,
         size: picture.size.into(),
         offscreen: picture.offscreen,
+        plain: picture.plain,
     });
     let job = Job {
         name,

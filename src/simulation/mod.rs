@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `command` | everything a person can ask for |
 //! | `parameter`, `relabel` | the numbers that can change while a run goes on, and how they change a world |
+//! | `start` | the numbers that act from the next start on |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `run` | the trajectory, samples, snapshots |
 //! | `timeline` | runs as something to hold: seek, branch, undo |
@@ -37,6 +38,7 @@ mod script;
 mod session;
 mod settling;
 mod shared;
+mod start;
 mod timeline;
 
 pub use bed::BedStore;
@@ -52,4 +54,5 @@ pub use provenance::{Provenance, TABLES_METADATA};
 pub use run::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
+pub use start::{StartInfo, StartParameter, start_parameters};
 pub use timeline::{Changed, Past, Timeline};

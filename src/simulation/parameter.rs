@@ -5,7 +5,7 @@
 
 use super::{Parameter, relabel};
 use crate::measure::elastic_energy;
-use crate::scene::{BridgeLaw, Scene, SceneContainer, SceneLiquid};
+use crate::scene::{BridgeLaw, ContactLaw, Scene, SceneContainer, SceneLiquid};
 use crate::world::{Liquid, MaterialId, Materials, PairProperties, World};
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -129,6 +129,44 @@ impl Parameter {
             | Self::Restitution(..)
             | Self::RollingFriction(..)
             | Self::BridgeLaw => PURE,
+        }
+    }
+
+    /// Where it stands in the equations of the papers, in the contact law of `scene`.
+    pub fn equation(&self, scene: &Scene) -> &'static str {
+        let hertzian = scene.law == ContactLaw::HertzMindlin;
+        match self {
+            Self::Friction(..) | Self::WetFriction(..) if hertzian => {
+                "|F_t| ≤ μ |F_n|, Eq. 20 of Kasper et al. 2021"
+            }
+            Self::Friction(..) | Self::WetFriction(..) => {
+                "|F_t| ≤ μ K_n δ, Coulomb's bound in Man et al. 2023"
+            }
+            Self::Restitution(..) if hertzian => {
+                "β = ln e / √(ln² e + π²) in both dashpots, Eqs. 5–9 of Kasper et al. 2021"
+            }
+            Self::Restitution(..) => {
+                "γ_n = 2 √(ln² e (K_n/m_e) / (π² + ln² e)), from Eq. 3.4 of Man et al. 2023"
+            }
+            Self::RollingFriction(..) => "q = −μ_R k_n δ r* ω/|ω|, Eq. 10 of Kasper et al. 2021",
+            Self::DrumSpeed => "v = Ω × r on rim and end plates",
+            Self::Gravity => "F = m g",
+            Self::Share(_) => {
+                "P_a = N_a / N; μ_p = Σ P_a P_b μ_ab, Eqs. 4.1 and 4.2 of Man et al. 2023"
+            }
+            Self::Viscosity => {
+                "F = 6π η r*² v_n/D across the gap D, Eqs. 15–17 of Kasper et al. 2021"
+            }
+            Self::SurfaceTension => {
+                "F = π γ √(r_i r_j) (c + exp(a D/r + b)), Eqs. 13 and 14 of Kasper et al. 2021"
+            }
+            Self::ContactAngle => {
+                "α in b of Eq. 14 and in the rupture gap, Eqs. 11–14 of Kasper et al. 2021"
+            }
+            Self::LiquidVolume => {
+                "V = 0.05 (Vf_i + Vf_j) of both films, Eq. 11 of Kasper et al. 2021"
+            }
+            Self::BridgeLaw => "Eqs. 11–17 of Kasper et al. 2021",
         }
     }
 

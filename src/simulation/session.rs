@@ -50,6 +50,10 @@ enum Reason {
     )]
     Version(String),
     #[error(
+        "states a scene that cannot be made here: {0}. Put the file that it needs where it was"
+    )]
+    Scene(String),
+    #[error(
         "is damaged: {0}. Open another copy of it. If its second line is whole, that line, saved as a .json file, repeats \
          the run with --commands"
     )]
@@ -134,7 +138,8 @@ impl Session {
         }
         let foreign = "its contents are those of another build of this version";
         let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
-        let claim: Claim = serde_json::from_str(second).map_err(|_| Reason::Damaged(foreign))?;
+        let claim: Claim =
+            serde_json::from_str(second).map_err(|error| Reason::Scene(error.to_string()))?;
         let archive: Archive = postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
         let hash = archive.shown().map(|world| world.hash().to_string());
         if !archive.is_whole() || !claim.is_genuine() || hash != claim.state_hash {

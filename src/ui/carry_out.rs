@@ -2,7 +2,10 @@
 
 use super::{Desk, OpenWith, Purpose, Recorder, Request, Requests};
 use crate::scene::Scene;
-use crate::simulation::{Claim, Options, Provenance, SavedFile, Session, SessionError, Simulation};
+use crate::simulation::{
+    Claim, Command, Options, Provenance, SavedFile, ScriptedCommand, Session, SessionError,
+    Simulation,
+};
 use crate::view::{CameraRequest, ViewSettings, save_part, save_png};
 use bevy::ecs::system::SystemParam;
 use bevy::math::URect;
@@ -53,9 +56,15 @@ pub fn fulfil_requests(
                 }
             }
             Request::Camera(request) => opener.view.camera_request = Some(request),
+            Request::ShowScenes => desk.show_scenes(),
             Request::ChooseFile => desk.path_dialog.ask(Purpose::Open),
             Request::ChoosePicture => desk.path_dialog.ask(Purpose::Picture),
             Request::Open(name) => opener.open(name, &mut desk),
+            Request::Start(scene) => {
+                let script = simulation.map_or_else(Vec::new, |simulation| present(simulation));
+                opener.start(*scene, script);
+                desk.scene_changed();
+            }
             Request::Save => match (simulation, desk.session.clone()) {
                 (Some(simulation), Some(path)) => simulation.save(path),
                 _ => desk.path_dialog.ask(Purpose::Session),
@@ -95,16 +104,16 @@ pub fn fulfil_requests(
         }
     }
     let saving = simulation.is_some_and(|simulation| simulation.is_saving());
-    if !saving && !desk.path_dialog.is_open() {
-        // No file was chosen, so what is open stays.
-        desk.after_saving = None;
+    let given_up = !saving && !desk.path_dialog.is_open();
+    if given_up && desk.after_saving.take().is_some() {
+        desk.notify("The session was not saved, so it stays open. Ctrl+S saves it.");
     }
 }
 
 /// What to do for `request`; nothing yet where it leaves `unsaved` work and a person must be asked first.
 fn without_loss(request: Request, unsaved: bool, desk: &mut Desk) -> Option<Request> {
     match request {
-        Request::Open(_) | Request::Quit if unsaved => {
+        Request::Open(_) | Request::Start(_) | Request::Quit if unsaved => {
             desk.ask_to_save(request);
             None
         }
@@ -115,6 +124,21 @@ fn without_loss(request: Request, unsaved: bool, desk: &mut Desk) -> Option<Requ
         }
         request => Some(request),
     }
+}
+
+/// What gives a run the present values of the live parameters at its start.
+fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
+    let away = simulation.parameters().iter().filter_map(|info| {
+        let value = simulation.value(&info.parameter);
+        let parameter = info.parameter.clone();
+        (value != info.default).then_some(Command::Set { parameter, value })
+    });
+    let at_the_start = |command| ScriptedCommand {
+        step: Some(0),
+        time: None,
+        command,
+    };
+    away.map(at_the_start).collect()
 }
 
 /// Says what became of the session's files; what was to follow, if it may now.
@@ -165,15 +189,20 @@ impl Opener<'_, '_> {
         match Scene::open(&name) {
             Ok(scene) => {
                 // A script belongs to the scene it was given with.
-                let options = Options {
-                    script: Vec::new(),
-                    ..self.options.0.clone()
-                };
-                self.show(Simulation::open(scene, options));
+                self.start(scene, Vec::new());
                 desk.scene_opened(&name);
             }
             Err(error) => desk.show_open_error(error.to_string()),
         }
+    }
+
+    /// Starts a run of `scene` with `script`.
+    fn start(&mut self, scene: Scene, script: Vec<ScriptedCommand>) {
+        let options = Options {
+            script,
+            ..self.options.0.clone()
+        };
+        self.show(Simulation::open(scene, options));
     }
 
     /// Shows `simulation` as a scene is shown at first.

@@ -8,8 +8,11 @@ use super::beside_paper::BesidePaper;
 use super::changes::Changes;
 use super::collapse_plots::CollapsePlots;
 use super::column_beside_paper::ColumnBesidePaper;
+use super::detail::Detail;
 use super::energy::Energy;
 use super::explorer::{Explorer, Export};
+use super::gallery::Gallery;
+use super::memory::Memory;
 use super::menu::{Shown, menu_ui};
 use super::microscope::Microscope;
 use super::parameters::Parameters;
@@ -22,10 +25,14 @@ use super::theme::{self, Palette};
 use super::transport::Transport;
 use super::velocity::Velocity;
 use super::{Panel, Request, Sheet, sheets, shortcuts};
-use crate::simulation::Simulation;
+use crate::scene::built_in;
+use crate::simulation::{Command, Simulation, Status};
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
-use bevy_egui::egui::{self, Align2, CollapsingHeader, FontId, Id, Margin, RichText, ScrollArea};
+use bevy_egui::egui::{
+    self, Align2, CollapsingHeader, FontId, Id, Margin, RichText, ScrollArea, WidgetInfo,
+    WidgetType,
+};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -34,8 +41,6 @@ const NOTICE_TIME: Duration = Duration::from_secs(6);
 /// A window narrower than this shows no controls, one narrower than the other no plots: the picture comes first.
 const ROOM_FOR_CONTROLS: f32 = 700.0;
 const ROOM_FOR_MEASURES: f32 = 1000.0;
-/// Recent scenes kept.
-const RECENT_SCENES: usize = 8;
 
 /// All that surrounds the picture.
 #[derive(Resource)]
@@ -45,9 +50,13 @@ pub struct Desk {
     transport: Transport,
     badge: Badge,
     shown: Shown,
-    recent: Vec<String>,
     /// The plot that a file is being chosen for.
     pub export: Option<Box<Export>>,
+    gallery: Gallery,
+    shows_scenes: bool,
+    memory: Memory,
+    /// The built-in scene that is open, as it came.
+    scene: Option<&'static str>,
     /// Choosing a file.
     pub path_dialog: PathDialog,
     sheet: Option<Sheet>,
@@ -61,6 +70,8 @@ pub struct Desk {
     notice: Option<(String, Instant)>,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
+    /// Whether nothing of it is drawn.
+    pub is_hidden: bool,
 }
 
 /// A panel in its place.
@@ -73,7 +84,7 @@ struct Section {
 fn left() -> Vec<Section> {
     vec![
         section(AboutScene, true),
-        section(Parameters, true),
+        section(Parameters::default(), true),
         section(Changes::default(), true),
         section(Picture, false),
         section(SolverProfile, false),
@@ -113,8 +124,11 @@ impl Default for Desk {
                 left: true,
                 right: true,
             },
-            recent: Vec::new(),
             export: None,
+            gallery: Gallery::default(),
+            shows_scenes: false,
+            memory: Memory::default(),
+            scene: None,
             path_dialog: PathDialog::default(),
             sheet: None,
             open_error: None,
@@ -123,6 +137,7 @@ impl Default for Desk {
             after_saving: None,
             notice: None,
             file_hovers: false,
+            is_hidden: false,
         }
     }
 }
@@ -137,6 +152,7 @@ impl Desk {
         out: &mut Vec<Request>,
     ) {
         theme::show(root.ctx(), view.background);
+        self.remember_ui(root.ctx(), simulation);
         out.extend(shortcuts::pressed(root.ctx(), simulation));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
@@ -144,7 +160,40 @@ impl Desk {
             let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
             bar.show(root, |ui| self.transport.ui(ui, simulation, out));
         }
+        if let Some(simulation) = simulation.filter(|simulation| is_untouched(simulation)) {
+            first_play_ui(root, simulation, out);
+        }
         self.windows_ui(root.ctx(), out);
+    }
+
+    /// Takes `memory` up, and keeps it from now on.
+    pub fn remember(&mut self, memory: Memory) {
+        self.memory = memory;
+    }
+
+    /// Shows the scenes that come with the program.
+    pub fn show_scenes(&mut self) {
+        self.shows_scenes = true;
+    }
+
+    /// Lets the panels be as they were the last time, and notes what is worth it for the next.
+    fn remember_ui(&mut self, ctx: &egui::Context, simulation: Option<&Simulation>) {
+        let chosen = Detail::chosen(ctx);
+        match chosen {
+            Some(detail) => self.memory.show(detail),
+            None => self.memory.detail().choose(ctx),
+        }
+        let running = simulation.filter(|simulation| *simulation.status() == Status::Running);
+        if let (Some(name), Some(simulation)) = (self.scene, running)
+            && let Some(world) = simulation.world()
+        {
+            let profile = simulation.profile();
+            let computed = profile.steps as f64 * world.clock.time_step;
+            if profile.steps > 0 {
+                self.memory
+                    .ran(name, computed / profile.total.as_secs_f64());
+            }
+        }
     }
 
     /// Paints over the picture, which fills what `root` keeps free, without taking its pointer.
@@ -193,10 +242,19 @@ impl Desk {
 
     /// Puts the scene called `name` first among the recent ones, and starts the panels afresh for it.
     pub fn scene_opened(&mut self, name: &str) {
-        self.recent.retain(|recent| recent != name);
-        self.recent.insert(0, name.to_owned());
-        self.recent.truncate(RECENT_SCENES);
+        self.memory.opened(name);
+        self.scene = built_in()
+            .iter()
+            .map(|scene| scene.name)
+            .find(|known| *known == name);
         self.session = None;
+        (self.left, self.right) = (left(), right());
+    }
+
+    /// Starts the panels afresh for a scene that came of the present one.
+    pub fn scene_changed(&mut self) {
+        self.session = None;
+        self.scene = None;
         (self.left, self.right) = (left(), right());
     }
 
@@ -213,7 +271,7 @@ impl Desk {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let (recent, shown, badge) = (&self.recent, &mut self.shown, &mut self.badge);
+        let (recent, shown, badge) = (self.memory.recent(), &mut self.shown, &mut self.badge);
         egui::Panel::top("menu").show(root, |ui| {
             let past = simulation.map(Simulation::past);
             menu_ui(ui, past, recent, shown, view, out, |ui| {
@@ -254,6 +312,7 @@ impl Desk {
     }
 
     fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
+        self.shows_scenes = self.shows_scenes && self.gallery.ui(ctx, &self.memory, out);
         self.path_dialog.ui(ctx, out);
         self.sheet = self.sheet.filter(|sheet| sheets::sheet_ui(ctx, *sheet));
         let open = |reason: &String| sheets::open_error_ui(ctx, reason);
@@ -268,7 +327,7 @@ impl Desk {
             .notice
             .take()
             .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
-        let waiting = "Waiting for the system's file dialog; Ctrl+O again to type a path";
+        let waiting = "Waiting for the system's file dialog; ask again to type a path";
         let said = self.notice.as_ref().map(|(text, _)| text.as_str());
         let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
             return;
@@ -283,6 +342,39 @@ impl Desk {
             });
         ctx.request_repaint_after(NOTICE_TIME);
     }
+}
+
+/// Whether nothing has happened yet.
+fn is_untouched(simulation: &Simulation) -> bool {
+    *simulation.status() == Status::Paused && simulation.past().end.step == 0
+}
+
+/// The one thing to do first, over the picture of a scene that stands still.
+fn first_play_ui(root: &egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let free = root.available_rect_before_wrap();
+    egui::Area::new(Id::new("first play"))
+        .pivot(Align2::CENTER_BOTTOM)
+        .fixed_pos(free.center_bottom() - egui::vec2(0.0, 24.0))
+        .order(egui::Order::Middle)
+        .show(root.ctx(), |ui| {
+            ui.set_width(200.0);
+            ui.vertical_centered(|ui| {
+                let face = RichText::new("▶  Play").size(30.0).strong();
+                let button = ui.add(egui::Button::new(face).min_size(egui::vec2(190.0, 64.0)));
+                let label = format!("Play {}", simulation.scene().title);
+                button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
+                if button.on_hover_text("Play (Space)").clicked() {
+                    out.push(Request::Command(Command::Play));
+                }
+                if ui
+                    .button("Other scenes…")
+                    .on_hover_text("Scenes with their pictures (Ctrl+G)")
+                    .clicked()
+                {
+                    out.push(Request::ShowScenes);
+                }
+            });
+        });
 }
 
 fn sections_ui(

@@ -39,24 +39,26 @@ pub fn menu_ui(
 }
 
 fn file_ui(ui: &mut egui::Ui, past: Option<&Past>, recent: &[String], out: &mut Vec<Request>) {
+    item_ui(ui, "Scenes…", Request::ShowScenes, out);
     item_ui(ui, "Open…", Request::ChooseFile, out);
     ui.menu_button("Built-in scenes", |ui| {
         for scene in built_in() {
             item_ui(ui, scene.name, Request::Open(scene.name.into()), out);
         }
     });
-    ui.add_enabled_ui(!recent.is_empty(), |ui| {
-        ui.menu_button("Recent", |ui| {
-            for name in recent {
-                item_ui(ui, name, Request::Open(name.clone()), out);
-            }
-        });
+    ui.menu_button("Recent", |ui| {
+        for name in recent {
+            item_ui(ui, name, Request::Open(name.clone()), out);
+        }
+        if recent.is_empty() {
+            ui.weak("Nothing was opened yet");
+        }
     });
     ui.separator();
-    ui.add_enabled_ui(past.is_some(), |ui| {
-        item_ui(ui, "Save the session", Request::Save, out);
-        item_ui(ui, "Save the session as…", Request::ChooseSession, out);
-    });
+    let why_not = past.is_none().then_some("There is no run to save");
+    let as_another = Request::ChooseSession;
+    item_unless_ui(ui, "Save the session", Request::Save, why_not, out);
+    item_unless_ui(ui, "Save the session as…", as_another, why_not, out);
     item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
     item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
     ui.add_enabled_ui(past.is_some(), |ui| {
@@ -80,9 +82,8 @@ fn edit_ui(ui: &mut egui::Ui, past: Option<&Past>, out: &mut Vec<Request>) {
         ),
     ];
     for (name, command, enabled) in turns {
-        ui.add_enabled_ui(enabled, |ui| {
-            item_ui(ui, name, Request::Command(command), out);
-        });
+        let why_not = (!enabled).then_some("There is nothing to take back");
+        item_unless_ui(ui, name, Request::Command(command), why_not, out);
     }
 }
 
@@ -124,14 +125,25 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
 
 /// An entry that asks for `request`, with its shortcut.
 fn item_ui(ui: &mut egui::Ui, name: &str, request: Request, out: &mut Vec<Request>) {
+    item_unless_ui(ui, name, request, None, out);
+}
+
+/// The same, unless there is a reason why not, which it then tells.
+fn item_unless_ui(
+    ui: &mut egui::Ui,
+    name: &str,
+    request: Request,
+    why_not: Option<&str>,
+    out: &mut Vec<Request>,
+) {
     let shortcut = SHORTCUTS
         .iter()
         .find(|shortcut| shortcut.asks_for(&request));
     let keys = shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ui.ctx()));
-    if ui
-        .add(egui::Button::new(name).shortcut_text(keys))
-        .clicked()
-    {
+    let button = egui::Button::new(name).shortcut_text(keys);
+    let response = ui.add_enabled(why_not.is_none(), button);
+    let response = response.on_disabled_hover_text(why_not.unwrap_or_default());
+    if response.clicked() {
         out.push(request);
         ui.close();
     }

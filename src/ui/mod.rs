@@ -10,9 +10,11 @@
 //! | `request`, `carry_out` | what panels ask for, and how it is fulfilled |
 //! | `shortcuts` | what each key does |
 //! | `menu`, `transport`, `scrub` | menu bar, bar under the picture, the timeline in it |
+//! | `gallery`, `memory` | scenes with their pictures; what is remembered from start to start |
 //! | `badge` | whether the run can be trusted, and why |
 //! | `about_scene`, `parameters`, `changes`, `picture`, `profile` | panels on the left |
 //! | `microscope` | one grain, its contacts, every term of their forces |
+//! | `detail`, `start_values`, `value` | of the parameters: how many are shown, which act later, the row of one |
 //! | `plots`, `velocity`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
 //! | `explorer`, `energy` | any quantity over time or another, the energy ledger as a stack |
 //! | `recording` | what is asked of a film and how far it has come |
@@ -31,8 +33,11 @@ mod collapse_plots;
 mod column_beside_paper;
 mod decimate;
 mod desk;
+mod detail;
 mod energy;
 mod explorer;
+mod gallery;
+mod memory;
 mod menu;
 mod microscope;
 mod number;
@@ -47,10 +52,12 @@ mod results;
 mod scrub;
 mod sheets;
 mod shortcuts;
+mod start_values;
 mod symbol;
 mod table;
 pub mod theme;
 mod transport;
+mod value;
 mod velocity;
 
 pub use about_scene::AboutScene;
@@ -58,8 +65,10 @@ pub use badge::{Check, Level, checks};
 pub use collapse_plots::CollapsePlots;
 pub use column_beside_paper::ColumnBesidePaper;
 pub use desk::Desk;
+pub use detail::Detail;
 pub use energy::Energy;
 pub use explorer::{Explorer, Export};
+pub use memory::Memory;
 pub use microscope::Microscope;
 pub use parameters::{Parameters, parameter_ui};
 pub use path_dialog::{PathDialog, Purpose};
@@ -196,10 +205,14 @@ fn draw_panels(
         .max_rect(ctx.viewport_rect());
     let mut root = egui::Ui::new(ctx, "root".into(), builder);
     let simulation = simulation.as_deref();
-    desk.ui(&mut root, simulation, &mut view, &mut requests.0);
-    recording_ui(&mut root, &recorder, &mut requests.0);
+    if !desk.is_hidden {
+        desk.ui(&mut root, simulation, &mut view, &mut requests.0);
+        recording_ui(&mut root, &recorder, &mut requests.0);
+    }
     viewport_ui(&mut root, caption(simulation), &mut view, &mut camera);
-    desk.over_picture_ui(&root, simulation);
+    if !desk.is_hidden {
+        desk.over_picture_ui(&root, simulation);
+    }
     Ok(())
 }
 

@@ -32,6 +32,26 @@ pub fn short(value: f64) -> String {
     )
 }
 
+/// The same without zeros at its end: `0.4`, `1.41`.
+pub fn trimmed(value: f64) -> String {
+    without_idle_zeros(short(value))
+}
+
+fn without_idle_zeros(text: String) -> String {
+    if text.contains('.') && !text.contains('·') {
+        let kept = text.trim_end_matches('0').trim_end_matches('.');
+        kept.to_owned()
+    } else {
+        text
+    }
+}
+
+/// `value` with two digits or so: `0.0042`, `0.25`, `3.1`, `120`.
+pub fn rough(value: f64) -> String {
+    let digits = 1 - value.abs().max(1e-4).log10().floor() as i32;
+    without_idle_zeros(fixed(value, digits.clamp(0, 5) as usize))
+}
+
 /// `value` with `decimals` digits after the point, and a dash for what is no number.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if value.is_finite() {
@@ -152,6 +172,11 @@ mod tests {
         assert_eq!(short(2.0e-9), "2.00·10⁻⁹");
         assert_eq!(short(f64::NAN), "–");
         assert_eq!(short(f64::INFINITY), "∞");
+        assert_eq!(trimmed(0.4), "0.4");
+        let speeds = [0.0042, 0.25, 3.08, 12.0, 120.4].map(rough);
+        assert_eq!(speeds, ["0.0042", "0.25", "3.1", "12", "120"]);
+        assert_eq!(trimmed(1410.0), "1410");
+        assert_eq!(trimmed(2.0e-9), "2.00·10⁻⁹");
     }
 
     #[test]

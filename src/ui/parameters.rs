@@ -1,17 +1,20 @@
-//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command.
+//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command. In the
+//! laboratory also what acts from the next start on.
 
+use super::detail::{Detail, is_basic, landmarks};
+use super::start_values::StartValues;
+use super::value::{Value, value_ui};
 use super::{Panel, Request, number, symbol};
 use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer};
 use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, RichText};
 
-/// Width of the field with the number and its unit, in points.
-const NUMBER_WIDTH: f32 = 96.0;
-
-/// The panel of live parameters.
+/// The panel of parameters.
 #[derive(Default)]
-pub struct Parameters;
+pub struct Parameters {
+    start: StartValues,
+}
 
 /// What a parameter belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -102,45 +105,78 @@ impl Panel for Parameters {
             ui.weak("The parameters appear when the bed stands.");
             return;
         }
-        let grouped = |group| {
-            let own = move |info: &&ParameterInfo| {
-                Group::of(&info.parameter, simulation.scene()) == group
-            };
-            list.iter().filter(own)
-        };
+        let detail = Detail::ui(ui);
+        ui.weak("These act at once, also while it runs.");
         for group in Group::ALL {
-            let mut pair = None;
-            for info in grouped(group) {
-                let own = pair_of(&info.parameter);
-                if pair != Some(own) {
-                    heading_ui(ui, group, own, simulation.scene());
-                    if group == Group::Liquid {
-                        out.extend(liquids_ui(ui, simulation));
-                    }
-                    pair = Some(own);
-                }
-                let value = simulation.value(&info.parameter);
-                let wanted = match info.parameter {
-                    Parameter::BridgeLaw => bridge_law_ui(ui, info, value),
-                    _ => parameter_ui(ui, info, value),
-                };
-                out.extend(wanted.map(Request::Command));
-            }
+            group_ui(ui, group, detail, simulation, out);
         }
         ui.add_space(4.0);
-        let changed = list
-            .iter()
-            .any(|info| simulation.value(&info.parameter) != info.default);
-        let button = ui.add_enabled(changed, egui::Button::new("Reset all"));
-        if button
+        self.footer_ui(ui, detail, simulation, out);
+    }
+}
+
+impl Parameters {
+    fn footer_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        detail: Detail,
+        simulation: &Simulation,
+        out: &mut Vec<Request>,
+    ) {
+        let is_away = |info: &&ParameterInfo| simulation.value(&info.parameter) != info.default;
+        let away = || simulation.parameters().iter().filter(is_away);
+        let button = ui
+            .add_enabled(away().count() > 0, egui::Button::new("Reset all"))
             .on_hover_text("Every parameter back to the scene's value")
-            .clicked()
-        {
-            let away = list
-                .iter()
-                .filter(|info| simulation.value(&info.parameter) != info.default);
-            out.extend(away.map(|info| Request::Command(set(info, info.default))));
+            .on_disabled_hover_text("Every parameter has the scene's value");
+        if button.clicked() {
+            out.extend(away().map(|info| Request::Command(set(info, info.default))));
         }
+        if detail == Detail::Lab {
+            self.start.ui(ui, simulation, out);
+            return;
+        }
+        let unseen = away()
+            .filter(|info| !is_basic(info, simulation.scene()))
+            .count();
+        if unseen > 0 {
+            let text = format!("{unseen} more changed: show them in Lab");
+            if ui.button(text).clicked() {
+                Detail::Lab.choose(ui.ctx());
+            }
+        }
+    }
+}
+
+/// The parameters of a group that `detail` shows, under their headings.
+fn group_ui(
+    ui: &mut egui::Ui,
+    group: Group,
+    detail: Detail,
+    simulation: &Simulation,
+    out: &mut Vec<Request>,
+) {
+    let scene = simulation.scene();
+    let shown = |info: &&ParameterInfo| {
+        let wanted = detail == Detail::Lab || is_basic(info, scene);
+        wanted && Group::of(&info.parameter, scene) == group
+    };
+    let mut pair = None;
+    for info in simulation.parameters().iter().filter(shown) {
+        let own = pair_of(&info.parameter);
+        if pair != Some(own) {
+            heading_ui(ui, group, own, scene);
+            if group == Group::Liquid {
+                out.extend(liquids_ui(ui, simulation));
+            }
+            pair = Some(own);
+        }
+        let value = simulation.value(&info.parameter);
+        let wanted = match info.parameter {
+            Parameter::BridgeLaw => bridge_law_ui(ui, info, value),
+            _ => parameter_ui(ui, info, value, detail, scene),
+        };
+        out.extend(wanted.map(Request::Command));
     }
 }
 
@@ -220,8 +256,7 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
 fn bridge_law_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<Command> {
     let mut chosen = value;
     ui.horizontal(|ui| {
-        let name = ui.label("Bridges");
-        name.on_hover_ui(|ui| explanation_ui(ui, info));
+        ui.label("Bridges").on_hover_text(info.description);
         for (law, name) in [(0.0, "as printed"), (1.0, "as coded")] {
             ui.selectable_value(&mut chosen, law, name)
                 .on_hover_text(info.description);
@@ -230,82 +265,40 @@ fn bridge_law_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<
     (chosen != value).then(|| set(info, chosen))
 }
 
-/// The row of one parameter whose present value is `value` (SI); the command that a change asks for.
-pub fn parameter_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<Command> {
-    let mut shown = value * info.display.factor;
-    let range = in_display_units(info);
-    let decimals = decimals(range.end() - range.start());
-    let mut reset = false;
-    let edited = ui.push_id(info.parameter.to_string(), |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
-        let field = egui::DragValue::new(&mut shown)
-            .range(range.clone())
-            .clamp_existing_to_range(false)
-            .speed((range.end() - range.start()) / 400.0)
-            .max_decimals(decimals)
-            .min_decimals(decimals.min(2))
-            .suffix(suffix(info))
-            .update_while_editing(false);
-        let (name, field) = egui::Sides::new().shrink_left().truncate().show(
-            ui,
-            |ui| ui.label(symbol::named(ui, &short_name(info), info.symbol)),
-            |ui| {
-                reset = reset_ui(ui, info, value != info.default);
-                ui.add_sized([NUMBER_WIDTH, 22.0], field)
-            },
-        );
-        ui.spacing_mut().slider_width = ui.available_width();
-        ui.spacing_mut().interact_size.y = 18.0;
-        let slider = egui::Slider::new(&mut shown, range.clone())
-            .show_value(false)
-            .logarithmic(info.parameter == Parameter::Viscosity)
-            .smallest_positive(0.1)
-            .clamping(egui::SliderClamping::Edits);
-        let slider = ui.add(slider);
-        slider.widget_info(|| WidgetInfo::slider(true, shown, &info.label));
-        field.widget_info(|| WidgetInfo {
-            label: Some(info.label.clone()),
-            ..WidgetInfo::drag_value(true, shown)
-        });
-        let explained =
-            |response: egui::Response| response.on_hover_ui(|ui| explanation_ui(ui, info));
-        explained(name);
-        explained(slider).changed() | explained(field).changed()
-    });
-    let wanted = match (reset, edited.inner) {
-        (true, _) => info.default,
-        (false, true) => in_si(info, shown),
-        (false, false) => value,
+/// The row of one parameter of `scene` whose present value is `value` (SI); the command that a change asks for.
+pub fn parameter_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    detail: Detail,
+    scene: &Scene,
+) -> Option<Command> {
+    let name = short_name(info);
+    let mut row = Value {
+        label: &info.label,
+        name: &name,
+        symbol: info.symbol,
+        range: info.range.clone(),
+        default: info.default,
+        display: info.display,
+        is_logarithmic: info.parameter == Parameter::Viscosity,
+        is_whole: false,
+        landmarks: &[],
+        caption: None,
     };
-    (wanted != value && wanted.is_finite()).then(|| set(info, wanted))
-}
-
-fn reset_ui(ui: &mut egui::Ui, info: &ParameterInfo, away: bool) -> bool {
-    let hint = format!(
-        "Back to {}{}",
-        number::short(info.default * info.display.factor),
-        suffix(info)
-    );
-    let button = ui
-        .add_enabled(away, egui::Button::new("↺").frame(false))
-        .on_hover_text(hint);
-    let name = format!("Reset {}", info.label);
-    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, away, &name));
-    button.clicked()
-}
-
-fn explanation_ui(ui: &mut egui::Ui, info: &ParameterInfo) {
-    let shown = |value: f64| number::short(value * info.display.factor);
-    ui.label(info.description);
-    ui.weak(format!(
-        "{} from {} to {}{}, {} in the scene",
-        info.symbol,
-        shown(*info.range.start()),
-        shown(*info.range.end()),
-        suffix(info),
-        shown(info.default),
-    ));
-    ui.weak(format!("--set {}=… on the command line", info.parameter));
+    let extent = row.extent();
+    match detail {
+        Detail::Basics => row.landmarks = landmarks(&info.parameter),
+        Detail::Lab => row.caption = Some(format!("{extent} · acts at once")),
+    }
+    let wanted = value_ui(ui, &row, value, |ui| {
+        ui.label(info.description);
+        ui.label(symbol::text(ui, info.parameter.equation(scene)));
+        ui.weak(&extent);
+        ui.weak("It acts from the next step on.");
+        ui.weak(format!("--set {}=… on the command line", info.parameter));
+    });
+    wanted.map(|wanted| set(info, wanted))
 }
 
 fn set(info: &ParameterInfo, value: f64) -> Command {
@@ -313,25 +306,4 @@ fn set(info: &ParameterInfo, value: f64) -> Command {
         parameter: info.parameter.clone(),
         value,
     }
-}
-
-fn in_display_units(info: &ParameterInfo) -> std::ops::RangeInclusive<f64> {
-    info.range.start() * info.display.factor..=info.range.end() * info.display.factor
-}
-
-fn in_si(info: &ParameterInfo, shown: f64) -> f64 {
-    (shown / info.display.factor).clamp(*info.range.start(), *info.range.end())
-}
-
-fn suffix(info: &ParameterInfo) -> String {
-    if info.display.name.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", info.display.name)
-    }
-}
-
-/// Digits after the point that a value in a range of this `width` deserves: a ten-thousandth of it.
-fn decimals(width: f64) -> usize {
-    (4.0 - width.log10().ceil()).clamp(0.0, 6.0) as usize
 }

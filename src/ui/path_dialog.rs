@@ -11,8 +11,8 @@ use rfd::{AsyncFileDialog, FileHandle};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A dialog that ends sooner than this without a file was never seen by a person.
-const SHORTEST_CHOICE: Duration = Duration::from_millis(800);
+/// A dialog that ends sooner than this without a file was hardly seen by a person.
+const SHORTEST_CHOICE: Duration = Duration::from_secs(2);
 
 /// Why the field stands where a dialog is expected.
 const NO_DIALOG: &str =

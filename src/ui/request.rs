@@ -2,6 +2,7 @@
 //! function ([`super::carry_out`]) fulfils them.
 
 use super::{Export, FilmOrder};
+use crate::scene::Scene;
 use crate::simulation::Command;
 use crate::view::CameraRequest;
 use std::path::PathBuf;
@@ -13,10 +14,14 @@ pub enum Request {
     Command(Command),
     /// Another view of the scene.
     Camera(CameraRequest),
+    /// Show the scenes that come with the program.
+    ShowScenes,
     /// Let the person choose a file of a scene or a session.
     ChooseFile,
     /// Open this: the path of a scene or a session, or a built-in scene's name.
     Open(String),
+    /// Start afresh with this scene in place of the present one, and the present values of the live parameters.
+    Start(Box<Scene>),
     /// Write the whole session to the file it has, or let the person choose one.
     Save,
     /// Let the person choose where the whole session goes.

@@ -159,6 +159,11 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: Action::Ask(Request::ChooseFile),
     },
     Shortcut {
+        keys: &[ctrl(Key::G)],
+        name: "Scenes with their pictures",
+        action: Action::Ask(Request::ShowScenes),
+    },
+    Shortcut {
         keys: &[ctrl_shift(Key::S)],
         name: "Save the session to another file",
         action: Action::Ask(Request::ChooseSession),
@@ -228,6 +233,15 @@ impl Shortcut {
         matches!(&self.action, Action::Ask(own) if own == request)
     }
 
+    /// Whether its keys work the control that has the keyboard's focus.
+    fn moves_a_control(&self) -> bool {
+        use Key::{ArrowLeft, ArrowRight, End, Home, Space};
+        self.keys.iter().any(|key| {
+            let works = [ArrowLeft, ArrowRight, End, Home, Space].contains(&key.logical_key);
+            works && key.modifiers.is_none()
+        })
+    }
+
     fn is_pressed(&self, ctx: &egui::Context) -> bool {
         ctx.input_mut(|input| {
             // Every key is consumed, not only the first that is pressed.
@@ -253,10 +267,13 @@ impl Shortcut {
 /// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet lies over the window.
 pub fn pressed(ctx: &egui::Context, simulation: Option<&Simulation>) -> Vec<Request> {
     let covered = ctx.memory(|memory| memory.top_modal_layer().is_some());
-    if covered || ctx.egui_wants_keyboard_input() {
+    if covered || ctx.text_edit_focused() {
         return Vec::new();
     }
-    let pressed = SHORTCUTS.iter().filter(|shortcut| shortcut.is_pressed(ctx));
+    let focused = ctx.memory(|memory| memory.focused().is_some());
+    let pressed = (SHORTCUTS.iter())
+        .filter(|shortcut| !(focused && shortcut.moves_a_control()))
+        .filter(|shortcut| shortcut.is_pressed(ctx));
     pressed
         .filter_map(|shortcut| shortcut.request(simulation))
         .collect()

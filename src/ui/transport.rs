@@ -69,7 +69,8 @@ fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>
             let button = egui::Button::new(face).min_size(vec2(40.0, 32.0));
             let response = ui
                 .add_enabled(command.is_some(), button)
-                .on_hover_text(hint);
+                .on_hover_text(hint)
+                .on_disabled_hover_text(format!("{name}: {}", why_not(status)));
             response
                 .widget_info(|| WidgetInfo::labeled(WidgetType::Button, command.is_some(), name));
             if response.clicked() {
@@ -105,6 +106,16 @@ fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>
         "Start afresh with the settled bed and the present parameters; the run is kept (R)",
         allowed(Command::Reset),
     );
+}
+
+/// Why a button does nothing now.
+fn why_not(status: &Status) -> &'static str {
+    match status {
+        Status::Preparing { .. } => "the bed is still being prepared",
+        Status::Failed(_) => "there is no run; open another scene",
+        Status::Faulted(_) => "the run met a fault; undo the last change, or go back to time zero",
+        Status::Running | Status::Paused | Status::Seeking { .. } => "the run is at its start",
+    }
 }
 
 fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {

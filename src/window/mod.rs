@@ -10,7 +10,7 @@ mod recording;
 
 use crate::scene::Scene;
 use crate::simulation::{Options, Session, Simulation, SimulationPlugin};
-use crate::ui::{Desk, UiPlugin};
+use crate::ui::{Desk, Memory, UiPlugin};
 use crate::view::{ViewPlugin, ViewSettings};
 use bevy::app::ScheduleRunnerPlugin;
 use bevy::camera::visibility::RenderLayers;
@@ -92,6 +92,8 @@ pub struct PictureJob {
     pub at: f64,
     /// Its size and the window's [pixels].
     pub size: UVec2,
+    /// Whether it shows the grains alone, without panels.
+    pub plain: bool,
     /// Whether it is taken without a display.
     pub offscreen: bool,
 }
@@ -164,6 +166,7 @@ fn build(mut job: Job, software: bool, outcome: Outcome) -> App {
             ..default()
         })
         .insert_resource(ViewSettings {
+            show_overlay: !job.picture.as_ref().is_some_and(|picture| picture.plain),
             // Several samples a pixel are the processor's work where there is no graphics card.
             smooth_edges: !software || job.picture.is_some(),
             ..default()
@@ -179,10 +182,14 @@ fn build(mut job: Job, software: bool, outcome: Outcome) -> App {
         .add_systems(Startup, spawn_panel_camera)
         .add_systems(Update, follow_title);
     let mut desk = app.world_mut().resource_mut::<Desk>();
+    if job.picture.is_none() {
+        desk.remember(Memory::user());
+    }
     match &job.opened {
         Opened::Scene(_) => desk.scene_opened(&job.name),
         Opened::Session(_) => desk.session_opened(&job.name),
     }
+    desk.is_hidden = job.picture.as_ref().is_some_and(|picture| picture.plain);
     app.insert_resource(job.opened.run(job.options));
     if let Some(picture) = job.picture {
         app.insert_resource(Commission::new(picture, outcome))

@@ -253,6 +253,54 @@ fn verify_computes_a_run_again_and_confirms_its_state() {
 }
 
 #[test]
+fn session_is_verified_and_repeated_without_a_window_and_refused_as_a_scene() {
+    use grainfall::simulation::{BedStore, Parameter, Session, Timeline};
+    let place = Place::new();
+    let scene = grainfall::scene::Scene::open("bouncing-grain").unwrap();
+    let run = crate::run::prepared(&scene, 1, BedStore::none()).0;
+    let mut timeline = Timeline::new(run, 0);
+    timeline.advance_to(300).unwrap();
+    let weaker = crate::run::set(Parameter::Gravity, 3.0);
+    timeline.change(weaker, false).unwrap();
+    timeline.advance_to(500).unwrap();
+    let hash = timeline.run().world().hash().to_string();
+    let path = place.path("class.grainfall");
+    Session::of("grain", &timeline).write(&path).unwrap();
+
+    let verified = place.run(&["verify", "class.grainfall"]);
+    let said = text(&verified.stdout);
+    assert!(
+        verified.status.success() && said.starts_with("the same"),
+        "{said}"
+    );
+    assert!(said.contains(&hash), "{said}");
+    let time = format!("{:?}s", timeline.run().world().time());
+    let repeat = [
+        "bouncing-grain",
+        "--no-render",
+        "--commands",
+        "class.grainfall",
+        "--duration",
+    ];
+    let repeated = place.run(&[&repeat[..], &[&time, "--out", "again"]].concat());
+    assert!(repeated.status.success(), "{}", text(&repeated.stderr));
+    assert_eq!(summary(&place.path("again"))["state_hash"], hash);
+
+    let refused = place.run(&["class.grainfall", "--no-render"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("grainfall verify class.grainfall"));
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() - 3]).unwrap();
+    let damaged = place.run(&["verify", "class.grainfall"]);
+    assert_eq!(damaged.status.code(), Some(2));
+    assert!(
+        text(&damaged.stderr).contains("damaged"),
+        "{}",
+        text(&damaged.stderr)
+    );
+}
+
+#[test]
 fn verify_refuses_what_was_edited_or_states_nothing() {
     let place = Place::new();
     place.run_small_drum("out", &[]);

@@ -11,7 +11,9 @@ use grainfall::simulation::{
     Status,
 };
 use grainfall::solver::{Fault, FaultKind};
-use grainfall::ui::{Curves, Desk, Plots, Request, open_error_ui, parameter_ui, status_ui, theme};
+use grainfall::ui::{
+    Curves, Desk, Detail, Memory, Plots, Request, open_error_ui, parameter_ui, status_ui, theme,
+};
 use grainfall::view::{
     CameraRequest, Caption, ColourBy, ColourRange, Cut, OrbitCamera, Side, ViewSettings,
     viewport_ui,
@@ -126,6 +128,14 @@ pub fn set(parameter: Parameter, value: f64) -> Command {
     Command::Set { parameter, value }
 }
 
+/// A window that shows every parameter.
+fn in_the_lab(simulation: Simulation) -> Harness<'static, Window> {
+    let mut harness = Window::of(simulation);
+    harness.get_by_label("Lab").click();
+    harness.run_steps(4);
+    harness
+}
+
 /// Types `text` into a field of a number: a click begins the edit, Return ends it.
 fn type_number<S>(harness: &mut Harness<'_, S>, label: &str, text: &str) {
     harness
@@ -228,7 +238,7 @@ fn dry_takes_the_liquid_away_and_a_liquid_brings_it_back() {
 
 #[test]
 fn bridge_laws_are_chosen_by_name() {
-    let mut harness = Window::of(wet());
+    let mut harness = in_the_lab(wet());
     harness.get_by_label("as coded").click();
     harness.run_steps(2);
     let asked = commands(&harness.state().asked);
@@ -356,8 +366,11 @@ fn a_parameter_is_shown_in_the_unit_people_think_in() {
             factor: 100.0,
         },
     };
+    let scene = Scene::open("two-frictions-drum").unwrap();
     let mut harness = Harness::new_ui_state(
-        move |ui, asked: &mut Vec<Command>| asked.extend(parameter_ui(ui, &info, 0.3)),
+        move |ui, asked: &mut Vec<Command>| {
+            asked.extend(parameter_ui(ui, &info, 0.3, Detail::Lab, &scene));
+        },
         Vec::new(),
     );
     harness.run();
@@ -370,6 +383,185 @@ fn a_parameter_is_shown_in_the_unit_people_think_in() {
         harness.state().first(),
         Some(&set(Parameter::Share("red".into()), 0.5))
     );
+}
+
+#[test]
+fn a_scene_that_stands_still_has_one_big_button() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Play Three grains").click();
+    harness.run_steps(2);
+    assert_eq!(commands(&harness.state().asked), [Command::Play]);
+    harness.state_mut().asked.clear();
+    harness.get_by_label("Other scenes…").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::ShowScenes]);
+    let simulation = &mut harness.state_mut().simulation;
+    simulation.send(Command::Step(3));
+    simulation.tick(Duration::from_millis(16));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Play Three grains").is_none());
+}
+
+#[test]
+fn the_gallery_says_what_to_look_for_and_how_fast_scenes_run_here() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut memory = Memory::at(folder.path().join("remembered.json"));
+    memory.ran("small-drum", 12.0);
+    memory.opened("lecture/slides.grainfall");
+    let mut harness = Window::of(prepared());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::ShowScenes]);
+    harness.state_mut().asked.clear();
+    harness.state_mut().desk.remember(memory);
+    harness.state_mut().desk.show_scenes();
+    harness.run_steps(6);
+    let small = Scene::open("small-drum").unwrap();
+    harness.get_by_label(&small.look_for);
+    harness.get_by_label_contains("100 grains · 12 times real time here");
+    // A drum of more grains is expected to be slower; of polyhedra nothing is known.
+    assert!(
+        harness
+            .get_all_by_label_contains("here, by its size")
+            .count()
+            > 5
+    );
+    assert_eq!(
+        harness
+            .get_all_by_label_contains("not run here yet")
+            .count(),
+        2
+    );
+    press(&mut harness, &format!("Open {}", small.title));
+    assert_eq!(harness.state().asked, [Request::Open("small-drum".into())]);
+    assert!(
+        harness.query_by_label("Files opened last").is_none(),
+        "it is closed"
+    );
+    harness.state_mut().asked.clear();
+    harness.state_mut().desk.show_scenes();
+    harness.run_steps(10);
+    press(&mut harness, "lecture/slides.grainfall");
+    let file = Request::Open("lecture/slides.grainfall".into());
+    assert_eq!(harness.state().asked, [file]);
+}
+
+#[test]
+fn how_much_is_shown_is_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("remembered.json");
+    let mut harness = Window::of(prepared());
+    harness.state_mut().desk.remember(Memory::at(path.clone()));
+    harness.get_by_label("Lab").click();
+    harness.run_steps(4);
+    assert_eq!(Memory::at(path).detail(), Detail::Lab);
+}
+
+#[test]
+fn basics_show_the_few_that_matter_and_lab_shows_all() {
+    let mut simulation = prepared();
+    simulation.send(set(Parameter::Gravity, 3.0));
+    let mut harness = Window::of(simulation);
+    let slider = |harness: &Harness<'_, Window>, label: &str| {
+        harness
+            .query_by_role_and_label(Role::Slider, label)
+            .is_some()
+    };
+    assert!(slider(&harness, "drum speed") && slider(&harness, "friction glass – glass"));
+    let beyond = [
+        "gravity",
+        "rolling friction glass – glass",
+        "density glass",
+        "seed",
+    ];
+    assert!(beyond.iter().all(|label| !slider(&harness, label)));
+    // What was changed out of sight is not hidden.
+    harness.get_by_label_contains("1 more changed").click();
+    harness.run_steps(4);
+    assert!(beyond.iter().all(|label| slider(&harness, label)));
+    assert!(harness.get_all_by_label_contains("acts at once").count() > 5);
+    assert!(
+        harness
+            .get_all_by_label_contains("acts at the next start")
+            .count()
+            > 5
+    );
+    let every = harness.state().simulation.parameters().to_vec();
+    assert!(every.iter().all(|info| slider(&harness, &info.label)));
+    harness.get_by_label("Basics").click();
+    harness.run_steps(4);
+    assert!(!slider(&harness, "gravity"));
+}
+
+#[test]
+fn named_values_are_set_by_their_names_and_hold_a_slider() {
+    let mut harness = Window::of(prepared());
+    harness
+        .get_by_label("friction glass – glass: smooth")
+        .click();
+    harness.run_steps(2);
+    assert_eq!(commands(&harness.state().asked), [set(friction(), 0.1)]);
+    let slider = harness
+        .get_by_role_and_label(Role::Slider, "friction glass – glass")
+        .rect();
+    // A pixel beside the place of 0.1: between the knob's halves lies the range from 0 to 1.
+    let knob = slider.height() / 2.5;
+    let span = slider.x_range().shrink(knob);
+    let near = egui::pos2(egui::lerp(span, 0.1) + 1.5, slider.center().y);
+    harness.state_mut().asked.clear();
+    harness.drag_at(near);
+    harness.run_steps(2);
+    assert_eq!(
+        commands(&harness.state().asked).last(),
+        Some(&set(friction(), 0.1))
+    );
+}
+
+#[test]
+fn arrow_keys_step_the_control_that_has_the_focus() {
+    let mut harness = Window::of(prepared());
+    harness
+        .get_by_role_and_label(Role::Slider, "friction glass – glass")
+        .focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    let asked = commands(&harness.state().asked);
+    let [Command::Set { parameter, value }] = &asked[..] else {
+        panic!("{asked:?}");
+    };
+    assert!(
+        *parameter == friction() && (0.4..0.45).contains(value) && *value > 0.4,
+        "{value}"
+    );
+    harness.state_mut().asked.clear();
+    harness.key_press(Key::R);
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [Request::Command(Command::Reset)]);
+}
+
+/// Scrolls to a button and presses it.
+fn press(harness: &mut Harness<'_, Window>, label: &str) {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run_steps(30);
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+#[test]
+fn what_acts_later_waits_for_the_next_start() {
+    let mut harness = in_the_lab(prepared());
+    type_number(&mut harness, "density glass", "5000");
+    type_number(&mut harness, "Poisson's ratio drum", "0.3");
+    assert_eq!(harness.state().asked, [], "the run goes on as it is");
+    harness.get_by_label_contains("not yet in the run");
+    press(&mut harness, "Reset Poisson's ratio drum");
+    press(&mut harness, "Start with these");
+    let mut expected = harness.state().simulation.scene().clone();
+    expected.materials[0].density = 5000.0;
+    assert_eq!(harness.state().asked, [Request::Start(Box::new(expected))]);
+    press(&mut harness, "Forget these");
+    assert!(harness.query_by_label("Start with these").is_none());
 }
 
 #[test]

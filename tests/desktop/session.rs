@@ -149,6 +149,26 @@ fn saved_nowhere(app: &mut App, folder: &Path) {
 }
 
 #[test]
+fn start_with_another_scene_takes_the_present_values_along() {
+    let mut app = app();
+    command(&mut app, set(friction(), 0.2));
+    let mut scene = simulation(&app).scene().clone();
+    scene.materials[0].density = 5000.0;
+    let start = Request::Start(Box::new(scene));
+    ask(&mut app, start.clone());
+    app.update();
+    assert_eq!(
+        simulation(&app).scene().materials[0].density,
+        2500.0,
+        "it asks first"
+    );
+    ask(&mut app, Request::Leave(Box::new(start)));
+    update_until(&mut app, |s| s.world().is_some());
+    assert_eq!(simulation(&app).scene().materials[0].density, 5000.0);
+    assert_eq!(simulation(&app).value(&friction()), 0.2);
+}
+
+#[test]
 fn discarded_work_is_left() {
     let mut app = app();
     work(&mut app);

@@ -23,6 +23,7 @@ fn job(path: &Path) -> Job {
             at: 0.05,
             size: UVec2::new(1280, 720),
             offscreen: true,
+            plain: false,
         }),
     }
 }
