@@ -619,6 +619,7 @@ impl Desk {
         self.effects.resize(self.results.len(), Effect::default());
         let zero = N::splat(processor, 0.0);
         let step = N::splat(processor, dt);
+        let half = N::splat(processor, 0.5);
         let half_step = N::splat(processor, 0.5 * dt);
         let outputs = self.effects.chunks_mut(N::COUNT);
         let results = self.results.chunks(N::COUNT);
@@ -672,7 +673,7 @@ impl Desk {
             let dashpot = repulsion - elastic;
             let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
             let elastic_before = normal_stiffness * part_before * overlap_before;
-            let pressed = half_step * ((elastic_before + elastic) * approach);
+            let pressed = half * ((elastic_before + elastic) * (overlap - overlap_before));
             let forces = N::rows([force[0], force[1], force[2], overlap]);
             let moments = N::rows([moment[0], moment[1], moment[2], dashpot]);
             let energies = N::rows([in_dashpot, stretched.lost, pressed, zero]);

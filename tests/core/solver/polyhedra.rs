@@ -476,7 +476,7 @@ fn collapse_closes_its_energy_balance_and_comes_to_rest() {
             "{rule}: it has come to rest"
         );
         assert!(
-            ledger.relative_residual().abs() < 2e-3,
+            ledger.relative_residual().abs() < 1e-3,
             "{rule}: {}",
             ledger.relative_residual()
         );
