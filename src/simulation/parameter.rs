@@ -209,7 +209,7 @@ pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
             rolls,
         )
     }));
-    list.extend(shares(scene));
+    list.extend(shares(scene, world));
     list.extend(scene.liquid.iter().flat_map(liquid_parameters));
     list
 }
@@ -469,13 +469,15 @@ pub fn canonical(parameter: &Parameter, materials: &Materials) -> Parameter {
     }
 }
 
-/// A share for each species whose grains can change places with those of another.
-fn shares(scene: &Scene) -> Vec<ParameterInfo> {
+/// A share for each species whose grains can change places with those of another; the default is what whole grains made of
+/// the scene's.
+fn shares(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
     let species = scene.species();
     let info = |(index, (name, _)): (usize, &(&str, &str))| {
         let members = scene.interchangeable_species(index);
         let most = members.iter().map(|&member| scene.share(member)).sum();
-        (members.len() > 1).then(|| share(name, scene.share(index), most))
+        let default = relabel::share(world, name).unwrap_or(scene.share(index));
+        (members.len() > 1).then(|| share(name, default, most))
     };
     species.iter().enumerate().filter_map(info).collect()
 }

@@ -13,6 +13,9 @@ use bevy_egui::egui::{self, Color32, Popup, PopupCloseBehavior, RichText, Widget
 /// Largest overlap over the smaller radius up to which contacts are small deformations, and above which forces no longer
 /// mean what the contact laws say.
 const OVERLAPS: [f64; 2] = [0.02, 0.05];
+/// The same for polyhedra, over the smaller rounding radius: an eighth and half of the way to where the cores of two grains
+/// meet. A rounding radius is a small part of a grain, and their law is linear all the way.
+const OVERLAPS_OF_ROUNDING: [f64; 2] = [0.25, 1.0];
 /// Energy that the ledger leaves unexplained, as a share of its largest term: what users of explicit codes commonly allow.
 const RESIDUALS: [f64; 2] = [0.05, 0.10];
 /// Time step over the smallest of its limits.
@@ -224,15 +227,19 @@ fn time_step(simulation: &Simulation) -> Check {
     }
 }
 
-fn overlap(sample: &Sample, _world: &World) -> Check {
+fn overlap(sample: &Sample, world: &World) -> Check {
     let overlap = sample.value(Measure::LargestOverlap);
+    let (limits, radius) = match world.polyhedra {
+        Some(_) => (OVERLAPS_OF_ROUNDING, "rounding radius"),
+        None => (OVERLAPS, "radius"),
+    };
     Check {
         name: "largest overlap",
-        level: Level::of(overlap, OVERLAPS),
+        level: Level::of(overlap, limits),
         value: format!(
-            "{} % of the radius, good up to {} %",
+            "{} % of the {radius}, good up to {} %",
             number::short(100.0 * overlap),
-            100.0 * OVERLAPS[0]
+            100.0 * limits[0]
         ),
         remedy: "Use stiffer materials (a larger Young's modulus or stiffness), or let grains meet more slowly.",
     }
