@@ -432,6 +432,7 @@ pub struct PairRows<'a> {
 }
 
 /// What every pair's force depends on.
+#[derive(Clone, Copy)]
 pub struct Surroundings<'a, L> {
     /// The contact law.
     pub law: L,
@@ -447,14 +448,20 @@ pub struct Surroundings<'a, L> {
     pub wetting: Option<Wetting<'a>>,
 }
 
-/// The forces of a range of pairs of grains and a range of pairs with walls.
-pub struct Forces<'a, L> {
+/// The forces of a range of pairs of grains.
+pub struct BetweenGrains<'a, L> {
     /// What they depend on.
     pub surroundings: Surroundings<'a, L>,
-    /// Pairs of grains.
-    pub of_grains: PairRows<'a>,
-    /// Pairs of a grain and a wall.
-    pub of_walls: PairRows<'a>,
+    /// The pairs.
+    pub rows: PairRows<'a>,
+}
+
+/// The forces of a range of pairs of a grain and a wall.
+pub struct AtWalls<'a, L> {
+    /// What they depend on.
+    pub surroundings: Surroundings<'a, L>,
+    /// The pairs.
+    pub rows: PairRows<'a>,
 }
 
 #[inline(always)]
@@ -554,18 +561,26 @@ fn at_walls<N: Lanes, L: Law>(
     }
 }
 
-impl<L: Law> Work for Forces<'_, L> {
+impl<L: Law> Work for BetweenGrains<'_, L> {
     type Output = u64;
 
     /// Returns how many bridges broke.
     #[inline(always)]
     fn run<N: Lanes>(self, processor: N::Processor) -> u64 {
-        let ruptures = if self.surroundings.wetting.is_some() {
-            between_grains::<N, L, true>(processor, &self.surroundings, self.of_grains)
+        let Self { surroundings, rows } = self;
+        if surroundings.wetting.is_some() {
+            between_grains::<N, L, true>(processor, &surroundings, rows)
         } else {
-            between_grains::<N, L, false>(processor, &self.surroundings, self.of_grains)
-        };
-        at_walls::<N, L>(processor, &self.surroundings, self.of_walls);
-        ruptures
+            between_grains::<N, L, false>(processor, &surroundings, rows)
+        }
+    }
+}
+
+impl<L: Law> Work for AtWalls<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) {
+        at_walls::<N, L>(processor, &self.surroundings, self.rows);
     }
 }

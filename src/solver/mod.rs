@@ -20,6 +20,7 @@ pub mod law;
 mod neighbours;
 mod order;
 mod polyhedra;
+mod portion;
 mod profile;
 mod row;
 mod spring;
@@ -184,7 +185,7 @@ impl Solver {
         let limit = remaining.min(self.state.steps_within_slack());
         let result = Mutex::new((0, [Duration::ZERO; 2]));
         let ruptures = AtomicU64::new(0);
-        let phase = self.state.phase();
+        let phase = self.state.phase(size);
         let processor = self.processor;
         self.team.run(|member| {
             let mut timings = [Duration::ZERO; 2];
@@ -196,7 +197,7 @@ impl Solver {
             {
                 let begin = (member == 0 && steps % STEPS_PER_TIMING == 0).then(Instant::now);
                 // SAFETY: all members are between the same two barriers, each under its own number.
-                let broken = unsafe { phase.forces(processor, law, &walls, member, size) };
+                let broken = unsafe { phase.forces(processor, law, &walls, member) };
                 if broken > 0 {
                     ruptures.fetch_add(broken, Ordering::Relaxed);
                 }
@@ -205,7 +206,7 @@ impl Solver {
                 steps += 1;
                 let last = steps == remaining;
                 // SAFETY: likewise, one barrier further.
-                let outcome = unsafe { phase.finish(processor, member, size, last) };
+                let outcome = unsafe { phase.finish(processor, member, last) };
                 raise(&refresh, outcome.refresh);
                 raise(&fault, outcome.fault);
                 if !last {

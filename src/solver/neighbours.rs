@@ -3,7 +3,7 @@
 //! Two lists, both pure caches that never change a result. The *near* list, from a cell grid, holds pairs closer than a
 //! wide skin; the *active* list, filtered from it, holds pairs closer than a narrow skin and is what the pair loop runs
 //! over. Each list is good until some grain has moved by half its skin. Grains are named by their places ([`super::order`])
-//! and pairs kept sorted by these, but the first grain of a pair is the one of lower index, and forces are summed in the
+//! and pairs kept sorted by the lower and the higher of these, but the first grain of a pair is the one of lower index, and forces are summed in the
 //! order of indices: so the sums do not depend on the places. A listed pair that does not touch adds exact zeros, so they do
 //! not depend on the skins. A pair with a bridge is active however wide its gap. Tangential springs and bridges follow their pair from list to
 //! list. The last of the bodies is a ghost that fills groups of
@@ -65,6 +65,11 @@ impl Parts {
     #[inline(always)]
     pub fn of(&self, i: usize) -> &[Part] {
         &self.list[self.first[i] as usize..self.first[i + 1] as usize]
+    }
+
+    /// How many parts the grains before place `i` have.
+    pub fn before(&self, i: usize) -> usize {
+        self.first[i] as usize
     }
 
     /// The parts of grain `i` as the second partner, then those as the first.
@@ -136,7 +141,7 @@ impl Parts {
 /// Both lists.
 #[derive(Default)]
 pub struct Neighbours {
-    /// Active pairs of grains, sorted by grain and partner.
+    /// Active pairs of grains, sorted by their places.
     pub grains: PairList,
     /// Active pairs of a grain and a wall, sorted by wall and grain; a group meets one wall.
     pub walls: PairList,
@@ -248,7 +253,7 @@ impl Neighbours {
         }
     }
 
-    /// Takes over pairs with their springs and bridges, sorted by grain and partner, whatever was listed before. They are
+    /// Takes over pairs with their springs and bridges, sorted by their places, whatever was listed before. They are
     /// no whole groups: a refresh must follow.
     pub fn adopt(&mut self, pairs: PairList) {
         self.grains = pairs;
@@ -378,20 +383,28 @@ impl Neighbours {
             grid.for_near(body.position, |j| {
                 let other = &bodies[j as usize];
                 let reach = body.spin[3] + other.spin[3] + near;
-                if indices[j as usize] > indices[i]
+                if j as usize > i
                     && length_squared(sub(other.position, body.position)) < reach * reach
                 {
                     partners.push(j);
                 }
             });
             partners.sort_unstable();
-            let grain = i as u32;
-            self.near_grains
-                .extend(partners.iter().map(|&partner| Pair {
+            let place = i as u32;
+            let index = |place: u32| indices[place as usize];
+            self.near_grains.extend(partners.iter().map(|&other| {
+                let (grain, partner) = if index(place) < index(other) {
+                    (place, other)
+                } else {
+                    (other, place)
+                };
+                let kind = kind(index(grain), index(partner));
+                Pair {
                     grain,
                     partner,
-                    kind: kind(indices[i], indices[partner as usize]),
-                }));
+                    kind,
+                }
+            }));
         }
 
         self.near_walls.clear();
@@ -456,9 +469,10 @@ impl PairList {
 /// What a list is sorted by.
 type Key = fn(&Pair) -> (u32, u32);
 
-/// Order of pairs of grains.
+/// Order of pairs of grains: that of their first places, so that pairs stand as their grains do.
 pub fn grain_key(pair: &Pair) -> (u32, u32) {
-    (pair.grain, pair.partner)
+    let (grain, partner) = (pair.grain, pair.partner);
+    (grain.min(partner), grain.max(partner))
 }
 
 /// Order of pairs with walls.

@@ -3,7 +3,9 @@
 //! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
 
 use super::bridges::{BridgeColumns, BridgeRow, Bridges, LiquidAction, Wetting};
-use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
+use super::contacts::{
+    Action, AtWalls, BetweenGrains, Body, GROUP, Pair, PairRows, Surroundings, WallBody,
+};
 use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion, Outcome, Start};
 use super::lanes::Processor;
 use super::law::{
@@ -11,11 +13,13 @@ use super::law::{
 };
 use super::neighbours::{Neighbours, PairList, Parts, grain_key, wall_key};
 use super::order::Order;
+use super::portion::Portion;
 use super::row::{Row, length_squared, row, vector};
-use super::team::{Shared, share};
+use super::team::Shared;
 use super::{Fault, FaultKind};
 use crate::world::{Contact, Liquid, Partner, Surface, World};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// A grain that moves by more than this share of its radius in one step is lost.
 const LARGEST_MOVE: f64 = 0.1;
@@ -396,8 +400,9 @@ impl State {
         move_walls(&mut self.walls, self.motion.dt);
     }
 
-    /// Lends the state to a team.
-    pub fn phase(&mut self) -> Phase<'_> {
+    /// Lends the state to a team of `size` members.
+    pub fn phase(&mut self, size: usize) -> Phase<'_> {
+        let portions = Portion::all(&self.neighbours, size);
         let Self {
             bodies,
             loads,
@@ -439,6 +444,7 @@ impl State {
             constants: &kinds.constants,
             walls,
             motion: *motion,
+            portions,
         }
     }
 
@@ -499,12 +505,6 @@ fn largest_reach(world: &World, liquid: &Liquid) -> f64 {
     rupture_gap(liquid, (radius, radius), volume)
 }
 
-/// The part of `count` pairs that is `member`'s, in whole groups.
-fn share_of_groups(count: usize, member: usize, size: usize) -> std::ops::Range<usize> {
-    let groups = share(count / GROUP, member, size);
-    groups.start * GROUP..groups.end * GROUP
-}
-
 /// Moves walls that have a velocity by one step.
 pub(super) fn move_walls(walls: &mut [WallBody], dt: f64) {
     for wall in walls {
@@ -548,6 +548,8 @@ pub struct Phase<'a> {
     constants: &'a [PairConstants],
     walls: &'a [WallBody],
     motion: Motion,
+    /// What each member works on.
+    portions: Vec<Portion>,
 }
 
 #[expect(
@@ -555,91 +557,94 @@ pub struct Phase<'a> {
     reason = "phases end at barriers: what one writes in shares the other reads whole"
 )]
 impl Phase<'_> {
-    /// Computes `member`'s share of the pairs. `walls` are the walls at the time of the positions. Returns how many
+    /// Computes `member`'s portion of the pairs. `walls` are the walls at the time of the positions. Returns how many
     /// bridges broke.
     ///
     /// # Safety
-    /// Every member of `size` calls it between the same two barriers, each with its own number, and nothing else.
+    /// Every member calls it between the same two barriers, each with its own number, and nothing else.
     pub unsafe fn forces<L: Law>(
         &self,
         processor: Processor,
         law: L,
         walls: &[WallBody],
         member: usize,
-        size: usize,
     ) -> u64 {
-        let of_grains = share_of_groups(self.grain_pairs.len(), member, size);
-        let of_walls = share_of_groups(self.wall_pairs.len(), member, size);
-        let offset = self.grain_pairs.len();
-        let of_bridges = match self.liquid {
-            Some(_) => of_grains.clone(),
-            None => 0..0,
+        let Portion {
+            pairs, at_walls, ..
+        } = &self.portions[member];
+        // SAFETY: in this phase bodies and films are only read; springs, bridges and actions only written, each member its
+        // own portion.
+        let (bodies, films) = unsafe { (self.bodies.all(), self.films.all()) };
+        let surroundings = Surroundings {
+            law,
+            dt: self.motion.dt,
+            bodies,
+            walls,
+            constants: self.constants,
+            wetting: self.liquid.map(|liquid| Wetting {
+                liquid,
+                films,
+                constants: self.film_constants,
+            }),
         };
-        // SAFETY: in this phase bodies and films are only read, springs, bridges and actions only written, each member its
-        // own share.
-        let (films, bridges, liquid_actions) = unsafe {
-            (
-                self.films.all(),
-                self.bridges
-                    .range_mut(of_bridges.start / GROUP..of_bridges.end / GROUP),
-                self.liquid_actions.range_mut(of_bridges),
-            )
-        };
-        // SAFETY: likewise.
-        let (bodies, grain_springs, grain_actions, wall_springs, wall_actions) = unsafe {
-            (
-                self.bodies.all(),
-                self.grain_springs.range_mut(of_grains.clone()),
-                self.actions.range_mut(of_grains.clone()),
-                self.wall_springs.range_mut(of_walls.clone()),
-                self.actions
-                    .range_mut(of_walls.start + offset..of_walls.end + offset),
-            )
-        };
-        processor.run(Forces {
-            surroundings: Surroundings {
-                law,
-                dt: self.motion.dt,
-                bodies,
-                walls,
-                constants: self.constants,
-                wetting: self.liquid.map(|liquid| Wetting {
-                    liquid,
-                    films,
-                    constants: self.film_constants,
-                }),
-            },
-            of_grains: PairRows {
-                pairs: &self.grain_pairs[of_grains],
-                kind: self.grain_kind,
-                springs: grain_springs,
-                actions: grain_actions,
-                bridges,
-                liquid_actions,
-            },
-            of_walls: PairRows {
-                pairs: &self.wall_pairs[of_walls],
-                kind: None,
-                springs: wall_springs,
-                actions: wall_actions,
-                bridges: &mut [],
-                liquid_actions: &mut [],
-            },
-        })
+        // SAFETY: as above.
+        let rows = unsafe { self.rows_of_grains(pairs) };
+        let ruptures = processor.run(BetweenGrains { surroundings, rows });
+        for own in at_walls {
+            // SAFETY: as above.
+            let rows = unsafe { self.rows_at_walls(own) };
+            processor.run(AtWalls { surroundings, rows });
+        }
+        ruptures
     }
 
-    /// Sums the forces on `member`'s share of the grains and moves them.
+    /// The rows of these pairs of grains.
+    ///
+    /// # Safety
+    /// As for [`Phase::forces`], by whom the pairs belong to.
+    unsafe fn rows_of_grains(&self, pairs: &Range<usize>) -> PairRows<'_> {
+        let wet = match self.liquid {
+            Some(_) => pairs.clone(),
+            None => 0..0,
+        };
+        // SAFETY: the caller's promise.
+        unsafe {
+            PairRows {
+                pairs: &self.grain_pairs[pairs.clone()],
+                kind: self.grain_kind,
+                springs: self.grain_springs.range_mut(pairs.clone()),
+                actions: self.actions.range_mut(pairs.clone()),
+                bridges: (self.bridges).range_mut(wet.start / GROUP..wet.end / GROUP),
+                liquid_actions: self.liquid_actions.range_mut(wet),
+            }
+        }
+    }
+
+    /// The rows of these pairs with walls, whose actions stand behind those of the grains.
+    ///
+    /// # Safety
+    /// As for [`Phase::forces`], by whom the pairs belong to.
+    unsafe fn rows_at_walls(&self, pairs: &Range<usize>) -> PairRows<'_> {
+        let offset = self.grain_pairs.len();
+        // SAFETY: the caller's promise.
+        unsafe {
+            PairRows {
+                pairs: &self.wall_pairs[pairs.clone()],
+                kind: None,
+                springs: self.wall_springs.range_mut(pairs.clone()),
+                actions: (self.actions).range_mut(pairs.start + offset..pairs.end + offset),
+                bridges: &mut [],
+                liquid_actions: &mut [],
+            }
+        }
+    }
+
+    /// Sums the forces on `member`'s portion of the grains and moves them.
     ///
     /// # Safety
     /// As for [`Phase::forces`].
-    pub unsafe fn finish(
-        &self,
-        processor: Processor,
-        member: usize,
-        size: usize,
-        last: bool,
-    ) -> Outcome {
-        let own = share(self.reference.len(), member, size);
+    pub unsafe fn finish(&self, processor: Processor, member: usize, last: bool) -> Outcome {
+        let own = self.portions[member].grains.clone();
         let own_films = match self.liquid {
             Some(_) => own.clone(),
             None => 0..0,
