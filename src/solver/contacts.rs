@@ -432,7 +432,6 @@ pub struct PairRows<'a> {
 }
 
 /// What every pair's force depends on.
-#[derive(Clone, Copy)]
 pub struct Surroundings<'a, L> {
     /// The contact law.
     pub law: L,
@@ -448,20 +447,14 @@ pub struct Surroundings<'a, L> {
     pub wetting: Option<Wetting<'a>>,
 }
 
-/// The forces of a range of pairs of grains.
-pub struct BetweenGrains<'a, L> {
+/// The forces of a range of pairs of grains and of ranges of pairs with walls.
+pub struct Forces<'a, L, W> {
     /// What they depend on.
     pub surroundings: Surroundings<'a, L>,
-    /// The pairs.
-    pub rows: PairRows<'a>,
-}
-
-/// The forces of a range of pairs of a grain and a wall.
-pub struct AtWalls<'a, L> {
-    /// What they depend on.
-    pub surroundings: Surroundings<'a, L>,
-    /// The pairs.
-    pub rows: PairRows<'a>,
+    /// Pairs of grains.
+    pub of_grains: PairRows<'a>,
+    /// Pairs of a grain and a wall, range by range.
+    pub of_walls: W,
 }
 
 #[inline(always)]
@@ -561,26 +554,20 @@ fn at_walls<N: Lanes, L: Law>(
     }
 }
 
-impl<L: Law> Work for BetweenGrains<'_, L> {
+impl<'a, L: Law, W: Iterator<Item = PairRows<'a>>> Work for Forces<'a, L, W> {
     type Output = u64;
 
     /// Returns how many bridges broke.
     #[inline(always)]
     fn run<N: Lanes>(self, processor: N::Processor) -> u64 {
-        let Self { surroundings, rows } = self;
-        if surroundings.wetting.is_some() {
-            between_grains::<N, L, true>(processor, &surroundings, rows)
+        let ruptures = if self.surroundings.wetting.is_some() {
+            between_grains::<N, L, true>(processor, &self.surroundings, self.of_grains)
         } else {
-            between_grains::<N, L, false>(processor, &surroundings, rows)
+            between_grains::<N, L, false>(processor, &self.surroundings, self.of_grains)
+        };
+        for rows in self.of_walls {
+            at_walls::<N, L>(processor, &self.surroundings, rows);
         }
-    }
-}
-
-impl<L: Law> Work for AtWalls<'_, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self, processor: N::Processor) {
-        at_walls::<N, L>(processor, &self.surroundings, self.rows);
+        ruptures
     }
 }

@@ -3,9 +3,7 @@
 //! [`State::load`] takes a world in, [`State::store`] puts it back; both are exact. Between them only [`Phase`] moves it.
 
 use super::bridges::{BridgeColumns, BridgeRow, Bridges, LiquidAction, Wetting};
-use super::contacts::{
-    Action, AtWalls, BetweenGrains, Body, GROUP, Pair, PairRows, Surroundings, WallBody,
-};
+use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
 use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion, Outcome, Start};
 use super::lanes::Processor;
 use super::law::{
@@ -575,27 +573,28 @@ impl Phase<'_> {
         // SAFETY: in this phase bodies and films are only read; springs, bridges and actions only written, each member its
         // own portion.
         let (bodies, films) = unsafe { (self.bodies.all(), self.films.all()) };
-        let surroundings = Surroundings {
-            law,
-            dt: self.motion.dt,
-            bodies,
-            walls,
-            constants: self.constants,
-            wetting: self.liquid.map(|liquid| Wetting {
-                liquid,
-                films,
-                constants: self.film_constants,
-            }),
-        };
-        // SAFETY: as above.
-        let rows = unsafe { self.rows_of_grains(pairs) };
-        let ruptures = processor.run(BetweenGrains { surroundings, rows });
-        for own in at_walls {
-            // SAFETY: as above.
-            let rows = unsafe { self.rows_at_walls(own) };
-            processor.run(AtWalls { surroundings, rows });
-        }
-        ruptures
+        // SAFETY: likewise.
+        let of_grains = unsafe { self.rows_of_grains(pairs) };
+        // SAFETY: likewise.
+        let of_walls = at_walls
+            .iter()
+            .map(|own| unsafe { self.rows_at_walls(own) });
+        processor.run(Forces {
+            surroundings: Surroundings {
+                law,
+                dt: self.motion.dt,
+                bodies,
+                walls,
+                constants: self.constants,
+                wetting: self.liquid.map(|liquid| Wetting {
+                    liquid,
+                    films,
+                    constants: self.film_constants,
+                }),
+            },
+            of_grains,
+            of_walls,
+        })
     }
 
     /// The rows of these pairs of grains.
