@@ -3,11 +3,13 @@
 //! In: [`Order`]s. Out: [`Update`]s. [`Engine::work`] does one short piece at a time, so that orders are answered quickly;
 //! how the pieces fall does not show in the trajectory.
 
+use super::history::Record;
 use super::preparation::{Preparation, Prepared};
 use super::session::Session;
 use super::timeline::{Past, Timeline};
 use super::{
-    Command, CommandError, ParameterInfo, Run, Script, ScriptedCommand, StampedCommand, Status,
+    Command, CommandError, Half, Parameter, ParameterInfo, Run, Script, ScriptedCommand, Snapshot,
+    StampedCommand, Status,
 };
 use crate::measure::{FlowHistory, Sample};
 use crate::solver::{Fault, Profile};
@@ -24,8 +26,22 @@ pub enum Order {
     Tick(Duration),
     /// Go no further than this step for now.
     Hold(Option<u64>),
-    /// Write the whole session to this file.
-    Save(PathBuf),
+    /// Write the whole session to this file, with a run beside it where there is one.
+    Save(PathBuf, Option<Box<Beside>>),
+    /// Start afresh at time zero with these values; answered as a command is.
+    Restart(Vec<(Parameter, f64)>),
+    /// Keep this run beside the present one, or go on with it.
+    Adopt(Box<Beside>, Half),
+    /// Work on so many threads from now on.
+    Threads(usize),
+}
+
+/// A run of the same scene from the same bed that another engine computed.
+pub struct Beside {
+    /// What is known of it.
+    pub record: Record,
+    /// The state at its end, where that is at hand.
+    pub end: Option<Snapshot>,
 }
 
 /// What became of a file that was to be written.
@@ -44,6 +60,8 @@ pub struct Update {
     pub world: Option<Arc<World>>,
     /// The run's live parameters, once it stands at time zero.
     pub parameters: Option<Arc<[ParameterInfo]>>,
+    /// The state at time zero, before any command, once the run stands there.
+    pub bed: Option<Arc<World>>,
     /// Whether another run is the present one, so that samples and commands start afresh.
     pub switched: bool,
     /// Samples taken.
@@ -76,6 +94,7 @@ impl Update {
         }
         self.world = later.world.or(self.world.take());
         self.parameters = later.parameters.or(self.parameters.take());
+        self.bed = later.bed.or(self.bed.take());
         self.samples.extend(later.samples);
         self.flow = later.flow.or(self.flow.take());
         self.commands.extend(later.commands);
@@ -164,9 +183,13 @@ impl Engine {
 
     /// An engine that goes on with `timeline`.
     pub fn resume(timeline: Timeline, autoplay: bool, speed: f64) -> Self {
-        let parameters = timeline.run().parameters().clone();
+        let (parameters, bed) = (
+            timeline.run().parameters().clone(),
+            timeline.run().bed().clone(),
+        );
         let mut engine = Self::at(Stage::Ready(Box::new(timeline)), autoplay, speed);
         engine.news.parameters = Some(parameters);
+        engine.news.bed = Some(bed);
         engine
     }
 
@@ -201,7 +224,14 @@ impl Engine {
             Order::Hold(step) => self.hold = step.unwrap_or(u64::MAX),
             order if self.must_wait(&order) => self.waiting.push(order),
             Order::Command(command) => self.carry_out(command),
-            Order::Save(path) => self.save(path),
+            Order::Save(path, beside) => self.save(path, beside),
+            Order::Restart(values) => self.restart(&values),
+            Order::Adopt(beside, shown) => self.adopt(*beside, shown),
+            Order::Threads(threads) => {
+                if let Stage::Ready(timeline) = &mut self.stage {
+                    timeline.use_threads(threads);
+                }
+            }
         }
     }
 
@@ -303,7 +333,7 @@ impl Engine {
             Stage::Ready(timeline) => {
                 let acts_on_the_moment = matches!(
                     order,
-                    Order::Save(_)
+                    Order::Save(..)
                         | Order::Command(Command::Play | Command::Step(_) | Command::Set { .. })
                 );
                 timeline.destination().is_some() && acts_on_the_moment
@@ -336,6 +366,7 @@ impl Engine {
         let script = std::mem::take(&mut self.script);
         let clock = run.world().clock;
         self.news.parameters = Some(run.parameters().clone());
+        self.news.bed = Some(run.bed().clone());
         let mut timeline = Timeline::new(run, self.memory);
         let scheduled = Script::new(&script, &clock)
             .map_err(|error| error.to_string())
@@ -355,15 +386,40 @@ impl Engine {
         }
     }
 
-    /// Writes the whole session to `path`, on the way from one piece of work to the next.
-    fn save(&mut self, path: PathBuf) {
-        let outcome = match &self.stage {
-            Stage::Ready(timeline) => Session::of(&timeline.run().scene().title, timeline)
-                .write(&path)
-                .map_err(|error| error.to_string()),
+    /// Writes the whole session to `path`, on the way from one piece of work to the next; a run that goes on `beside` is
+    /// in it as one that was kept.
+    fn save(&mut self, path: PathBuf, beside: Option<Box<Beside>>) {
+        let outcome = match &mut self.stage {
+            Stage::Ready(timeline) => {
+                let beside = beside.map(|beside| timeline.adopt(beside.record, beside.end));
+                let session = Session::of(&timeline.run().scene().title, timeline);
+                if beside.is_some() {
+                    timeline.forget(timeline.kept().len() - 1);
+                }
+                session.write(&path).map_err(|error| error.to_string())
+            }
             Stage::Preparing(_) | Stage::Failed(_) => Err("there is no run".into()),
         };
         self.news.saved.push(SavedFile { path, outcome });
+    }
+
+    fn restart(&mut self, values: &[(Parameter, f64)]) {
+        self.news.answered += 1;
+        if let Stage::Ready(timeline) = &mut self.stage {
+            timeline.restart(values);
+            self.play(self.mode);
+        }
+    }
+
+    /// Keeps the run `beside`; goes on with it where the right one is to be `shown`.
+    fn adopt(&mut self, beside: Beside, shown: Half) {
+        if let Stage::Ready(timeline) = &mut self.stage {
+            timeline.adopt(beside.record, beside.end);
+            let newest = timeline.kept().len() - 1;
+            if shown == Half::Right {
+                self.travel(|timeline| timeline.take_up(newest));
+            }
+        }
     }
 
     fn carry_out(&mut self, command: Command) {
@@ -387,13 +443,12 @@ impl Engine {
                 self.play(self.mode);
             }
             Command::Reset => {
-                let refused = timeline.reset().err();
+                timeline.reset();
                 let mode = match self.mode {
                     Mode::Running if self.fault.is_none() => Mode::Running,
                     _ => Mode::Paused,
                 };
                 self.play(mode);
-                self.tell(refused);
             }
             Command::Set { .. } => {
                 let joins = (self.changed).is_some_and(|changed| changed.elapsed() < ONE_CHANGE);

@@ -5,12 +5,14 @@
 
 use super::bed::BedStore;
 use super::driver::Driver;
-use super::engine::{Engine, Order, SavedFile, Update};
+use super::engine::{Beside, Engine, Order, SavedFile, Update};
+use super::history::{History, Record};
 use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
 use super::session::Session;
-use super::timeline::Past;
-use super::{Command, Parameter, ScriptedCommand, StampedCommand};
+use super::timeline::{Past, Timeline};
+use super::twin::Twin;
+use super::{Command, Half, Parameter, Run, ScriptedCommand, Snapshot, StampedCommand, check};
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile, TimeStepAdvice, advise};
@@ -127,8 +129,16 @@ pub enum Status {
 pub struct Simulation {
     scene: Arc<Scene>,
     advice: TimeStepAdvice,
+    means: Means,
     driver: Option<Driver>,
+    /// What the engine has told last, taken in or not.
+    heard: Heard,
+    /// News that are not taken in yet: those of a pair are when both halves are at the same step.
+    pending: Option<Update>,
+    /// The run beside this one, if there is one.
+    twin: Option<Box<Twin>>,
     speed: f64,
+    bed: Option<Arc<World>>,
     world: Option<Arc<World>>,
     parameters: Arc<[ParameterInfo]>,
     series: Series,
@@ -142,15 +152,53 @@ pub struct Simulation {
     sought: Option<u64>,
     /// Values asked for and not yet carried out.
     asked: BTreeMap<Parameter, f64>,
-    /// Commands sent so far, and those of them that were taken up.
+    /// Commands sent so far, those of them that were taken up, and those that wait for the twin before they are sent.
     sent: u64,
     answered: u64,
+    waiting: usize,
     status: Status,
     profile: Profile,
     rate: Rate,
     warnings: Vec<String>,
     generation: u64,
     saved: Saved,
+}
+
+/// What a run is computed with.
+#[derive(Clone, Copy, Debug)]
+struct Means {
+    driver: DriverKind,
+    threads: usize,
+    memory: usize,
+}
+
+impl Means {
+    fn of(options: &Options) -> Self {
+        Self {
+            driver: options.driver,
+            threads: options.threads,
+            memory: options.memory,
+        }
+    }
+
+    /// What each of two runs gets of it.
+    fn half(self) -> Self {
+        Self {
+            threads: (self.threads / 2).max(1),
+            memory: self.memory / 2,
+            ..self
+        }
+    }
+}
+
+/// What an engine has told last.
+pub(super) struct Heard {
+    /// What it does.
+    pub status: Status,
+    /// The step of its newest state.
+    pub step: Option<u64>,
+    /// Commands that it took up.
+    pub answered: u64,
 }
 
 /// What is known of the files a session was written to.
@@ -171,33 +219,47 @@ impl Simulation {
     pub fn open(scene: Scene, options: Options) -> Self {
         let scene = Arc::new(scene);
         let advice = advise(&scene);
-        let speed = options.speed;
+        let (speed, means) = (options.speed, Means::of(&options));
         let driver = drive(scene.clone(), advice.time_step, options);
-        Self::with(scene, advice, speed, driver)
+        Self::with(scene, advice, speed, means, driver)
     }
 
     /// Opens `session` at the moment that was shown. What `options` say of beds and scripts means nothing for it.
     pub fn resume(session: Session, options: Options) -> Self {
         let scene = Arc::new(session.claim().scene.clone());
-        let speed = options.speed;
+        let (speed, means) = (options.speed, Means::of(&options));
         let make = move || {
             let timeline = session.into_timeline(options.threads, options.memory);
             Engine::resume(timeline, options.autoplay, speed)
         };
         let driver = driven(options.driver, make);
         let advice = advise(&scene);
-        Self::with(scene, advice, speed, driver)
+        Self::with(scene, advice, speed, means, driver)
     }
 
     fn with(
         scene: Arc<Scene>,
         advice: TimeStepAdvice,
         speed: f64,
+        means: Means,
         driver: std::io::Result<Driver>,
     ) -> Self {
+        let status = Status::Preparing {
+            stage: "starting".into(),
+            progress: 0.0,
+        };
         let mut simulation = Self {
             scene,
             speed,
+            means,
+            heard: Heard {
+                status: status.clone(),
+                step: None,
+                answered: 0,
+            },
+            pending: None,
+            twin: None,
+            bed: None,
             world: None,
             parameters: Arc::new([]),
             series: Series::default(),
@@ -210,10 +272,8 @@ impl Simulation {
             asked: BTreeMap::new(),
             sent: 0,
             answered: 0,
-            status: Status::Preparing {
-                stage: "starting".into(),
-                progress: 0.0,
-            },
+            waiting: 0,
+            status,
             profile: Profile::default(),
             rate: Rate::default(),
             warnings: advice.warning.iter().cloned().collect(),
@@ -225,8 +285,7 @@ impl Simulation {
         match driver {
             Ok(driver) => simulation.driver = Some(driver),
             Err(error) => {
-                simulation.status =
-                    Status::Failed(format!("the system gives the solver no thread: {error}"));
+                simulation.fail(format!("the system gives the solver no thread: {error}"))
             }
         }
         simulation
@@ -309,25 +368,183 @@ impl Simulation {
         asked.or_else(present).unwrap_or(f64::NAN)
     }
 
-    /// Asks for `command`; it is carried out before the next slice of steps, stamped and kept.
+    /// Asks for `command`; it is carried out before the next slice of steps, stamped and kept. With a twin it is carried
+    /// out in both runs at the same step, unless it is about what they differ in: that concerns this run alone.
     pub fn send(&mut self, command: Command) {
         match &command {
-            Command::Set { parameter, value } => {
-                self.asked.insert(parameter.clone(), *value);
-            }
+            Command::Set { parameter, value } => self.expect(parameter, *value),
             Command::Speed(speed) => self.speed = *speed,
             Command::Seek(step) => self.sought = Some(*step),
             _ => {}
         }
+        match self.twin.take() {
+            Some(mut twin) => {
+                twin.send(self, command);
+                self.twin = Some(twin);
+            }
+            None => self.ask(command),
+        }
+    }
+
+    /// Shows `value` as that of `parameter` until what was asked for is carried out.
+    pub(super) fn expect(&mut self, parameter: &Parameter, value: f64) {
+        self.asked.insert(parameter.clone(), value);
+    }
+
+    /// Asks this run's own engine for `command`.
+    pub(super) fn ask(&mut self, command: Command) {
         self.sent += 1;
         self.order(Order::Command(command));
     }
 
     /// Writes the whole session to `path`, off this thread where there is another; what becomes of it is told by
-    /// [`Simulation::take_saved`].
+    /// [`Simulation::take_saved`]. A twin is in it as a run that was kept.
     pub fn save(&mut self, path: PathBuf) {
+        match self.twin.take() {
+            Some(mut twin) => {
+                twin.save(self, path);
+                self.twin = Some(twin);
+            }
+            None => self.write(path, None),
+        }
+    }
+
+    /// Lets the engine write the session to `path`, with the run `beside` it.
+    pub(super) fn write(&mut self, path: PathBuf, beside: Option<Box<Beside>>) {
         self.saved.pending.push(self.sent);
-        self.order(Order::Save(path));
+        self.order(Order::Save(path, beside));
+    }
+
+    /// Begins a twin: both runs start afresh at time zero, with the present values of all parameters but `parameter`,
+    /// which has its present value in this one and `value` in the other.
+    ///
+    /// # Errors
+    /// Why there can be none now, in a sentence.
+    pub fn start_twin(&mut self, parameter: &Parameter, value: f64) -> Result<(), String> {
+        if self.twin.is_some() {
+            return Err("There is a twin already: end it first".into());
+        }
+        let (Some(bed), true) = (self.bed.clone(), self.can_start_twin()) else {
+            return Err("Two runs start side by side only while the run stands or goes on".into());
+        };
+        let command = Command::Set {
+            parameter: parameter.clone(),
+            value,
+        };
+        check(&self.parameters, &bed, &command).map_err(|refusal| refusal.to_string())?;
+        let parameters = self.parameters.iter().map(|info| &info.parameter);
+        let values: Vec<_> = parameters
+            .map(|parameter| (parameter.clone(), self.value(parameter)))
+            .collect();
+        let mut run = self.sibling(bed)?;
+        let own = |(of, present): &(Parameter, f64)| {
+            (of.clone(), if of == parameter { value } else { *present })
+        };
+        run.restart(values.iter().map(own).collect());
+        let goes_on = self.status == Status::Running;
+        self.order(Order::Threads(self.means.half().threads));
+        // The pair keeps the time: each half goes as fast as it can to the step that both are sent to.
+        self.order(Order::Hold(Some(0)));
+        self.ask(Command::Speed(f64::INFINITY));
+        self.restart(values);
+        self.sought = None;
+        self.twin = Some(Box::new(Twin::new(run, parameter.clone(), goes_on)));
+        Ok(())
+    }
+
+    /// Whether the run is one that a twin can be begun of.
+    pub fn can_start_twin(&self) -> bool {
+        self.twin.is_none() && matches!(self.status, Status::Running | Status::Paused)
+    }
+
+    /// Ends the twin: goes on with one of the two runs, and keeps the other beside it.
+    pub fn end_twin(&mut self, go_on_with: Half) {
+        let Some(twin) = self.twin.take() else {
+            return;
+        };
+        self.order(Order::Adopt(Box::new(twin.beside()), go_on_with));
+        self.order(Order::Threads(self.means.threads));
+        self.ask(Command::Speed(self.speed));
+        let is_held = self.heard.status == Status::Running;
+        if twin.goes_on() {
+            self.ask(Command::Play);
+        } else if is_held && go_on_with == Half::Left {
+            self.ask(Command::Pause);
+        }
+        let (hold, waiting) = twin.end();
+        self.waiting = 0;
+        self.order(Order::Hold(hold));
+        for command in waiting {
+            self.ask(command);
+        }
+    }
+
+    /// The twin, while there is one.
+    pub fn twin(&self) -> Option<&Twin> {
+        self.twin.as_deref()
+    }
+
+    /// Gives the parameter that the two runs differ in another value in the twin; nothing without one.
+    pub fn set_twin(&mut self, value: f64) {
+        if let Some(mut twin) = self.twin.take() {
+            twin.set(self, value);
+            self.twin = Some(twin);
+        }
+    }
+
+    /// One of the two runs; this one without a twin.
+    pub fn half(&self, half: Half) -> &Self {
+        match (half, &self.twin) {
+            (Half::Right, Some(twin)) => twin.run(),
+            _ => self,
+        }
+    }
+
+    /// Another run of the same scene from `bed`, at time zero, held there.
+    fn sibling(&self, bed: Arc<World>) -> Result<Self, String> {
+        let (scene, means) = (self.scene.clone(), self.means.half());
+        let make = {
+            let scene = scene.clone();
+            move || {
+                let run = Run::new(scene, bed, means.threads);
+                Engine::resume(Timeline::new(run, means.memory), false, f64::INFINITY)
+            }
+        };
+        let driver = driven(means.driver, make);
+        let mut run = Self::with(scene, self.advice.clone(), f64::INFINITY, means, driver);
+        run.order(Order::Hold(Some(0)));
+        match &run.status {
+            Status::Failed(reason) => Err(reason.clone()),
+            _ => Ok(run),
+        }
+    }
+
+    /// Starts afresh at time zero with `values`.
+    fn restart(&mut self, values: Vec<(Parameter, f64)>) {
+        self.sent += 1;
+        self.order(Order::Restart(values));
+    }
+
+    /// This run as one to keep beside another.
+    pub(super) fn as_beside(&self) -> Beside {
+        let mut history = History::default();
+        for (index, command) in self.commands.iter().enumerate() {
+            let joins = self.past.changes.binary_search(&index).is_err();
+            history.push(command.clone(), joins);
+        }
+        let record = Record {
+            history,
+            series: self.series.clone(),
+            flow: self.flow.clone(),
+            end: self.past.end,
+            ..Record::default()
+        };
+        let (commands, samples) = (self.commands.len(), self.series.len());
+        let end = self.world.as_ref().filter(|_| !self.looks_back());
+        Beside {
+            end: end.map(|world| Snapshot::of_end(world, commands, samples, self.flow.clone())),
+            record,
+        }
     }
 
     /// What became of files since this was last called.
@@ -350,12 +567,20 @@ impl Simulation {
 
     /// Whether every command that was sent has been taken up.
     pub fn has_answered(&self) -> bool {
-        self.answered == self.sent
+        self.answered == self.sent && self.waiting == 0
+    }
+
+    /// Notes how many commands wait for the twin.
+    pub(super) fn let_wait(&mut self, commands: usize) {
+        self.waiting = commands;
     }
 
     /// Lets the run go no further than `step` for now, or as far as it will.
     pub fn hold_at(&mut self, step: Option<u64>) {
-        self.order(Order::Hold(step));
+        match &mut self.twin {
+            Some(twin) => twin.hold_at(step),
+            None => self.order(Order::Hold(step)),
+        }
     }
 
     /// The commands carried out in the present run since time zero; those after the state shown too.
@@ -393,24 +618,73 @@ impl Simulation {
 
     /// Lets `passed` wall-clock time pass: hands the next slice of steps over and takes in what is new.
     pub fn tick(&mut self, passed: Duration) {
-        let Some(driver) = &mut self.driver else {
-            return;
-        };
-        let update = driver.tick(passed);
-        if update.is_none() && driver.has_died() {
-            self.driver = None;
-            self.status =
-                Status::Failed("the solver's thread ended; this is a mistake in Grainfall".into());
-        }
-        if let Some(update) = update {
-            self.take(update);
+        match self.twin.take() {
+            Some(mut twin) => {
+                self.status = twin.tick(self, passed);
+                self.twin = Some(twin);
+            }
+            None => {
+                self.gather(passed);
+                self.take_in();
+            }
         }
         if self.status == Status::Running {
             self.saved.worked += passed;
         }
     }
 
-    fn order(&mut self, order: Order) {
+    /// Lets the engine go on by `passed` wall-clock time and hears what is new.
+    pub(super) fn gather(&mut self, passed: Duration) {
+        let Some(driver) = &mut self.driver else {
+            return;
+        };
+        let update = driver.tick(passed);
+        if update.is_none() && driver.has_died() {
+            self.driver = None;
+            self.fail("the solver's thread ended; this is a mistake in Grainfall".into());
+        }
+        let Some(update) = update else {
+            return;
+        };
+        let heard = &mut self.heard;
+        heard.status = update.status.clone().unwrap_or(heard.status.clone());
+        let step = update.world.as_ref().map(|world| world.clock.step);
+        heard.step = step.or(heard.step);
+        heard.answered = update.answered;
+        match &mut self.pending {
+            Some(earlier) => earlier.absorb(update),
+            None => self.pending = Some(update),
+        }
+    }
+
+    /// Takes in what was heard.
+    pub(super) fn take_in(&mut self) {
+        if let Some(update) = self.pending.take() {
+            self.take(update);
+        }
+    }
+
+    /// What the engine has told last.
+    pub(super) fn heard(&self) -> &Heard {
+        &self.heard
+    }
+
+    /// Whether the engine has taken up all that was sent to it.
+    pub(super) fn has_heard_all(&self) -> bool {
+        self.heard.answered == self.sent
+    }
+
+    /// Adds a warning.
+    pub(super) fn warn(&mut self, text: &str) {
+        self.warnings.push(text.into());
+    }
+
+    fn fail(&mut self, reason: String) {
+        self.status = Status::Failed(reason);
+        self.heard.status = self.status.clone();
+    }
+
+    pub(super) fn order(&mut self, order: Order) {
         if let Some(driver) = &mut self.driver {
             driver.order(order);
         }
@@ -441,6 +715,7 @@ impl Simulation {
         if self.has_answered() && !matches!(self.status, Status::Seeking { .. }) {
             self.sought = None;
         }
+        self.bed = update.bed.or(self.bed.take());
         if let Some(parameters) = update.parameters {
             self.parameters = parameters;
             self.saved.revision = self.revision;

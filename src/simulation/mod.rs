@@ -17,6 +17,7 @@
 //! | `session`, `archive`, `shared` | all of that in one file |
 //! | `claim`, `provenance` | a state and what leads to it, as files state it; in a few words, for exported files |
 //! | `engine`, `driver` | who moves a run on, in short pieces, inline or on a thread |
+//! | `twin` | a second run beside the first, in step with it |
 //! | `front`, `plugin` | what the outside sees, and the Bevy system that ticks it |
 
 mod archive;
@@ -40,6 +41,7 @@ mod settling;
 mod shared;
 mod start;
 mod timeline;
+mod twin;
 
 pub use bed::BedStore;
 pub use claim::{Claim, VERSION, fingerprint};
@@ -56,3 +58,6 @@ pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use start::{StartInfo, StartParameter, start_parameters};
 pub use timeline::{Changed, Past, Timeline};
+pub use twin::{Half, Twin};
+
+use run::check;

@@ -43,6 +43,26 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
+    /// The state `world` at the end of a run that had these `commands` and `samples` and this `flow`.
+    pub(super) fn of_end(
+        world: &World,
+        commands: usize,
+        samples: usize,
+        flow: Arc<FlowHistory>,
+    ) -> Self {
+        let mut next_sample = samples as u64;
+        while sample_step(world, next_sample) <= world.clock.step {
+            next_sample += 1;
+        }
+        Self {
+            world: world.clone(),
+            commands,
+            samples,
+            flow,
+            next_sample,
+        }
+    }
+
     /// Steps taken then.
     pub fn step(&self) -> u64 {
         self.world.clock.step
@@ -112,12 +132,13 @@ pub enum CommandError {
 
 impl Run {
     /// A run of `scene` that starts from `bed`, its world at time zero, on `threads` threads.
-    pub fn new(scene: Arc<Scene>, bed: World, threads: usize) -> Self {
+    pub fn new(scene: Arc<Scene>, bed: impl Into<Arc<World>>, threads: usize) -> Self {
+        let bed = bed.into();
         let mut run = Self {
             parameters: parameter::live_parameters(&scene, &bed).into(),
             scene,
-            world: bed.clone(),
-            bed: Arc::new(bed),
+            world: (*bed).clone(),
+            bed,
             solver: Solver::new(threads),
             commands: Vec::new(),
             script: Script::default(),
@@ -162,6 +183,11 @@ impl Run {
     /// The parameters that can change while the run goes on.
     pub fn parameters(&self) -> &Arc<[ParameterInfo]> {
         &self.parameters
+    }
+
+    /// Goes on with `threads` threads, to the same bits.
+    pub(super) fn use_threads(&mut self, threads: usize) {
+        self.solver = Solver::new(threads);
     }
 
     /// Where the solver's time went since this was last called.
@@ -211,7 +237,7 @@ impl Run {
     /// The solver's [`Fault`]; the world is then a good state some steps before the fault.
     pub fn advance_to(&mut self, step: u64) -> Result<(), Fault> {
         while self.world.clock.step < step {
-            let sample_step = self.sample_step(self.next_sample);
+            let sample_step = sample_step(&self.world, self.next_sample);
             let script_step = self.script.next_step().unwrap_or(u64::MAX);
             let stop = step.min(sample_step).min(script_step);
             let steps = stop - self.world.clock.step;
@@ -303,30 +329,29 @@ impl Run {
         });
     }
 
-    /// Back to the bed. Present values that differ from the bed's become commands at step zero.
-    fn reset(&mut self) {
-        let present: Vec<_> = self
-            .parameters
-            .iter()
-            .map(|info| info.parameter.clone())
-            .map(|parameter| (parameter.read(&self.world), parameter))
-            .collect();
+    /// Back to the bed with the present values.
+    pub(super) fn reset(&mut self) {
+        let parameters = self.parameters.iter().map(|info| info.parameter.clone());
+        let present = parameters.filter_map(|parameter| {
+            let value = parameter.read(&self.world)?;
+            Some((parameter, value))
+        });
+        let present: Vec<_> = present.collect();
+        self.restart_with(&present);
+    }
+
+    /// Back to the bed. Those of the `values` that differ from the bed's become commands at step zero.
+    pub(super) fn restart_with(&mut self, values: &[(Parameter, f64)]) {
         self.restart();
-        for (value, parameter) in present {
-            let Some(value) = value.filter(|_| value != parameter.read(&self.world)) else {
-                continue;
-            };
-            self.set(&parameter, value);
+        for (parameter, value) in values {
+            if parameter.read(&self.world).is_some_and(|own| own != *value) {
+                self.set(parameter, *value);
+            }
         }
     }
 
-    fn sample_step(&self, sample: u64) -> u64 {
-        let time = sample as f64 * SAMPLE_INTERVAL;
-        self.world.clock.step_at(time)
-    }
-
     fn take_due_sample(&mut self) {
-        if self.sample_step(self.next_sample) > self.world.clock.step {
+        if sample_step(&self.world, self.next_sample) > self.world.clock.step {
             return;
         }
         let (sample, surface) = sample_and_surface(&self.world);
@@ -334,10 +359,15 @@ impl Run {
             Arc::make_mut(&mut self.flow).add(&self.world, &sample, &line);
         }
         self.series.push(sample);
-        while self.sample_step(self.next_sample) <= self.world.clock.step {
+        while sample_step(&self.world, self.next_sample) <= self.world.clock.step {
             self.next_sample += 1;
         }
     }
+}
+
+/// The step after which the sample of this index is taken.
+fn sample_step(world: &World, sample: u64) -> u64 {
+    world.clock.step_at(sample as f64 * SAMPLE_INTERVAL)
 }
 
 /// Refuses a command that cannot be carried out in `world`.

@@ -7,7 +7,7 @@
 use super::archive::{Archive, ArchivedDestination, ArchivedState, ArchivedTurn, Table};
 use super::history::{Moment, Place, Record};
 use super::keyframes::Keyframes;
-use super::{Command, CommandError, Parameter, Run, Script};
+use super::{Command, CommandError, Parameter, Run, Script, Snapshot};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use serde::{Deserialize, Serialize};
@@ -361,14 +361,20 @@ impl Timeline {
     }
 
     /// Starts afresh at time zero with the present values, keeping the run that is left.
-    ///
-    /// # Errors
-    /// As [`Run::apply`].
-    pub fn reset(&mut self) -> Result<(), CommandError> {
+    pub fn reset(&mut self) {
+        self.start_afresh(Run::reset);
+    }
+
+    /// Starts afresh at time zero with these `values`, keeping the run that is left.
+    pub(super) fn restart(&mut self, values: &[(Parameter, f64)]) {
+        self.start_afresh(|run| run.restart_with(values));
+    }
+
+    fn start_afresh(&mut self, start: impl FnOnce(&mut Run)) {
         self.stop();
         self.keep_end();
         let step = self.step();
-        self.run.apply(Command::Reset)?;
+        start(&mut self.run);
         let number = self.next_number();
         let left = self.switch(Record::of(&self.run, number));
         let destination = Destination::Other { record: left, step };
@@ -376,7 +382,6 @@ impl Timeline {
             what: Changed::Start,
             destination,
         });
-        Ok(())
     }
 
     /// Takes the last change back: goes to its moment, as if it had not been made.
@@ -405,6 +410,25 @@ impl Timeline {
             });
             self.turn(back);
         }
+    }
+
+    /// Keeps the run of `record`, which began from the same bed, beside the present one, with the state at its `end`
+    /// where that is known.
+    pub(super) fn adopt(&mut self, mut record: Record, end: Option<Snapshot>) {
+        record.number = self.next_number();
+        if let Some(end) = end {
+            let place = record.history.place(end.commands(), end.step());
+            self.keyframes.keep(place, || end);
+        }
+        self.kept.push(Arc::new(record));
+        if self.kept.len() > MOST_KEPT {
+            self.kept.remove(0);
+        }
+    }
+
+    /// Goes on with `threads` threads.
+    pub(super) fn use_threads(&mut self, threads: usize) {
+        self.run.use_threads(threads);
     }
 
     /// Keeps the run of `index` no longer.

@@ -8,5 +8,6 @@ mod session;
 mod solver;
 mod sweep;
 mod timeline;
+mod twin;
 mod vtk;
 mod world;

@@ -358,7 +358,7 @@ fn drag_is_one_change() {
 #[test]
 fn start_afresh_can_be_taken_back() {
     let (mut timeline, hashes) = recorded(PLENTY);
-    timeline.reset().unwrap();
+    timeline.reset();
     assert_eq!(timeline.run().world().clock.step, 0);
     assert_eq!(timeline.run().commands().len(), 3, "present values stay");
     go_on(&mut timeline, 100);

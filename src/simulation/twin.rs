@@ -1,0 +1,369 @@
+//! A second run of the same scene beside the first: from the same start, differing in one parameter, in step with it.
+//!
+//! In: what is asked of the pair. Out: the same asked of each run at the same step. Both are sent to a common step and
+//! hold there; only when both have come is what they have become taken in, so that the two states shown are always of the
+//! same step. What changes a run is asked for there too, so that the same change has the same step in both: the two keep
+//! differing in the one parameter alone, and each goes the way, to the bit, that it would go by itself.
+//!
+//! A run that stopped short of the common step, because it met a fault or was stopped on the way to a moment, holds; the
+//! other goes back to it. Undo, redo and taking up a kept run belong to one run and wait until the twin is ended.
+
+use super::engine::{Beside, Order};
+use super::{Command, Parameter, Simulation, Status};
+use bevy::ecs::component::Component;
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Wall-clock time that both work until they meet again: longer than a frame, so that little of it is spent waiting.
+const SLICE: Duration = Duration::from_millis(60);
+/// Steps until the first meeting.
+const FIRST_SLICE: u64 = 50;
+/// Most wall-clock time that is caught up with.
+const LONGEST_DEBT: Duration = Duration::from_millis(100);
+/// Why some commands are refused.
+const OF_ONE_RUN: &str = "Undo, redo and kept runs belong to one run: end the twin first. To take a change back in both, go back along the timeline.";
+
+/// One of two runs side by side, and of their pictures.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Half {
+    /// The first run; all of the picture where there is one run only.
+    #[default]
+    Left,
+    /// The twin.
+    Right,
+}
+
+impl Half {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Left, Self::Right];
+
+    /// Its place among both.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// What people call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+/// A run beside another, in step with it.
+pub struct Twin {
+    run: Simulation,
+    parameter: Parameter,
+    mode: Mode,
+    /// The step that both were sent to.
+    target: u64,
+    /// The step they must not pass for now.
+    hold: Option<u64>,
+    /// Simulated time granted and not yet spent [s].
+    owed: f64,
+    waiting: VecDeque<Asked>,
+    slice: Slice,
+}
+
+/// What the pair does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    Paused,
+    Running,
+    Stepping { until: u64 },
+}
+
+/// What waits for both runs to be at the same step.
+enum Asked {
+    /// Of both runs, or of the pair.
+    Both(Command),
+    /// Of one of them.
+    One(Half, Command),
+    Save(PathBuf),
+}
+
+/// How far both go until they meet again.
+struct Slice {
+    steps: u64,
+    /// Where and when the present one was begun.
+    begun: Option<(u64, Instant)>,
+}
+
+impl Slice {
+    /// Fits it to [`SLICE`], now that both have come to `step`.
+    fn end(&mut self, step: u64) {
+        if let Some((from, since)) = self.begun.take() {
+            let steps = step.saturating_sub(from);
+            let fitting =
+                steps as f64 * SLICE.as_secs_f64() / since.elapsed().as_secs_f64().max(1e-9);
+            // A short one, because no more was granted, says little of long ones.
+            let most = 4 * steps.max(self.steps);
+            self.steps = (fitting as u64).clamp(1, most.max(FIRST_SLICE));
+        }
+    }
+}
+
+impl Twin {
+    /// A twin of a run that starts afresh at time zero: `run`, which starts there too and differs in `parameter`. Both go
+    /// on from there at once where the first one did.
+    pub(super) fn new(run: Simulation, parameter: Parameter, goes_on: bool) -> Self {
+        Self {
+            run,
+            parameter,
+            mode: if goes_on { Mode::Running } else { Mode::Paused },
+            target: 0,
+            hold: None,
+            owed: 0.0,
+            waiting: VecDeque::new(),
+            slice: Slice {
+                steps: FIRST_SLICE,
+                begun: None,
+            },
+        }
+    }
+
+    /// The run; it has a state once it is in step with the first.
+    pub fn run(&self) -> &Simulation {
+        &self.run
+    }
+
+    /// What the two runs differ in.
+    pub fn parameter(&self) -> &Parameter {
+        &self.parameter
+    }
+
+    /// Whether the pair is to go on.
+    pub(super) fn goes_on(&self) -> bool {
+        self.mode != Mode::Paused
+    }
+
+    /// Lets both go no further than `step` for now.
+    pub(super) fn hold_at(&mut self, step: Option<u64>) {
+        self.hold = step;
+    }
+
+    /// The run as one to keep beside the first.
+    pub(super) fn beside(&self) -> Beside {
+        self.run.as_beside()
+    }
+
+    /// Ends it: what the first run must not pass, and what it was still to do.
+    pub(super) fn end(self) -> (Option<u64>, impl Iterator<Item = Command>) {
+        let waiting = self.waiting.into_iter().filter_map(|asked| match asked {
+            Asked::Both(command) | Asked::One(Half::Left, command) => Some(command),
+            Asked::One(Half::Right, _) | Asked::Save(_) => None,
+        });
+        (self.hold, waiting)
+    }
+
+    /// Asks for `command` of both runs, or of the `first` alone where it is about what they differ in.
+    pub(super) fn send(&mut self, first: &mut Simulation, command: Command) {
+        match command {
+            Command::Undo | Command::Redo | Command::Return(_) => first.warn(OF_ONE_RUN),
+            Command::Speed(_) => self.owed = 0.0,
+            Command::Forget(_) => first.ask(command),
+            Command::Seek(_) | Command::Pause if self.can_turn(first) => {
+                // Both are on the way to one moment, and nothing is to be done there: they may as well go to another.
+                self.ask_both(first, &command);
+            }
+            Command::Set { ref parameter, .. } if *parameter == self.parameter => {
+                self.wait(first, Asked::One(Half::Left, command));
+            }
+            Command::Seek(_) => {
+                let is_seek = |asked: &mut Asked| matches!(asked, Asked::Both(Command::Seek(_)));
+                self.waiting.pop_back_if(is_seek);
+                self.wait(first, Asked::Both(command));
+            }
+            command => {
+                if let Command::Set { parameter, value } = &command {
+                    self.run.expect(parameter, *value);
+                }
+                self.wait(first, Asked::Both(command));
+            }
+        }
+    }
+
+    /// Gives what the two runs differ in another `value` in this one.
+    pub(super) fn set(&mut self, first: &mut Simulation, value: f64) {
+        let parameter = self.parameter.clone();
+        self.run.expect(&parameter, value);
+        let command = Command::Set { parameter, value };
+        self.wait(first, Asked::One(Half::Right, command));
+    }
+
+    /// Lets the session be written to `path` when both are at the same step.
+    pub(super) fn save(&mut self, first: &mut Simulation, path: PathBuf) {
+        self.wait(first, Asked::Save(path));
+    }
+
+    /// Lets both go on by `passed` wall-clock time; what the pair does now.
+    pub(super) fn tick(&mut self, first: &mut Simulation, passed: Duration) -> Status {
+        first.gather(passed);
+        self.run.gather(passed);
+        self.grant(first.speed(), passed);
+        if self.have_come(first) {
+            self.meet(first);
+        }
+        self.status(first)
+    }
+
+    fn wait(&mut self, first: &mut Simulation, asked: Asked) {
+        self.waiting.push_back(asked);
+        self.tell_waiting(first);
+    }
+
+    /// Lets both runs know how much is still to be asked of them.
+    fn tell_waiting(&mut self, first: &mut Simulation) {
+        for run in [first, &mut self.run] {
+            run.let_wait(self.waiting.len());
+        }
+    }
+
+    fn ask_both(&mut self, first: &mut Simulation, command: &Command) {
+        for run in [first, &mut self.run] {
+            run.ask(command.clone());
+        }
+    }
+
+    /// Whether a run is on the way to a moment, and nothing waits for it to come there.
+    fn can_turn(&self, first: &Simulation) -> bool {
+        let travels = |run: &Simulation| matches!(run.heard().status, Status::Seeking { .. });
+        self.waiting.is_empty() && (travels(first) || travels(&self.run))
+    }
+
+    fn grant(&mut self, speed: f64, passed: Duration) {
+        if self.mode == Mode::Running {
+            let most = speed * LONGEST_DEBT.as_secs_f64();
+            self.owed = (self.owed + speed * passed.as_secs_f64()).min(most);
+        } else {
+            self.owed = 0.0;
+        }
+    }
+
+    /// Whether neither run will move before it is asked to.
+    fn have_come(&self, first: &Simulation) -> bool {
+        let has_come = |run: &Simulation| {
+            let heard = run.heard();
+            let rests = match heard.status {
+                Status::Paused | Status::Faulted(_) | Status::Failed(_) => true,
+                Status::Running => heard.step.is_some_and(|step| step >= self.target),
+                Status::Seeking { .. } | Status::Preparing { .. } => false,
+            };
+            rests && run.has_heard_all()
+        };
+        has_come(first) && has_come(&self.run)
+    }
+
+    /// Takes in what both have become, and sends them on; the one that is ahead goes back first.
+    fn meet(&mut self, first: &mut Simulation) {
+        let (Some(left), Some(right)) = (first.heard().step, self.run.heard().step) else {
+            return;
+        };
+        if left != right {
+            let ahead = if left > right { first } else { &mut self.run };
+            ahead.ask(Command::Seek(left.min(right)));
+            ahead.order(Order::Hold(None));
+            self.mode = Mode::Paused;
+            return;
+        }
+        for run in [&mut *first, &mut self.run] {
+            run.take_in();
+        }
+        self.slice.end(left);
+        let has_stopped =
+            |run: &Simulation| matches!(run.heard().status, Status::Faulted(_) | Status::Failed(_));
+        if self.mode == (Mode::Stepping { until: left })
+            || has_stopped(first)
+            || has_stopped(&self.run)
+        {
+            self.mode = Mode::Paused;
+        }
+        self.answer(first, left);
+        self.tell_waiting(first);
+        if self.have_come(first) {
+            self.go_on(first, left);
+        }
+    }
+
+    /// Asks for what waited, now that both are at `step`.
+    fn answer(&mut self, first: &mut Simulation, step: u64) {
+        while let Some(asked) = self.waiting.pop_front() {
+            match asked {
+                Asked::Both(Command::Play) => self.mode = Mode::Running,
+                Asked::Both(Command::Pause) => self.mode = Mode::Paused,
+                Asked::Both(Command::Step(steps)) => {
+                    let until = step.saturating_add(steps);
+                    self.mode = Mode::Stepping { until };
+                    return;
+                }
+                Asked::Both(command @ Command::Seek(_)) => {
+                    self.mode = Mode::Paused;
+                    self.ask_both(first, &command);
+                    self.order_both(first, || Order::Hold(None));
+                    return;
+                }
+                Asked::Both(command @ Command::Reset) => {
+                    self.target = 0;
+                    self.order_both(first, || Order::Hold(Some(0)));
+                    self.ask_both(first, &command);
+                    return;
+                }
+                Asked::Both(command) => self.ask_both(first, &command),
+                Asked::One(Half::Left, command) => first.ask(command),
+                Asked::One(Half::Right, command) => self.run.ask(command),
+                Asked::Save(path) => first.write(path, Some(Box::new(self.beside()))),
+            }
+        }
+    }
+
+    fn order_both(&mut self, first: &mut Simulation, order: impl Fn() -> Order) {
+        for run in [first, &mut self.run] {
+            run.order(order());
+        }
+    }
+
+    /// Sends both from `step` as far as was granted, and no further than they come in a slice.
+    fn go_on(&mut self, first: &mut Simulation, step: u64) {
+        let Some(time_step) = first.world().map(|world| world.clock.time_step) else {
+            return;
+        };
+        let granted = match self.mode {
+            Mode::Paused => return,
+            Mode::Stepping { until } => until - step,
+            Mode::Running => (self.owed / time_step) as u64,
+        };
+        let allowed = self.hold.map_or(u64::MAX, |hold| hold.saturating_sub(step));
+        let steps = granted.min(self.slice.steps).min(allowed);
+        if steps == 0 {
+            return;
+        }
+        self.owed -= steps as f64 * time_step;
+        self.target = step + steps;
+        self.slice.begun = Some((step, Instant::now()));
+        for run in [first, &mut self.run] {
+            run.order(Order::Hold(Some(self.target)));
+            if run.heard().status != Status::Running {
+                run.ask(Command::Play);
+            }
+        }
+    }
+
+    fn status(&self, first: &Simulation) -> Status {
+        let both = [&first.heard().status, &self.run.heard().status];
+        let stopped = |status: &&&Status| matches!(status, Status::Faulted(_) | Status::Failed(_));
+        if let Some(stopped) = both.iter().find(stopped) {
+            return (*stopped).clone();
+        }
+        let ways = both.iter().filter_map(|status| match status {
+            Status::Seeking { progress } => Some(*progress),
+            _ => None,
+        });
+        match ways.reduce(f32::min) {
+            Some(progress) => Status::Seeking { progress },
+            None if self.mode == Mode::Paused => Status::Paused,
+            None => Status::Running,
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! Claims about two runs side by side: always shown at the same step, each the run that it would be by itself.
+
+use crate::run::{bits, prepared, set};
+use crate::timeline::{Lab, column_lab, wet_lab};
+use grainfall::scene::{Scene, TimeStep};
+use grainfall::simulation::{
+    BedStore, Command, DriverKind, Half, Options, Parameter, Session, Simulation, StampedCommand,
+    Status,
+};
+use grainfall::world::World;
+use std::sync::Arc;
+use std::time::Duration;
+
+const TICK: Duration = Duration::from_micros(15_625);
+
+fn opened(lab: &Lab, driver: DriverKind) -> Simulation {
+    open(lab.scene.clone(), lab.beds.clone(), driver)
+}
+
+fn open(scene: Scene, beds: BedStore, driver: DriverKind) -> Simulation {
+    let options = Options {
+        driver,
+        threads: 2,
+        autoplay: false,
+        speed: f64::INFINITY,
+        beds,
+        script: Vec::new(),
+        memory: 1 << 28,
+    };
+    let mut simulation = Simulation::open(scene, options);
+    until(&mut simulation, |s| *s.status() == Status::Paused);
+    simulation
+}
+
+/// Ticks until `done`; what is shown of both runs is of the same step all the way.
+fn until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
+    for _ in 0..60_000 {
+        simulation.tick(TICK);
+        let right = (simulation.twin()).and_then(|twin| twin.run().world().map(step_of));
+        if let Some(right) = right {
+            assert_eq!(simulation.world().map(step_of), Some(right));
+        }
+        if done(simulation) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    panic!("still {:?} after a minute", simulation.status());
+}
+
+fn step_of(world: &Arc<World>) -> u64 {
+    world.clock.step
+}
+
+fn carry_out(simulation: &mut Simulation, command: Command) {
+    simulation.send(command);
+    until(simulation, |s| {
+        s.has_answered() && *s.status() == Status::Paused
+    });
+}
+
+fn start(simulation: &mut Simulation, parameter: &Parameter, value: f64) {
+    simulation.start_twin(parameter, value).unwrap();
+    until(simulation, |s| {
+        let twin = s.twin().unwrap().run();
+        twin.world().is_some() && *s.status() == Status::Paused
+    });
+    assert_eq!(simulation.world().map(step_of), Some(0));
+}
+
+/// What was changed, but for the twin's own parameter.
+fn common(commands: &[StampedCommand], parameter: &Parameter) -> Vec<(u64, Command)> {
+    let others = commands
+        .iter()
+        .filter(|c| !matches!(&c.command, Command::Set { parameter: own, .. } if own == parameter));
+    others.map(|c| (c.step, c.command.clone())).collect()
+}
+
+/// Claims that `simulation` is what a run by itself becomes that has these `values` at its start and is changed as it was.
+fn is_a_lone_run(simulation: &Simulation, lab: &Lab, values: &[Command]) {
+    let world = simulation.world().unwrap();
+    let mut alone = prepared(&lab.scene, 1, lab.beds.clone()).0;
+    for value in values {
+        alone.apply(value.clone()).unwrap();
+    }
+    for change in simulation.commands().iter().filter(|c| c.step > 0) {
+        alone.advance_to(change.step).unwrap();
+        alone.apply(change.command.clone()).unwrap();
+    }
+    alone.advance_to(step_of(world)).unwrap();
+    assert_eq!(alone.world().hash(), world.hash());
+    assert_eq!(bits(alone.series()), bits(simulation.series()));
+}
+
+/// Both halves of a pair that runs, is changed on the way, goes back and branches.
+fn goes_its_own_way(
+    lab: &Lab,
+    parameter: &Parameter,
+    values: [f64; 2],
+    change: &Command,
+    driver: DriverKind,
+) {
+    let mut simulation = opened(lab, driver);
+    // What came before is left behind; its values are taken along.
+    carry_out(&mut simulation, Command::Step(3 * lab.unit));
+    simulation.send(set(Parameter::Gravity, 9.0));
+    carry_out(&mut simulation, set(parameter.clone(), values[0]));
+    start(&mut simulation, parameter, values[1]);
+    assert_eq!(simulation.value(parameter), values[0]);
+    assert_eq!(simulation.half(Half::Right).value(parameter), values[1]);
+
+    // Changed while both go on, at a step that nobody chose.
+    simulation.hold_at(Some(12 * lab.unit));
+    simulation.send(Command::Play);
+    until(&mut simulation, |s| {
+        s.world().is_some_and(|w| step_of(w) > 4 * lab.unit)
+    });
+    simulation.send(change.clone());
+    until(&mut simulation, |s| {
+        s.world().map(step_of) == Some(12 * lab.unit)
+    });
+    carry_out(&mut simulation, Command::Pause);
+    let right = simulation.half(Half::Right);
+    let changes = common(simulation.commands(), parameter);
+    assert_eq!(changes, common(right.commands(), parameter));
+    assert!(changes.last().unwrap().0 > 4 * lab.unit, "{changes:?}");
+    let at_the_start = |value| [set(Parameter::Gravity, 9.0), set(parameter.clone(), value)];
+    is_a_lone_run(&simulation, lab, &at_the_start(values[0]));
+    is_a_lone_run(right, lab, &at_the_start(values[1]));
+    assert_ne!(
+        simulation.world().map(|w| w.hash()),
+        right.world().map(|w| w.hash())
+    );
+
+    // Back, and another way on from there; the ways that were left stay beside both.
+    simulation.hold_at(None);
+    carry_out(&mut simulation, Command::Seek(2 * lab.unit));
+    carry_out(&mut simulation, set(Parameter::Gravity, 12.0));
+    simulation.set_twin(0.5 * (values[0] + values[1]));
+    carry_out(&mut simulation, Command::Step(3 * lab.unit));
+    assert_eq!(simulation.world().map(step_of), Some(5 * lab.unit));
+    let right = simulation.half(Half::Right);
+    is_a_lone_run(&simulation, lab, &at_the_start(values[0]));
+    is_a_lone_run(right, lab, &at_the_start(values[1]));
+    assert_eq!(right.value(parameter), 0.5 * (values[0] + values[1]));
+    assert_eq!(simulation.value(parameter), values[0]);
+    assert_eq!(right.past().kept.len(), 1);
+    assert_eq!(right.past().kept[0].end.step, 12 * lab.unit);
+}
+
+#[test]
+fn wet_halves_are_the_runs_that_they_would_be_alone() {
+    for driver in [DriverKind::Inline, DriverKind::Thread] {
+        let friction = Parameter::WetFriction("glass".into(), "glass".into());
+        let change = set(friction, 0.2);
+        goes_its_own_way(
+            &wet_lab(),
+            &Parameter::Viscosity,
+            [1.01e-3, 1.41],
+            &change,
+            driver,
+        );
+    }
+}
+
+#[test]
+fn halves_of_polyhedra_are_the_runs_that_they_would_be_alone() {
+    let friction = Parameter::Friction("smooth".into(), "rough".into());
+    let change = set(Parameter::Gravity, 11.0);
+    goes_its_own_way(
+        &column_lab(),
+        &friction,
+        [0.1, 0.7],
+        &change,
+        DriverKind::Thread,
+    );
+}
+
+#[test]
+fn a_half_that_meets_a_fault_stops_the_other_where_it_stands() {
+    let mut scene = Scene::open("bouncing-grain").unwrap();
+    // A tenth of a radius a step: the falling grain is too fast after 30 ms, one without weight never.
+    scene.time_step = TimeStep::Given(1e-3);
+    let mut simulation = open(scene, BedStore::none(), DriverKind::Thread);
+    start(&mut simulation, &Parameter::Gravity, 0.0);
+    simulation.send(Command::Play);
+    until(&mut simulation, |s| {
+        matches!(s.status(), Status::Faulted(_))
+    });
+    until(&mut simulation, |s| s.has_answered());
+    let steps = Half::ALL.map(|half| simulation.half(half).world().map(step_of));
+    assert_eq!(steps[0], steps[1]);
+    carry_out(&mut simulation, Command::Seek(5));
+    assert_eq!(simulation.half(Half::Right).world().map(step_of), Some(5));
+}
+
+#[test]
+fn stopping_on_the_way_to_a_moment_stops_both_at_one() {
+    let lab = wet_lab();
+    let mut simulation = opened(&lab, DriverKind::Thread);
+    start(&mut simulation, &Parameter::Viscosity, 1.41);
+    carry_out(&mut simulation, Command::Step(10 * lab.unit));
+    carry_out(&mut simulation, Command::Seek(0));
+    simulation.send(Command::Seek(10 * lab.unit));
+    until(&mut simulation, |s| {
+        matches!(s.status(), Status::Seeking { .. }) || s.has_answered()
+    });
+    carry_out(&mut simulation, Command::Pause);
+    let steps = Half::ALL.map(|half| simulation.half(half).world().map(step_of));
+    assert_eq!(steps[0], steps[1]);
+    is_a_lone_run_so_far(&simulation, &lab);
+}
+
+/// The same of a pair that does not show the end of what was recorded.
+fn is_a_lone_run_so_far(simulation: &Simulation, lab: &Lab) {
+    let world = simulation.world().unwrap();
+    let mut alone = prepared(&lab.scene, 1, lab.beds.clone()).0;
+    alone.advance_to(step_of(world)).unwrap();
+    assert_eq!(alone.world().hash(), world.hash());
+}
+
+#[test]
+fn the_half_that_is_not_gone_on_with_stays_beside_the_other() {
+    let lab = wet_lab();
+    for keep in Half::ALL {
+        let mut simulation = opened(&lab, DriverKind::Thread);
+        start(&mut simulation, &Parameter::Viscosity, 1.41);
+        carry_out(&mut simulation, Command::Step(4 * lab.unit));
+        let hashes = Half::ALL.map(|half| simulation.half(half).world().unwrap().hash());
+        simulation.end_twin(keep);
+        until(&mut simulation, |s| {
+            s.has_answered() && s.past().kept.len() == 1 && *s.status() == Status::Paused
+        });
+        assert!(simulation.twin().is_none());
+        let state = |s: &Simulation| s.world().unwrap().hash();
+        assert_eq!(state(&simulation), hashes[keep.index()]);
+        // The other one can be taken up again, and both go on as ever.
+        carry_out(&mut simulation, Command::Return(0));
+        assert_eq!(state(&simulation), hashes[1 - keep.index()]);
+        carry_out(&mut simulation, Command::Step(lab.unit));
+        let value = if keep == Half::Left {
+            vec![set(Parameter::Viscosity, 1.41)]
+        } else {
+            vec![]
+        };
+        is_a_lone_run(&simulation, &lab, &value);
+    }
+}
+
+#[test]
+fn a_session_saved_with_a_twin_holds_both_runs() {
+    let lab = wet_lab();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pair.grainfall");
+    let mut simulation = opened(&lab, DriverKind::Thread);
+    start(&mut simulation, &Parameter::Viscosity, 1.41);
+    carry_out(&mut simulation, Command::Step(4 * lab.unit));
+    for _ in 0..2 {
+        simulation.save(path.clone());
+        until(&mut simulation, |s| !s.is_saving());
+    }
+    assert!(
+        simulation
+            .take_saved()
+            .iter()
+            .all(|file| file.outcome.is_ok())
+    );
+    assert!(simulation.past().kept.is_empty(), "the pair is as it was");
+    let mut timeline = Session::read(&path).unwrap().into_timeline(1, 1 << 28);
+    let hashes = Half::ALL.map(|half| simulation.half(half).world().unwrap().hash());
+    assert_eq!(timeline.run().world().hash(), hashes[0]);
+    assert_eq!(timeline.kept().len(), 1);
+    timeline.take_up(0);
+    assert_eq!(timeline.destination(), None, "its end is in the file");
+    assert_eq!(timeline.run().world().hash(), hashes[1]);
+}
+
+#[test]
+fn what_a_pair_cannot_do_is_refused_in_words() {
+    let lab = wet_lab();
+    let mut simulation = opened(&lab, DriverKind::Inline);
+    let refused = simulation
+        .start_twin(&Parameter::Viscosity, 1e9)
+        .unwrap_err();
+    assert!(refused.contains("viscosity"), "{refused}");
+    start(&mut simulation, &Parameter::Viscosity, 1.41);
+    assert!(simulation.start_twin(&Parameter::Viscosity, 0.5).is_err());
+    for command in [Command::Undo, Command::Redo, Command::Return(0)] {
+        let before = simulation.warnings().len();
+        carry_out(&mut simulation, command);
+        assert!(simulation.warnings()[before].contains("end the twin"));
+    }
+    let preparing = Options {
+        driver: DriverKind::Inline,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    let mut early = Simulation::open(lab.scene.clone(), preparing);
+    assert!(early.start_twin(&Parameter::Viscosity, 1.41).is_err());
+}
+
+#[test]
+fn a_pair_goes_no_faster_than_asked() {
+    let lab = wet_lab();
+    let mut simulation = opened(&lab, DriverKind::Inline);
+    simulation.send(Command::Speed(0.01));
+    start(&mut simulation, &Parameter::Viscosity, 1.41);
+    simulation.send(Command::Play);
+    for _ in 0..64 {
+        simulation.tick(TICK);
+    }
+    let time = simulation.world().unwrap().time();
+    // A second at a hundredth of real time; the first tick or two hand nothing out.
+    assert!((0.008..=0.0101).contains(&time), "{time}");
+}
