@@ -5,6 +5,8 @@
 
 use clap::{Args, Parser, Subcommand};
 use grainfall::files::write_whole;
+#[cfg(feature = "desktop")]
+use grainfall::headless::compared_value;
 use grainfall::headless::{self, HeadlessError, Job, Verdict, apply_setting, read_commands};
 use grainfall::scene::{Scene, StoredCells, built_in};
 use grainfall::simulation::{BedStore, Claim, Options, ScriptedCommand, Session, make_bed};
@@ -42,6 +44,9 @@ struct Arguments {
 #[cfg(feature = "desktop")]
 #[derive(Args)]
 struct PictureArguments {
+    /// Open with two runs side by side, the right one with this value of a live parameter: viscosity=1.41
+    #[arg(long, value_name = "KEY=VALUE", conflicts_with = "no_render")]
+    compare: Option<String>,
     /// Take a picture of the window and end
     #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
     screenshot: Option<PathBuf>,
@@ -183,12 +188,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     if Session::is_at(Path::new(&name)) && !arguments.no_render {
         let session = unchanged_session(&name, &what)?;
         let options = window_options(&what, Vec::new());
-        return Ok(open_window(
-            name,
-            session.into(),
-            options,
-            arguments.picture,
-        ));
+        return open_window(name, session.into(), options, arguments.picture);
     }
     if Session::is_at(Path::new(&name)) {
         return Err(HeadlessError::Input(format!(
@@ -198,12 +198,12 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
     let (scene, script) = changed_scene(&name, &what)?;
     if !arguments.no_render {
         #[cfg(feature = "desktop")]
-        return Ok(open_window(
+        return open_window(
             name,
             scene.into(),
             window_options(&what, script),
             arguments.picture,
-        ));
+        );
         #[cfg(not(feature = "desktop"))]
         return Err(HeadlessError::Input(NO_WINDOW.into()));
     }
@@ -298,8 +298,14 @@ fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
 
 /// Opens the laboratory; what went wrong is said here. Returns the exit code.
 #[cfg(feature = "desktop")]
-fn open_window(name: String, opened: Opened, options: Options, picture: PictureArguments) -> u8 {
+fn open_window(
+    name: String,
+    opened: Opened,
+    options: Options,
+    picture: PictureArguments,
+) -> Result<u8, HeadlessError> {
     use grainfall::window::{Job, PictureJob, run};
+    let compared = picture.compare.as_deref().map(compared_value).transpose()?;
     let picture = picture.screenshot.map(|path| PictureJob {
         path,
         at: picture.at,
@@ -311,15 +317,16 @@ fn open_window(name: String, opened: Opened, options: Options, picture: PictureA
         name,
         opened,
         options,
+        compared,
         picture,
     };
-    run(job).map_or_else(
+    Ok(run(job).map_or_else(
         |error| {
             print_chain(&error);
             error.exit_code()
         },
         |()| 0,
-    )
+    ))
 }
 
 #[cfg(not(feature = "desktop"))]

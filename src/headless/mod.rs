@@ -29,7 +29,7 @@ pub use pack::pack;
 pub(crate) use profile_files::{FLOW, PROFILE, write_flow, write_profile};
 pub(crate) use progress::{Progress, spoken};
 pub(crate) use series_file::{SERIES, write_series};
-pub use setting::apply_setting;
+pub use setting::{apply_setting, compared_value};
 pub(crate) use summary_file::SummaryFile;
 pub(crate) use velocity_file::{VELOCITY, write_velocity};
 

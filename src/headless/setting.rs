@@ -20,17 +20,45 @@ pub fn apply_setting(
         scene.set(key, text)?;
         return Ok(None);
     }
-    let parameter = Parameter::try_from(key.to_owned()).map_err(|reason| {
-        let known: Vec<&str> = Scene::settings().map(|(known, _)| known).collect();
-        refuse(format!("{reason}; or before a run: {}", known.join(", ")))
-    })?;
-    let value = parameter.parse_value(text).ok_or_else(|| {
-        let (unit, shown) = (parameter.unit(), parameter.display().name);
-        refuse(format!("`{text}` is no value; expected a number in SI units ({unit}), or one with its unit {shown}"))
+    let (parameter, value) = parameter_value(key, text).map_err(|reason| match reason {
+        Unfit::Key(reason) => {
+            let known: Vec<&str> = Scene::settings().map(|(known, _)| known).collect();
+            refuse(format!("{reason}; or before a run: {}", known.join(", ")))
+        }
+        Unfit::Value(reason) => refuse(reason),
     })?;
     Ok(Some(ScriptedCommand {
         step: Some(0),
         time: None,
         command: Command::Set { parameter, value },
     }))
+}
+
+/// The live parameter and the value [SI unit] of one `--compare`.
+///
+/// # Errors
+/// When the setting has no such form, there is no such key, or its value is none.
+pub fn compared_value(setting: &str) -> Result<(Parameter, f64), HeadlessError> {
+    let refuse = |reason: String| HeadlessError::Input(format!("--compare {setting}: {reason}"));
+    let Some((key, text)) = setting.split_once('=') else {
+        return Err(refuse("expected KEY=VALUE, such as viscosity=1.41".into()));
+    };
+    parameter_value(key, text).map_err(|unfit| match unfit {
+        Unfit::Key(reason) | Unfit::Value(reason) => refuse(reason),
+    })
+}
+
+/// What is wrong with a setting.
+enum Unfit {
+    Key(String),
+    Value(String),
+}
+
+fn parameter_value(key: &str, text: &str) -> Result<(Parameter, f64), Unfit> {
+    let parameter = Parameter::try_from(key.to_owned()).map_err(Unfit::Key)?;
+    let value = parameter.parse_value(text).ok_or_else(|| {
+        let (unit, shown) = (parameter.unit(), parameter.display().name);
+        Unfit::Value(format!("`{text}` is no value; expected a number in SI units ({unit}), or one with its unit {shown}"))
+    })?;
+    Ok((parameter, value))
 }

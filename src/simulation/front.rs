@@ -9,6 +9,7 @@ use super::engine::{Beside, Engine, Order, SavedFile, Update};
 use super::history::{History, Record};
 use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
+use super::provenance::Provenance;
 use super::session::Session;
 use super::timeline::{Past, Timeline};
 use super::twin::Twin;
@@ -21,6 +22,7 @@ use bevy::ecs::resource::Resource;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Smallest drop of the surface that counts as an avalanche [rad], 1°.
@@ -127,6 +129,7 @@ pub enum Status {
 /// A simulation as the outside sees it.
 #[derive(Resource)]
 pub struct Simulation {
+    id: u64,
     scene: Arc<Scene>,
     advice: TimeStepAdvice,
     means: Means,
@@ -249,6 +252,7 @@ impl Simulation {
             progress: 0.0,
         };
         let mut simulation = Self {
+            id: next_number(),
             scene,
             speed,
             means,
@@ -285,7 +289,7 @@ impl Simulation {
         match driver {
             Ok(driver) => simulation.driver = Some(driver),
             Err(error) => {
-                simulation.fail(format!("the system gives the solver no thread: {error}"))
+                simulation.fail(format!("the system gives the solver no thread: {error}"));
             }
         }
         simulation
@@ -301,7 +305,25 @@ impl Simulation {
         self.world.as_ref()
     }
 
-    /// Changes whenever [`Simulation::world`] is another state.
+    /// What tells it from every other simulation.
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// Where what is shown comes from; nothing before there is a state.
+    pub fn provenance(&self) -> Option<Provenance> {
+        let provenance = Provenance::of(&self.scene, self.world()?);
+        let beside = self.twin().and_then(|twin| {
+            let (key, run) = (twin.parameter(), twin.run());
+            Some((format!("{key} = {:?}", run.value(key)), run.world()?))
+        });
+        Some(match beside {
+            None => provenance,
+            Some((change, world)) => provenance.beside(change, world),
+        })
+    }
+
+    /// Changes whenever [`Simulation::world`] is another state, and is that of no other simulation.
     pub fn generation(&self) -> u64 {
         self.generation
     }
@@ -618,15 +640,12 @@ impl Simulation {
 
     /// Lets `passed` wall-clock time pass: hands the next slice of steps over and takes in what is new.
     pub fn tick(&mut self, passed: Duration) {
-        match self.twin.take() {
-            Some(mut twin) => {
-                self.status = twin.tick(self, passed);
-                self.twin = Some(twin);
-            }
-            None => {
-                self.gather(passed);
-                self.take_in();
-            }
+        if let Some(mut twin) = self.twin.take() {
+            self.status = twin.tick(self, passed);
+            self.twin = Some(twin);
+        } else {
+            self.gather(passed);
+            self.take_in();
         }
         if self.status == Status::Running {
             self.saved.worked += passed;
@@ -728,7 +747,7 @@ impl Simulation {
         if let Some(world) = update.world {
             self.rate.follow(world.time());
             self.world = Some(world);
-            self.generation += 1;
+            self.generation = next_number();
         }
         self.avalanches.follow(&self.series);
     }
@@ -773,6 +792,12 @@ fn driven(
         DriverKind::Inline => Ok(Driver::inline(make())),
         DriverKind::Thread => Driver::thread(make),
     }
+}
+
+/// A number that nobody else has, never zero.
+fn next_number() -> u64 {
+    static NUMBERS: AtomicU64 = AtomicU64::new(1);
+    NUMBERS.fetch_add(1, Ordering::Relaxed)
 }
 
 /// The avalanches of a growing series.

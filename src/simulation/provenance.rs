@@ -20,6 +20,8 @@ pub struct Provenance {
     scene: String,
     seed: u64,
     state: Option<State>,
+    /// Of a picture of two runs: what the right one differs in, and the hash of its state.
+    beside: Option<(String, String)>,
 }
 
 /// A state that a file shows.
@@ -55,7 +57,15 @@ impl Provenance {
             scene: scene.title.clone(),
             seed: scene.seed,
             state: None,
+            beside: None,
         }
+    }
+
+    /// The same with a state of another run to the right, in which `change` is different.
+    #[must_use]
+    pub fn beside(mut self, change: String, world: &World) -> Self {
+        self.beside = Some((change, world.hash().to_string()));
+        self
     }
 
     /// The same by name and value. The first two names are those that PNG files have for it.
@@ -69,6 +79,10 @@ impl Provenance {
             entries.push(("Time", format!("{:?} s", state.time)));
             entries.push(("Step", state.step.to_string()));
             entries.push(("State hash", state.hash.clone()));
+        }
+        if let Some((change, hash)) = &self.beside {
+            entries.push(("Right half", change.clone()));
+            entries.push(("State hash of the right half", hash.clone()));
         }
         entries
     }
@@ -121,10 +135,11 @@ impl fmt::Display for Provenance {
             "Grainfall {VERSION}, “{}”, seed {}",
             self.scene, self.seed
         )?;
-        match &self.state {
-            Some(State { time, step, hash }) => {
-                write!(f, ", t = {time:?} s, step {step}, state {hash}")
-            }
+        if let Some(State { time, step, hash }) = &self.state {
+            write!(f, ", t = {time:?} s, step {step}, state {hash}")?;
+        }
+        match &self.beside {
+            Some((change, hash)) => write!(f, ", beside it with {change}: state {hash}"),
             None => Ok(()),
         }
     }

@@ -17,6 +17,7 @@ pub struct Averages {
 /// What a summary was made of.
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
+    simulation: u64,
     run: u32,
     samples: usize,
     from: f64,
@@ -32,6 +33,7 @@ impl Averages {
             SAMPLES_BETWEEN_SUMMARIES
         };
         let key = Key {
+            simulation: simulation.id(),
             run: simulation.past().number,
             samples: series.len() / between,
             from,

@@ -9,6 +9,7 @@ use crate::measure::{Measure, Sample};
 use crate::simulation::{Simulation, Status};
 use crate::world::{StateHash, World};
 use bevy_egui::egui::{self, Color32, Popup, PopupCloseBehavior, RichText, WidgetInfo, WidgetType};
+use std::borrow::Cow;
 
 /// Largest overlap over the smaller radius up to which contacts are small deformations, and above which forces no longer
 /// mean what the contact laws say.
@@ -40,7 +41,7 @@ pub enum Level {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What it is.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// How it is.
     pub level: Level,
     /// The number with its limits.
@@ -116,7 +117,7 @@ impl Badge {
             Level::Good => {
                 "Time step, overlaps, energy and grains are as they should be".to_owned()
             }
-            _ => format!("{}: {}", number::capitalised(worst.name), worst.value),
+            _ => format!("{}: {}", number::capitalised(&worst.name), worst.value),
         };
         let response = ui
             .button(RichText::new(text).color(colour))
@@ -136,7 +137,7 @@ impl Badge {
             ui.horizontal_wrapped(|ui| {
                 let mark = RichText::new(check.level.mark()).color(check.level.colour(palette));
                 ui.label(mark);
-                ui.label(RichText::new(number::capitalised(check.name)).strong());
+                ui.label(RichText::new(number::capitalised(&check.name)).strong());
                 ui.label(&check.value);
             });
             if check.level != Level::Good {
@@ -168,8 +169,21 @@ fn pace(simulation: &Simulation) -> String {
     }
 }
 
-/// All that is looked at, for the state shown; nothing before there is one.
+/// All that is looked at, for the state shown and that of a twin; nothing before there is one.
 pub fn checks(simulation: &Simulation) -> Vec<Check> {
+    let mut checks = checks_of(simulation);
+    if let Some(twin) = simulation.twin() {
+        let right = checks_of(twin.run()).into_iter().map(|check| Check {
+            name: format!("{}, right", check.name).into(),
+            ..check
+        });
+        checks.extend(right);
+    }
+    checks
+}
+
+/// The same for one run.
+fn checks_of(simulation: &Simulation) -> Vec<Check> {
     let Some(world) = simulation.world() else {
         return Vec::new();
     };
@@ -193,7 +207,7 @@ fn fault(status: &Status) -> Option<Check> {
         return None;
     };
     Some(Check {
-        name: "a fault",
+        name: "a fault".into(),
         level: Level::Bad,
         value: fault.to_string(),
         remedy: "Undo the last change, or give the scene a smaller time step.",
@@ -220,7 +234,7 @@ fn time_step(simulation: &Simulation) -> Check {
         ),
     };
     Check {
-        name: "time step",
+        name: "time step".into(),
         level,
         value,
         remedy: "Give the scene `time_step: Automatic`, or a step below the limit.",
@@ -234,7 +248,7 @@ fn overlap(sample: &Sample, world: &World) -> Check {
         None => (OVERLAPS, "radius"),
     };
     Check {
-        name: "largest overlap",
+        name: "largest overlap".into(),
         level: Level::of(overlap, limits),
         value: format!(
             "{} % of the {radius}, good up to {} %",
@@ -272,7 +286,7 @@ fn residual(sample: &Sample, world: &World) -> Check {
         sample.value(Measure::EnergyResidual).abs() / largest.max(LIFTS * lifts.sum::<f64>());
     let share = if share.is_nan() { 0.0 } else { share };
     Check {
-        name: "energy residual",
+        name: "energy residual".into(),
         level: Level::of(share, RESIDUALS),
         value: format!(
             "{} % of what was turned over, good up to {} %",
@@ -291,7 +305,7 @@ fn lost(world: &World) -> Check {
     };
     let lost = world.grains.position.iter().filter(outside).count();
     Check {
-        name: "grains lost",
+        name: "grains lost".into(),
         level: if lost == 0 { Level::Good } else { Level::Bad },
         value: format!("{lost} of {}, must be 0", world.grains.len()),
         remedy: "Undo the last change, or give the scene a smaller time step.",

@@ -46,6 +46,10 @@ impl Panel for BesidePaper {
         "Beside the paper"
     }
 
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
     fn concerns(&self, simulation: &Simulation) -> bool {
         simulation.scene().liquid.is_some()
     }

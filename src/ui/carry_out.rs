@@ -1,9 +1,9 @@
 //! What panels ask for, fulfilled: the only place that changes the run, opens scenes and writes pictures for them.
 
-use super::{Desk, OpenWith, Purpose, Recorder, Request, Requests};
+use super::{Compare, Desk, OpenWith, Purpose, Recorder, Request, Requests};
 use crate::scene::Scene;
 use crate::simulation::{
-    Claim, Command, Options, Provenance, SavedFile, ScriptedCommand, Session, SessionError,
+    Claim, Command, Half, Options, Provenance, SavedFile, ScriptedCommand, Session, SessionError,
     Simulation,
 };
 use crate::view::{CameraRequest, ViewSettings, save_part, save_png};
@@ -55,6 +55,35 @@ pub fn fulfil_requests(
                     simulation.send(command);
                 }
             }
+            Request::Compare => desk.show_panel(Compare::TITLE),
+            Request::StartTwin(parameter, value) => {
+                let started = simulation.map(|simulation| simulation.start_twin(&parameter, value));
+                if let Some(Err(reason)) = started {
+                    desk.notify(reason);
+                }
+                opener.view.focus = Half::Left;
+            }
+            Request::TwinValue(value) => {
+                if let Some(simulation) = simulation {
+                    simulation.set_twin(value);
+                }
+            }
+            Request::EndTwin(half) => {
+                if let Some(simulation) = simulation {
+                    simulation.end_twin(half);
+                    desk.notify(format!(
+                        "The {} run goes on; the other one stays on the plots and in the list of runs",
+                        half.label()
+                    ));
+                }
+                opener.view.focus = Half::Left;
+            }
+            Request::Trail => {
+                if let Some(grain) = opener.view.selected {
+                    opener.view.trace(grain);
+                }
+            }
+            Request::NoTrails => opener.view.traced.clear(),
             Request::Camera(request) => opener.view.camera_request = Some(request),
             Request::ShowScenes => desk.show_scenes(),
             Request::ChooseFile => desk.path_dialog.ask(Purpose::Open),
@@ -76,7 +105,8 @@ pub fn fulfil_requests(
                 }
             }
             Request::SavePicture(path) => {
-                let from = simulation.as_deref().and_then(provenance);
+                // This update's state is the one in the picture that is asked for in it.
+                let from = simulation.as_deref().and_then(Simulation::provenance);
                 opener
                     .commands
                     .spawn(Screenshot::primary_window())
@@ -210,14 +240,10 @@ impl Opener<'_, '_> {
         self.commands.insert_resource(simulation);
         self.view.cut = None;
         (self.view.selected, self.view.beside) = (None, None);
+        self.view.traced.clear();
+        self.view.focus = Half::Left;
         self.view.camera_request = Some(CameraRequest::Home);
     }
-}
-
-/// Where what is shown comes from: this update's state is the one in the picture that is asked for in it.
-fn provenance(simulation: &Simulation) -> Option<Provenance> {
-    let world = simulation.world()?;
-    Some(Provenance::of(simulation.scene(), world))
 }
 
 /// Writes the picture that was taken to `path` and says so.

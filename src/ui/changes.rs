@@ -2,6 +2,8 @@
 //!
 //! In: the simulation. Out: requests to show a moment, to take up or to forget a run, to save the list.
 
+use super::compare::OF_ONE_RUN;
+use super::plots::sample_ui;
 use super::theme::{Palette, dash};
 use super::{Panel, Request, number};
 use crate::simulation::{Command, Parameter, Record, Simulation};
@@ -127,16 +129,25 @@ fn rows(simulation: &Simulation) -> Vec<Row> {
 fn in_words(parameter: &Parameter, from: Option<f64>, to: f64, simulation: &Simulation) -> String {
     let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
     let from = from.or(info.map(|info| info.default));
-    let display = parameter.display();
-    let shown = |value: f64| number::short(value * display.factor);
-    let from = from.map_or(String::new(), shown);
-    let unit = display.name;
+    let from = from.map_or(String::new(), |from| shown(parameter, from));
+    let to = value_in_words(parameter, to);
+    format!("{} {from} → {to}", name(parameter, simulation))
+}
+
+/// A value of `parameter` in the unit that people think in, without that unit.
+fn shown(parameter: &Parameter, value: f64) -> String {
+    match (parameter, value) {
+        (Parameter::BridgeLaw, 0.0) => "as printed".into(),
+        (Parameter::BridgeLaw, _) => "as coded".into(),
+        _ => number::trimmed(value * parameter.display().factor),
+    }
+}
+
+/// A value of `parameter` with the unit that people think in.
+pub fn value_in_words(parameter: &Parameter, value: f64) -> String {
+    let unit = parameter.display().name;
     let space = if unit.is_empty() { "" } else { " " };
-    format!(
-        "{} {from} → {}{space}{unit}",
-        name(parameter, simulation),
-        shown(to)
-    )
+    format!("{}{space}{unit}", shown(parameter, value))
 }
 
 /// What people call `parameter`.
@@ -156,7 +167,8 @@ fn kept_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let palette = Palette::of(ui.visuals());
     for (index, record) in past.kept.iter().enumerate() {
         ui.horizontal(|ui| {
-            sample_ui(ui, dash(index), palette.kept);
+            let stroke = egui::Stroke::new(1.6, palette.kept);
+            sample_ui(ui, Some(dash(index)), stroke);
             let name = format!("Run {}", record.number);
             ui.label(&name).on_hover_text(describe(record, simulation));
             ui.weak(format!("to {} s", number::fixed(record.end.time, 2)));
@@ -165,10 +177,13 @@ fn kept_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
                 ("Forget", "Keep this run no longer", Command::Forget(index)),
             ];
             for (verb, hint, command) in buttons {
-                let response = ui.small_button(verb).on_hover_text(hint);
+                let enabled = simulation.twin().is_none() || verb == "Forget";
+                let button = egui::Button::new(verb).small();
+                let response = ui.add_enabled(enabled, button).on_hover_text(hint);
+                let response = response.on_disabled_hover_text(OF_ONE_RUN);
                 let label = format!("{verb} {}", name.to_lowercase());
                 response.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &label)
+                    egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, &label)
                 });
                 if response.clicked() {
                     out.push(Request::Command(command));
@@ -186,20 +201,10 @@ fn describe(record: &Record, simulation: &Simulation) -> String {
     else {
         return "Nothing was changed in it.".into();
     };
-    let display = parameter.display();
     format!(
-        "Its last change: {} {} {} at {} s",
+        "Its last change: {} {} at {} s",
         name(parameter, simulation),
-        number::short(value * display.factor),
-        display.name,
+        value_in_words(parameter, *value),
         number::fixed(stamped.time, 2)
     )
-}
-
-/// A piece of the line that stands for a kept run on the plots.
-fn sample_ui(ui: &mut egui::Ui, dash: f32, colour: egui::Color32) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 14.0), egui::Sense::hover());
-    let ends = [rect.left_center(), rect.right_center()];
-    let line = egui::Shape::dashed_line(&ends, egui::Stroke::new(1.6, colour), dash, 0.6 * dash);
-    ui.painter().extend(line);
 }

@@ -2,9 +2,8 @@
 //!
 //! In: columns of samples. Out: two plots that always show the same time, and the moment that a person clicks on.
 
-use super::decimate::decimate;
 use super::plots::{
-    Curve, Span, changes, clicked_time, curve_ui, height_of, kept_lines, seek, seen, shown,
+    Curve, Curves, Span, changes, clicked_time, curve_ui, ghosts, halves_ui, height_of, seek,
     shown_ui, size_of_plots,
 };
 use super::theme::Palette;
@@ -51,16 +50,17 @@ impl Panel for CollapsePlots {
         _view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
+        let (changes, ghosts) = (changes(simulation), ghosts(simulation));
+        let all = Curves::of(simulation, &changes, &ghosts);
+        halves_ui(ui, simulation);
         ui.horizontal_wrapped(|ui| self.span.choice_ui(ui));
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
-        let window = self
-            .span
-            .window(simulation.series().time(), shown(simulation));
-        let marks = Marks::of(simulation, palette);
+        let window = self.span.window(all.series.time(), all.shown);
+        let marks = Marks::of(all, palette);
         let curves = [
-            front(simulation, &window, columns, palette),
-            energy(simulation, &window, columns, palette),
+            front(&all, &window, columns, palette),
+            energy(&all, &window, columns, palette),
         ];
         for curve in curves {
             let response = curve_ui(ui, curve, &window, height, |plot| marks.ui(plot));
@@ -71,75 +71,60 @@ impl Panel for CollapsePlots {
     }
 }
 
-fn front(
-    simulation: &Simulation,
-    window: &RangeInclusive<f64>,
-    columns: usize,
-    palette: Palette,
-) -> Curve {
-    let series = simulation.series();
-    let values = series.column(Measure::FrontRadius);
-    let points = decimate(series.time(), window, columns, |k| MILLIMETRES * values[k]);
-    let kept = kept_lines(&simulation.past().kept, window, columns, |series, k| {
-        MILLIMETRES * series.column(Measure::FrontRadius)[k]
-    });
-    let latest = values.last().copied().unwrap_or(f64::NAN);
+fn front(curves: &Curves, window: &RangeInclusive<f64>, columns: usize, palette: Palette) -> Curve {
+    let value = |series: &Series, k: usize| MILLIMETRES * series.column(Measure::FrontRadius)[k];
+    let lines = curves.lines(window, columns, value);
     Curve {
         id: "front",
         title: "Front radius R [mm]",
-        latest: number::fixed(MILLIMETRES * latest, 2),
+        latest: curves.latest(value, |radius| number::fixed(radius, 2)),
         colour: palette.angle,
-        height: height_of(seen(&points, &kept), SMALLEST_FRONT_SPAN),
-        points,
-        kept,
+        height: height_of(lines.points(), SMALLEST_FRONT_SPAN),
+        lines,
         decades: false,
         unit: "mm",
     }
 }
 
 fn energy(
-    simulation: &Simulation,
+    curves: &Curves,
     window: &RangeInclusive<f64>,
     columns: usize,
     palette: Palette,
 ) -> Curve {
-    let series = simulation.series();
     let value = |series: &Series, k: usize| {
         let translation = series.column(Measure::TranslationalEnergy)[k];
         MICROJOULES * (translation + series.column(Measure::RotationalEnergy)[k])
     };
-    let points = decimate(series.time(), window, columns, |k| value(series, k));
-    let kept = kept_lines(&simulation.past().kept, window, columns, value);
-    let last = series.len().checked_sub(1);
-    let latest = last.map_or(f64::NAN, |last| value(series, last));
+    let lines = curves.lines(window, columns, value);
     Curve {
         id: "energy",
         title: "Kinetic energy per grain [µJ]",
-        latest: number::short(latest),
+        latest: curves.latest(value, number::short),
         colour: palette.temperature,
-        height: height_of(seen(&points, &kept), SMALLEST_ENERGY_SPAN),
-        points,
-        kept,
+        height: height_of(lines.points(), SMALLEST_ENERGY_SPAN),
+        lines,
         decades: false,
         unit: "µJ",
     }
 }
 
 /// What is marked on both plots.
-struct Marks {
+struct Marks<'a> {
     palette: Palette,
-    changes: Vec<f64>,
+    changes: &'a [f64],
     shown: Option<f64>,
     collapse: Option<Collapse>,
 }
 
-impl Marks {
-    fn of(simulation: &Simulation, palette: Palette) -> Self {
+impl<'a> Marks<'a> {
+    /// Those of the run, not of its twin.
+    fn of(curves: Curves<'a>, palette: Palette) -> Self {
         Self {
             palette,
-            changes: changes(simulation),
-            shown: shown(simulation),
-            collapse: Collapse::of(simulation.series()),
+            changes: curves.changes,
+            shown: curves.shown,
+            collapse: Collapse::of(curves.series),
         }
     }
 
@@ -149,7 +134,7 @@ impl Marks {
                 .stroke(Stroke::new(1.0, colour))
                 .allow_hover(false)
         };
-        for time in &self.changes {
+        for time in self.changes {
             plot.vline(line("parameter changed", *time, self.palette.change));
         }
         if let Some(time) = self.shown {

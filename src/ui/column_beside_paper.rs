@@ -27,6 +27,10 @@ impl Panel for ColumnBesidePaper {
         "Beside the paper"
     }
 
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
     fn concerns(&self, simulation: &Simulation) -> bool {
         is_column(simulation)
     }

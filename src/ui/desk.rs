@@ -8,6 +8,7 @@ use super::beside_paper::BesidePaper;
 use super::changes::Changes;
 use super::collapse_plots::CollapsePlots;
 use super::column_beside_paper::ColumnBesidePaper;
+use super::compare::Compare;
 use super::detail::Detail;
 use super::energy::Energy;
 use super::explorer::{Explorer, Export};
@@ -78,6 +79,8 @@ pub struct Desk {
 struct Section {
     panel: Box<dyn Panel>,
     open_at_first: bool,
+    /// Whether somebody asked to see it.
+    is_wanted: bool,
 }
 
 /// The register of panels on the left, from top to bottom, and whether each is open at first.
@@ -85,6 +88,7 @@ fn left() -> Vec<Section> {
     vec![
         section(AboutScene, true),
         section(Parameters::default(), true),
+        section(Compare::default(), false),
         section(Changes::default(), true),
         section(Picture, false),
         section(SolverProfile, false),
@@ -110,6 +114,7 @@ fn section(panel: impl Panel, open_at_first: bool) -> Section {
     Section {
         panel: Box::new(panel),
         open_at_first,
+        is_wanted: false,
     }
 }
 
@@ -169,6 +174,22 @@ impl Desk {
     /// Takes `memory` up, and keeps it from now on.
     pub fn remember(&mut self, memory: Memory) {
         self.memory = memory;
+    }
+
+    /// Opens the panel called `title`, on whichever side it stands.
+    pub fn show_panel(&mut self, title: &str) {
+        let sides = [
+            (&mut self.left, &mut self.shown.left),
+            (&mut self.right, &mut self.shown.right),
+        ];
+        for (sections, shown) in sides {
+            let wanted = sections
+                .iter_mut()
+                .find(|section| section.panel.title() == title);
+            if let Some(section) = wanted {
+                (section.is_wanted, *shown) = (true, true);
+            }
+        }
     }
 
     /// Shows the scenes that come with the program.
@@ -273,8 +294,7 @@ impl Desk {
     ) {
         let (recent, shown, badge) = (self.memory.recent(), &mut self.shown, &mut self.badge);
         egui::Panel::top("menu").show(root, |ui| {
-            let past = simulation.map(Simulation::past);
-            menu_ui(ui, past, recent, shown, view, out, |ui| {
+            menu_ui(ui, simulation, recent, shown, view, out, |ui| {
                 if let Some(simulation) = simulation {
                     badge.ui(ui, simulation);
                     let title = RichText::new(&simulation.scene().title).weak();
@@ -391,12 +411,27 @@ fn sections_ui(
             if !section.panel.concerns(simulation) {
                 continue;
             }
-            let title = RichText::new(section.panel.title()).strong().size(17.0);
-            let summoned = section.panel.summons(view);
-            CollapsingHeader::new(title)
+            // With two runs side by side most panels describe the one that was clicked on last.
+            let (described, of) = match simulation.twin() {
+                Some(_) if section.panel.describes_one_run() => {
+                    let of = format!(" · {}", view.focus.label());
+                    (simulation.half(view.focus), of)
+                }
+                _ => (simulation, String::new()),
+            };
+            let name = section.panel.title();
+            let title = RichText::new(format!("{name}{of}")).strong().size(17.0);
+            let is_wanted = std::mem::take(&mut section.is_wanted);
+            let summoned = section.panel.summons(view) || is_wanted;
+            let shown = CollapsingHeader::new(title)
+                .id_salt(name)
                 .default_open(section.open_at_first)
                 .open(summoned.then_some(true))
-                .show_unindented(ui, |ui| section.panel.ui(ui, simulation, view, out));
+                .show_unindented(ui, |ui| section.panel.ui(ui, described, view, out));
+            if is_wanted {
+                shown.header_response.scroll_to_me(Some(egui::Align::Min));
+                shown.header_response.request_focus();
+            }
         }
     });
 }

@@ -79,6 +79,10 @@ impl Panel for Energy {
         "Energy"
     }
 
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
     fn ui(
         &mut self,
         ui: &mut egui::Ui,

@@ -3,13 +3,14 @@
 //! In: the samples. Out: a plot with the numbers under the pointer, the moment that is clicked on, and the plot as a file:
 //! SVG, PNG as it stands in the window, or all samples as CSV.
 
+use super::compare::half_title;
 use super::decimate::decimate;
-use super::plots::{round_marks, seek, shown, shown_ui, tick};
+use super::plots::{ghosts, halves_ui, round_marks, seek, shown, shown_ui, tick, twin_line};
 use super::theme::{Palette, dash};
 use super::{Panel, Request, number};
 use crate::files::write_whole;
 use crate::measure::{Avalanche, Measure, Series};
-use crate::simulation::{DisplayUnit, Provenance, Simulation};
+use crate::simulation::{DisplayUnit, Half, Provenance, Simulation};
 use crate::sweep::chart;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Rect, RichText, Stroke, WidgetInfo, WidgetType};
@@ -117,6 +118,7 @@ impl Panel for Explorer {
         let measures = Measure::of(world);
         measure_ui(ui, "Plot", &mut self.quantity, &measures);
         over_ui(ui, &mut self.over, &measures);
+        halves_ui(ui, simulation);
         let rect = self.plot_ui(ui, simulation, out);
         let export = ui.button("Export…").on_hover_text(
             "As an SVG or PNG picture, or all samples as CSV: the ending of the file's name decides",
@@ -187,11 +189,14 @@ impl Explorer {
         let columns = (ui.available_width() * ui.ctx().pixels_per_point()) as usize;
         let (x, y) = self.axes();
         let own = self.points(simulation.series(), columns);
-        let kept = simulation.past().kept.iter().map(|record| {
-            let name = format!("Run {}", record.number);
-            (name, self.points(&record.series, columns))
+        let twin = simulation.twin().map(|twin| {
+            let points = self.points(twin.run().series(), columns);
+            twin_line("right", points, palette)
         });
-        let kept: Vec<_> = kept.collect();
+        let kept = ghosts(simulation).into_iter();
+        let kept: Vec<_> = kept
+            .map(|(name, record)| (name, self.points(&record.series, columns)))
+            .collect();
         let over_time = self.over.is_none();
         let avalanches = if over_time {
             simulation.avalanches()
@@ -228,7 +233,11 @@ impl Explorer {
                 };
                 plot.line(Line::new(name, points).color(palette.kept).style(style));
             }
-            plot.line(Line::new("this run", own).color(palette.angle).width(1.7));
+            let name = if twin.is_some() { "left" } else { "this run" };
+            plot.line(Line::new(name, own).color(palette.angle).width(1.7));
+            if let Some(line) = twin {
+                plot.line(line);
+            }
             if let Some(time) = shown {
                 shown_ui(plot, time, palette);
             }
@@ -260,14 +269,20 @@ impl Explorer {
                 .map(|(x, y)| [*x, *y])
                 .collect(),
         };
-        let mut runs = vec![run("this run".to_owned(), simulation.series())];
-        let kept = simulation.past().kept.iter();
-        runs.extend(kept.map(|record| run(format!("run {}", record.number), &record.series)));
-        let scene = simulation.scene();
-        let from = simulation.world().map_or_else(
-            || Provenance::of_scene(scene),
-            |world| Provenance::of(scene, world),
-        );
+        let mut runs = match simulation.twin() {
+            None => vec![run("this run".to_owned(), simulation.series())],
+            Some(_) => Half::ALL
+                .map(|half| {
+                    let name = format!("{}: {}", half.label(), half_title(simulation, half));
+                    run(name, simulation.half(half).series())
+                })
+                .into(),
+        };
+        let kept = ghosts(simulation).into_iter();
+        runs.extend(kept.map(|(name, record)| run(name.to_lowercase(), &record.series)));
+        let from = simulation
+            .provenance()
+            .unwrap_or_else(|| Provenance::of_scene(simulation.scene()));
         Export {
             x,
             y,

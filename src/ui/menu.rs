@@ -1,9 +1,10 @@
 //! The menu bar.
 
+use super::compare::OF_ONE_RUN;
 use super::shortcuts::SHORTCUTS;
 use super::{Request, Sheet};
 use crate::scene::built_in;
-use crate::simulation::{Command, Past};
+use crate::simulation::{Command, Half, Simulation};
 use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
 use bevy_egui::egui;
 
@@ -19,7 +20,7 @@ pub struct Shown {
 /// Draws the menu bar, and from its right end leftwards what `rest` draws.
 pub fn menu_ui(
     ui: &mut egui::Ui,
-    past: Option<&Past>,
+    simulation: Option<&Simulation>,
     recent: &[String],
     shown: &mut Shown,
     view: &mut ViewSettings,
@@ -27,8 +28,8 @@ pub fn menu_ui(
     rest: impl FnOnce(&mut egui::Ui),
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_ui(ui, past, recent, out));
-        ui.menu_button("Edit", |ui| edit_ui(ui, past, out));
+        ui.menu_button("File", |ui| file_ui(ui, simulation, recent, out));
+        ui.menu_button("Edit", |ui| edit_ui(ui, simulation, out));
         ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
         ui.menu_button("Help", |ui| {
             item_ui(ui, "Shortcuts", Request::Show(Sheet::Shortcuts), out);
@@ -38,7 +39,12 @@ pub fn menu_ui(
     });
 }
 
-fn file_ui(ui: &mut egui::Ui, past: Option<&Past>, recent: &[String], out: &mut Vec<Request>) {
+fn file_ui(
+    ui: &mut egui::Ui,
+    simulation: Option<&Simulation>,
+    recent: &[String],
+    out: &mut Vec<Request>,
+) {
     item_ui(ui, "Scenes…", Request::ShowScenes, out);
     item_ui(ui, "Open…", Request::ChooseFile, out);
     ui.menu_button("Built-in scenes", |ui| {
@@ -55,20 +61,22 @@ fn file_ui(ui: &mut egui::Ui, past: Option<&Past>, recent: &[String], out: &mut 
         }
     });
     ui.separator();
-    let why_not = past.is_none().then_some("There is no run to save");
+    let why_not = simulation.is_none().then_some("There is no run to save");
     let as_another = Request::ChooseSession;
     item_unless_ui(ui, "Save the session", Request::Save, why_not, out);
     item_unless_ui(ui, "Save the session as…", as_another, why_not, out);
     item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
     item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
-    ui.add_enabled_ui(past.is_some(), |ui| {
+    ui.add_enabled_ui(simulation.is_some(), |ui| {
         item_ui(ui, "Record a film…", Request::ChooseFilm, out);
     });
     ui.separator();
     item_ui(ui, "Quit", Request::Quit, out);
 }
 
-fn edit_ui(ui: &mut egui::Ui, past: Option<&Past>, out: &mut Vec<Request>) {
+fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Request>) {
+    let past = simulation.map(Simulation::past);
+    let twin = simulation.and_then(Simulation::twin);
     let turns = [
         (
             "Undo",
@@ -82,8 +90,20 @@ fn edit_ui(ui: &mut egui::Ui, past: Option<&Past>, out: &mut Vec<Request>) {
         ),
     ];
     for (name, command, enabled) in turns {
-        let why_not = (!enabled).then_some("There is nothing to take back");
+        let why_not = match twin {
+            Some(_) => Some(OF_ONE_RUN),
+            None => (!enabled).then_some("There is nothing to take back"),
+        };
         item_unless_ui(ui, name, Request::Command(command), why_not, out);
+    }
+    ui.separator();
+    let why_not = simulation.is_none().then_some("There is no run to compare");
+    let compare = Request::Compare;
+    item_unless_ui(ui, "Compare two values…", compare, why_not, out);
+    let why_not = twin.is_none().then_some("There is one run only");
+    for half in Half::ALL {
+        let name = format!("End the comparison, keep the {} run", half.label());
+        item_unless_ui(ui, &name, Request::EndTwin(half), why_not, out);
     }
 }
 

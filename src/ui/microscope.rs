@@ -11,7 +11,7 @@ use super::{Panel, Request, number};
 use crate::scene::BridgeLaw;
 use crate::simulation::Simulation;
 use crate::solver::{ForceTerms, NormalLaw, force_terms};
-use crate::view::ViewSettings;
+use crate::view::{ViewSettings, trail_colour};
 use crate::world::{Contact, Partner, World};
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 use egui_plot::{HoverPosition, Line, LineStyle, Plot, PlotUi, Points, VLine};
@@ -42,6 +42,10 @@ pub struct Microscope {
 impl Panel for Microscope {
     fn title(&self) -> &'static str {
         "Microscope"
+    }
+
+    fn describes_one_run(&self) -> bool {
+        true
     }
 
     fn summons(&mut self, view: &ViewSettings) -> bool {
@@ -112,10 +116,44 @@ fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
             view.selected = None;
         }
     });
-    if view.selected.is_some() {
-        ui.checkbox(&mut view.show_trail, "Trail")
-            .on_hover_text("Draw where the grain has been");
-    }
+    trails_ui(ui, view);
+}
+
+/// Whose ways are drawn.
+fn trails_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
+    ui.horizontal_wrapped(|ui| {
+        if let Some(grain) = view.selected {
+            let mut is_traced = view.traced.contains(&grain);
+            let hint = "Draw where the grain has been (T). Shift and a click in the picture does so for any grain.";
+            if ui.checkbox(&mut is_traced, "Trail").on_hover_text(hint).changed() {
+                view.trace(grain);
+            }
+        }
+        if view.traced.is_empty() {
+            return;
+        }
+        ui.weak("Trails of");
+        let mut given_up = None;
+        for (index, grain) in view.traced.iter().enumerate() {
+            let [r, g, b] = trail_colour(index);
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
+            let colour = egui::Color32::from_rgb(r, g, b);
+            ui.painter().rect_filled(rect, 3.0, colour);
+            let button = ui
+                .small_button(format!("{grain} ×"))
+                .on_hover_text("Draw it no longer");
+            let name = format!("No trail of grain {grain}");
+            button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &name));
+            if button.clicked() {
+                given_up = Some(*grain);
+            }
+        }
+        if ui.small_button("No trails").on_hover_text("Shift+T").clicked() {
+            view.traced.clear();
+        } else if let Some(grain) = given_up {
+            view.trace(grain);
+        }
+    });
 }
 
 fn row(name: &str, value: String, hint: &str) -> Row {

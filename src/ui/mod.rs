@@ -14,6 +14,7 @@
 //! | `badge` | whether the run can be trusted, and why |
 //! | `about_scene`, `parameters`, `changes`, `picture`, `profile` | panels on the left |
 //! | `microscope` | one grain, its contacts, every term of their forces |
+//! | `compare` | two runs side by side that differ in one parameter |
 //! | `detail`, `start_values`, `value` | of the parameters: how many are shown, which act later, the row of one |
 //! | `plots`, `velocity`, `beside_paper`, `results` | panels on the right; of columns, `collapse_plots` and `column_beside_paper` |
 //! | `explorer`, `energy` | any quantity over time or another, the energy ledger as a stack |
@@ -31,6 +32,7 @@ mod carry_out;
 mod changes;
 mod collapse_plots;
 mod column_beside_paper;
+mod compare;
 mod decimate;
 mod desk;
 mod detail;
@@ -64,6 +66,8 @@ pub use about_scene::AboutScene;
 pub use badge::{Check, Level, checks};
 pub use collapse_plots::CollapsePlots;
 pub use column_beside_paper::ColumnBesidePaper;
+pub use compare::Compare;
+use compare::half_title;
 pub use desk::Desk;
 pub use detail::Detail;
 pub use energy::Energy;
@@ -73,7 +77,7 @@ pub use microscope::Microscope;
 pub use parameters::{Parameters, parameter_ui};
 pub use path_dialog::{PathDialog, Purpose};
 pub use picture::Picture;
-pub use plots::{Curves, Plots};
+pub use plots::{Curves, Ghost, Plots};
 pub use profile::{SolverProfile, advice_ui, profile_ui};
 pub use recording::{FilmOrder, FilmState, Recorder, recording_ui};
 pub use request::{Request, Sheet};
@@ -82,7 +86,7 @@ pub use sheets::{open_error_ui, sheet_ui, unsaved_ui};
 pub use transport::{Transport, status_ui};
 pub use velocity::Velocity;
 
-use crate::simulation::{Options, Simulation};
+use crate::simulation::{Half, Options, Simulation};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use crate::world::{Shape, World};
 use bevy::prelude::*;
@@ -101,6 +105,11 @@ pub trait Panel: Send + Sync + 'static {
 
     /// Whether it should open now, though a person has not opened it.
     fn summons(&mut self, _view: &ViewSettings) -> bool {
+        false
+    }
+
+    /// Whether it describes one run only, and knows nothing of a twin.
+    fn describes_one_run(&self) -> bool {
         false
     }
 
@@ -209,18 +218,33 @@ fn draw_panels(
         desk.ui(&mut root, simulation, &mut view, &mut requests.0);
         recording_ui(&mut root, &recorder, &mut requests.0);
     }
-    viewport_ui(&mut root, caption(simulation), &mut view, &mut camera);
+    let captions = captions(simulation);
+    viewport_ui(&mut root, &captions, &mut view, &mut camera);
     if !desk.is_hidden {
         desk.over_picture_ui(&root, simulation);
     }
     Ok(())
 }
 
-fn caption(simulation: Option<&Simulation>) -> Caption<'_> {
+/// What stands in the picture: once, or in each of its halves.
+fn captions(simulation: Option<&Simulation>) -> Vec<Caption<'_>> {
     let factor = simulation.map_or(0.0, Simulation::real_time_factor);
+    let is_pair = |simulation: &&Simulation| {
+        (simulation.twin()).is_some_and(|twin| twin.run().world().is_some())
+    };
+    match simulation.filter(is_pair) {
+        None => vec![caption(simulation, factor, None)],
+        Some(pair) => Half::ALL
+            .map(|half| caption(Some(pair.half(half)), factor, Some(half_title(pair, half))))
+            .into(),
+    }
+}
+
+fn caption(run: Option<&Simulation>, factor: f64, title: Option<String>) -> Caption<'_> {
     Caption {
-        world: simulation.and_then(|simulation| simulation.world().map(AsRef::as_ref)),
+        world: run.and_then(|run| run.world().map(AsRef::as_ref)),
         real_time_factor: (factor > 0.0).then_some(factor),
+        title,
     }
 }
 

@@ -6,7 +6,7 @@ use super::start_values::StartValues;
 use super::value::{Value, value_ui};
 use super::{Panel, Request, number, symbol};
 use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer};
-use crate::simulation::{Command, Parameter, ParameterInfo, Simulation};
+use crate::simulation::{Command, Half, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
 
@@ -171,12 +171,45 @@ fn group_ui(
             }
             pair = Some(own);
         }
-        let value = simulation.value(&info.parameter);
-        let wanted = match info.parameter {
-            Parameter::BridgeLaw => bridge_law_ui(ui, info, value),
-            _ => parameter_ui(ui, info, value, detail, scene),
-        };
-        out.extend(wanted.map(Request::Command));
+        let twin = simulation
+            .twin()
+            .filter(|twin| *twin.parameter() == info.parameter);
+        if twin.is_none() {
+            let wanted = row_ui(ui, info, simulation.value(&info.parameter), detail, scene);
+            out.extend(wanted.map(|value| Request::Command(set(info, value))));
+            continue;
+        }
+        for half in Half::ALL {
+            let named = ParameterInfo {
+                label: format!("{}, {}", info.label, half.label()),
+                ..info.clone()
+            };
+            ui.weak(number::capitalised(half.label()));
+            let value = simulation.half(half).value(&info.parameter);
+            let wanted = ui.push_id(half, |ui| row_ui(ui, &named, value, detail, scene));
+            out.extend(wanted.inner.map(|value| match half {
+                Half::Left => Request::Command(set(info, value)),
+                Half::Right => Request::TwinValue(value),
+            }));
+        }
+    }
+}
+
+/// The row of one parameter: what is wanted instead of `value`, if anything.
+fn row_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    detail: Detail,
+    scene: &Scene,
+) -> Option<f64> {
+    let wanted = match info.parameter {
+        Parameter::BridgeLaw => bridge_law_ui(ui, info, value),
+        _ => parameter_ui(ui, info, value, detail, scene),
+    };
+    match wanted? {
+        Command::Set { value, .. } => Some(value),
+        _ => None,
     }
 }
 

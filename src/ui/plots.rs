@@ -4,11 +4,12 @@
 //! the run is, and the moment that a person clicks on. Which part of the run is in view is kept here, not in the plots, so
 //! both always show the same time and fit their height to what they show.
 
+use super::compare::half_title;
 use super::decimate::decimate;
-use super::theme::{Palette, dash};
+use super::theme::{Palette, TWIN_DASH, dash};
 use super::{Panel, Request, is_column, number};
 use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE, Series};
-use crate::simulation::{Command, Record, Simulation};
+use crate::simulation::{Command, Half, Record, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b, WidgetInfo, WidgetType};
 use egui_plot::{
@@ -62,26 +63,104 @@ pub(super) enum Span {
     Chosen(f64, f64),
 }
 
-/// What is drawn, all columns of equal length.
+/// What is drawn.
+#[derive(Clone, Copy)]
 pub struct Curves<'a> {
-    /// Time [s], ascending.
-    pub time: &'a [f64],
-    /// Surface angle [rad].
-    pub angle: &'a [f64],
-    /// Granular temperature [m²/s²].
-    pub temperature: &'a [f64],
+    /// The samples of the run.
+    pub series: &'a Series,
+    /// The samples of the run beside it.
+    pub twin: Option<&'a Series>,
     /// Avalanches in order of time.
     pub avalanches: &'a [Avalanche],
     /// When parameters were changed [s], ascending.
     pub changes: &'a [f64],
     /// Runs that were left for others.
-    pub kept: &'a [Arc<Record>],
+    pub kept: &'a [Ghost],
     /// The moment shown [s], where it is not the newest.
     pub shown: Option<f64>,
 }
 
-/// The line of a run that was left for another, with its name.
-pub(super) type KeptLine = (String, Vec<[f64; 2]>);
+/// A run that was left for another, with its name.
+pub type Ghost = (String, Arc<Record>);
+
+/// The lines of one plot.
+pub(super) struct Lines {
+    own: Vec<[f64; 2]>,
+    twin: Option<Vec<[f64; 2]>>,
+    /// Those of runs kept beside it, with their names.
+    kept: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+impl<'a> Curves<'a> {
+    /// Those of `simulation` and its twin.
+    pub(super) fn of(simulation: &'a Simulation, changes: &'a [f64], kept: &'a [Ghost]) -> Self {
+        Self {
+            series: simulation.series(),
+            twin: simulation.twin().map(|twin| twin.run().series()),
+            avalanches: simulation.avalanches(),
+            changes,
+            kept,
+            shown: shown(simulation),
+        }
+    }
+
+    /// The lines in `window`, where `value` is taken of their samples.
+    pub(super) fn lines(
+        &self,
+        window: &RangeInclusive<f64>,
+        columns: usize,
+        value: impl Fn(&Series, usize) -> f64,
+    ) -> Lines {
+        let line = |series: &Series| decimate(series.time(), window, columns, |i| value(series, i));
+        let kept = self.kept.iter();
+        Lines {
+            own: line(self.series),
+            twin: self.twin.map(line),
+            kept: kept
+                .map(|(name, record)| (name.clone(), line(&record.series)))
+                .collect(),
+        }
+    }
+
+    /// The newest value of each run in words.
+    pub(super) fn latest(
+        &self,
+        value: impl Fn(&Series, usize) -> f64,
+        in_words: impl Fn(f64) -> String,
+    ) -> Vec<String> {
+        let last = |series: &Series| {
+            let index = series.len().checked_sub(1);
+            in_words(index.map_or(f64::NAN, |index| value(series, index)))
+        };
+        std::iter::once(self.series)
+            .chain(self.twin)
+            .map(last)
+            .collect()
+    }
+}
+
+impl Lines {
+    /// All their points.
+    pub(super) fn points(&self) -> impl Iterator<Item = &[f64; 2]> {
+        let kept = self.kept.iter().flat_map(|(_, points)| points);
+        (self.own.iter())
+            .chain(self.twin.iter().flatten())
+            .chain(kept)
+    }
+}
+
+/// The runs that were left for others by `simulation` and by its twin.
+pub(super) fn ghosts(simulation: &Simulation) -> Vec<Ghost> {
+    let of = |run: &Simulation, beside: &str| -> Vec<Ghost> {
+        let named =
+            |record: &Arc<Record>| (format!("Run {}{beside}", record.number), record.clone());
+        run.past().kept.iter().map(named).collect()
+    };
+    let twin = simulation.twin().map(|twin| of(twin.run(), ", right"));
+    let mut ghosts = of(simulation, "");
+    ghosts.extend(twin.into_iter().flatten());
+    ghosts
+}
 
 /// One plot over time.
 pub(super) struct Curve {
@@ -89,14 +168,12 @@ pub(super) struct Curve {
     pub id: &'static str,
     /// What stands over it.
     pub title: &'static str,
-    /// Its latest value.
-    pub latest: String,
+    /// The latest value of each run.
+    pub latest: Vec<String>,
     /// Its line's colour.
     pub colour: Color32,
-    /// Its line.
-    pub points: Vec<[f64; 2]>,
-    /// The lines of runs kept beside it, with their names.
-    pub kept: Vec<KeptLine>,
+    /// Its lines.
+    pub lines: Lines,
     /// The range of the vertical axis.
     pub height: RangeInclusive<f64>,
     /// Whether its numbers are powers of ten.
@@ -140,17 +217,9 @@ impl Panel for Plots {
         _view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let series = simulation.series();
-        let changes = changes(simulation);
-        let curves = Curves {
-            time: series.time(),
-            angle: series.column(Measure::SurfaceAngle),
-            temperature: series.column(Measure::GranularTemperature),
-            avalanches: simulation.avalanches(),
-            changes: &changes,
-            kept: &simulation.past().kept,
-            shown: shown(simulation),
-        };
+        let (changes, ghosts) = (changes(simulation), ghosts(simulation));
+        let curves = Curves::of(simulation, &changes, &ghosts);
+        halves_ui(ui, simulation);
         avalanches_ui(ui, simulation, out);
         let clicked = self.curves_ui(ui, &curves);
         out.extend(clicked.and_then(|time| seek(simulation, time)));
@@ -257,7 +326,7 @@ impl Plots {
         self.choice_ui(ui);
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
-        let window = self.span.window(curves.time, curves.shown);
+        let window = self.span.window(curves.series.time(), curves.shown);
         let marks = Marks::within(curves, &window, columns, palette);
         let angle = angle_curve(curves, &window, columns, palette);
         let first = curve_ui(ui, angle, &window, height, |plot| marks.angle_ui(plot));
@@ -365,19 +434,15 @@ fn angle_curve(
     columns: usize,
     palette: Palette,
 ) -> Curve {
-    let points = decimate(curves.time, window, columns, |i| curves.angle[i] * DEGREES);
-    let latest = curves.angle.last().copied().unwrap_or(f64::NAN) * DEGREES;
-    let kept = kept_lines(curves.kept, window, columns, |series, i| {
-        series.column(Measure::SurfaceAngle)[i] * DEGREES
-    });
+    let value = |series: &Series, i: usize| series.column(Measure::SurfaceAngle)[i] * DEGREES;
+    let lines = curves.lines(window, columns, value);
     Curve {
         id: "angle",
         title: "Surface angle θ [°]",
-        latest: number::fixed(latest, 2),
+        latest: curves.latest(value, |angle| number::fixed(angle, 2)),
         colour: palette.angle,
-        height: height_of(seen(&points, &kept), SMALLEST_ANGLE_SPAN),
-        points,
-        kept,
+        height: height_of(lines.points(), SMALLEST_ANGLE_SPAN),
+        lines,
         decades: false,
         unit: "°",
     }
@@ -391,54 +456,58 @@ fn temperature_curve(
     decades: bool,
 ) -> Curve {
     let threshold = on_axis(NON_RIGID_TEMPERATURE, decades);
-    let points = decimate(curves.time, window, columns, |i| {
-        on_axis(curves.temperature[i], decades)
-    });
-    let kept = kept_lines(curves.kept, window, columns, |series, i| {
-        on_axis(series.column(Measure::GranularTemperature)[i], decades)
+    let value = |series: &Series, i: usize| series.column(Measure::GranularTemperature)[i];
+    let lines = curves.lines(window, columns, |series, i| {
+        on_axis(value(series, i), decades)
     });
     // The threshold is always in view, and zero where it has a place.
     let always = [
         [0.0, threshold],
         [0.0, if decades { threshold } else { 0.0 }],
     ];
-    let all = seen(&points, &kept).chain(&always);
+    let all = lines.points().chain(&always);
     Curve {
         id: "temperature",
         title: "Granular temperature Tg [m²/s²]",
-        latest: number::short(curves.temperature.last().copied().unwrap_or(f64::NAN)),
+        latest: curves.latest(value, number::short),
         colour: palette.temperature,
         height: height_of(all, if decades { SMALLEST_DECADES } else { 0.0 }),
-        points,
-        kept,
+        lines,
         decades,
         unit: "m²/s²",
     }
 }
 
-/// The lines of kept runs in view, where `value` is taken of their samples.
-pub(super) fn kept_lines(
-    kept: &[Arc<Record>],
-    window: &RangeInclusive<f64>,
-    columns: usize,
-    value: impl Fn(&Series, usize) -> f64,
-) -> Vec<KeptLine> {
-    let line = |record: &Arc<Record>| {
-        let series = &record.series;
-        let points = decimate(series.time(), window, columns, |i| value(series, i));
-        (format!("Run {}", record.number), points)
-    };
-    kept.iter().map(line).collect()
+/// Which line is which of the two runs, where there are two.
+pub(super) fn halves_ui(ui: &mut egui::Ui, simulation: &Simulation) {
+    if simulation.twin().is_none() {
+        return;
+    }
+    let palette = Palette::of(ui.visuals());
+    let lines = [
+        (Half::Left, ui.visuals().text_color(), None),
+        (Half::Right, palette.twin, Some(TWIN_DASH)),
+    ];
+    for (half, colour, dash) in lines {
+        ui.horizontal(|ui| {
+            sample_ui(ui, dash, Stroke::new(1.8, colour));
+            let title = number::capitalised(&half_title(simulation, half));
+            ui.label(format!("{}: {title}", number::capitalised(half.label())));
+        });
+    }
 }
 
-/// All points of a curve and of those kept beside it.
-pub(super) fn seen<'a>(
-    points: &'a [[f64; 2]],
-    kept: &'a [KeptLine],
-) -> impl Iterator<Item = &'a [f64; 2]> {
-    points
-        .iter()
-        .chain(kept.iter().flat_map(|(_, points)| points))
+/// A piece of a line on the plots, with dashes of this length.
+pub(super) fn sample_ui(ui: &mut egui::Ui, dash: Option<f32>, stroke: Stroke) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 14.0), egui::Sense::hover());
+    let ends = [rect.left_center(), rect.right_center()];
+    match dash {
+        None => drop(ui.painter().line_segment(ends, stroke)),
+        Some(dash) => {
+            let line = egui::Shape::dashed_line(&ends, stroke, dash, 0.6 * dash);
+            ui.painter().extend(line);
+        }
+    }
 }
 
 /// Where a temperature [m²/s²] stands on its axis.
@@ -483,19 +552,29 @@ pub(super) fn curve_ui<'a>(
     marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
 ) -> egui::Response {
     let palette = Palette::of(ui.visuals());
-    let kept = curve.kept;
+    let Lines { own, twin, kept } = curve.lines;
     egui::Sides::new().shrink_left().truncate().show(
         ui,
         |ui| ui.label(RichText::new(curve.title).strong()),
-        |ui| ui.label(RichText::new(&curve.latest).color(curve.colour).strong()),
+        |ui| {
+            // From right to left.
+            let latest = curve.latest.iter().zip([curve.colour, palette.twin]);
+            for (index, (text, colour)) in latest.enumerate().collect::<Vec<_>>().into_iter().rev()
+            {
+                ui.label(RichText::new(text).color(colour).strong());
+                if index > 0 {
+                    ui.weak("|");
+                }
+            }
+        },
     );
     let bounds = PlotBounds::from_min_max(
         [*window.start(), *curve.height.start()],
         [*window.end(), *curve.height.end()],
     );
-    let line = Line::new(curve.title, curve.points)
-        .color(curve.colour)
-        .width(1.7);
+    let name = if twin.is_some() { "left" } else { curve.title };
+    let line = Line::new(name, own).color(curve.colour).width(1.7);
+    let twin = twin.map(|points| twin_line("right", points, palette));
     let (decades, unit) = (curve.decades, curve.unit);
     let plot = Plot::new(curve.id)
         .height(height)
@@ -533,9 +612,21 @@ pub(super) fn curve_ui<'a>(
             kept_ui(plot, index, &name, points, palette.kept);
         }
         plot.line(line);
+        if let Some(line) = twin {
+            plot.line(line);
+        }
         marks(plot);
     });
     shown.response
+}
+
+/// The line of the run beside the first.
+pub(super) fn twin_line<'a>(name: &str, points: Vec<[f64; 2]>, palette: Palette) -> Line<'a> {
+    let style = LineStyle::Dashed { length: TWIN_DASH };
+    Line::new(name, points)
+        .color(palette.twin)
+        .width(2.0)
+        .style(style)
 }
 
 /// A kept run as a dashed line with its name at the end.
@@ -729,10 +820,10 @@ mod tests {
     #[test]
     fn changes_of_one_drag_share_a_line() {
         let changes = [1.0, 1.001, 1.002, 5.0];
+        let series = Series::default();
         let curves = Curves {
-            time: &[],
-            angle: &[],
-            temperature: &[],
+            series: &series,
+            twin: None,
             avalanches: &[],
             changes: &changes,
             kept: &[],

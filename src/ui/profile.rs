@@ -17,6 +17,10 @@ impl Panel for SolverProfile {
         "Solver"
     }
 
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
     fn ui(
         &mut self,
         ui: &mut egui::Ui,

@@ -3,7 +3,7 @@
 
 use super::{Export, FilmOrder};
 use crate::scene::Scene;
-use crate::simulation::Command;
+use crate::simulation::{Command, Half, Parameter};
 use crate::view::CameraRequest;
 use std::path::PathBuf;
 
@@ -12,6 +12,18 @@ use std::path::PathBuf;
 pub enum Request {
     /// A change of the run.
     Command(Command),
+    /// Show the panel where two values are compared.
+    Compare,
+    /// Begin a run beside the present one, with another value of a parameter.
+    StartTwin(Parameter, f64),
+    /// Another value for the run beside the first.
+    TwinValue(f64),
+    /// Go on with one of two runs, and keep the other beside it.
+    EndTwin(Half),
+    /// Draw the trail of the selected grain, or no longer.
+    Trail,
+    /// Draw no trails.
+    NoTrails,
     /// Another view of the scene.
     Camera(CameraRequest),
     /// Show the scenes that come with the program.

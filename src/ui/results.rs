@@ -91,6 +91,10 @@ impl Panel for Results {
         "Results"
     }
 
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
     fn ui(
         &mut self,
         ui: &mut egui::Ui,

@@ -3,6 +3,7 @@
 //! In: the simulation. Out: requests to show a moment, to undo and to redo. Changes are marked above the line, avalanches
 //! below it.
 
+use super::compare::OF_ONE_RUN;
 use super::theme::Palette;
 use super::transport::allows;
 use super::{Request, changes, number};
@@ -40,11 +41,16 @@ fn turns_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) 
         ),
     ];
     for (face, name, title, what, command) in turns {
-        let enabled = what.is_some() && allows(simulation.status(), &command);
+        let alone = simulation.twin().is_none();
+        let enabled = what.is_some() && alone && allows(simulation.status(), &command);
         let button = egui::Button::new(RichText::new(face).size(17.0)).min_size(vec2(32.0, 26.0));
         let mut response = ui.add_enabled(enabled, button);
-        response =
-            response.on_disabled_hover_text(format!("{title}: there is nothing to take back"));
+        let why_not = if alone {
+            "there is nothing to take back"
+        } else {
+            OF_ONE_RUN
+        };
+        response = response.on_disabled_hover_text(format!("{title}: {why_not}"));
         if let Some(what) = what {
             let about = changed_name(what, simulation);
             let effect = match command {

@@ -83,6 +83,22 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: Action::Ask(Request::Command(Command::Reset)),
     },
     Shortcut {
+        keys: &[ctrl(Key::T)],
+        name: "Compare two values side by side",
+        action: Action::Ask(Request::Compare),
+    },
+    // Before the plain key, which would take it.
+    Shortcut {
+        keys: &[shift(Key::T)],
+        name: "No trails",
+        action: Action::Ask(Request::NoTrails),
+    },
+    Shortcut {
+        keys: &[key(Key::T)],
+        name: "Trail of the grain under the microscope",
+        action: Action::Ask(Request::Trail),
+    },
+    Shortcut {
         keys: &[key(Key::F)],
         name: "Everything in view",
         action: Action::Ask(Request::Camera(CameraRequest::Fit)),
@@ -206,8 +222,9 @@ pub const SHORTCUTS: &[Shortcut] = &[
 ];
 
 /// What the mouse does over the picture.
-pub const MOUSE: [(&str, &str); 5] = [
+pub const MOUSE: [(&str, &str); 6] = [
     ("Click a grain", "Put it under the microscope"),
+    ("Shift + click a grain", "Draw its trail, or no longer"),
     ("Drag", "Orbit"),
     ("Right drag, Shift + drag", "Pan"),
     ("Scroll, pinch", "Zoom"),

@@ -30,7 +30,8 @@ impl Transport {
                 warnings_ui(ui, simulation.warnings());
             });
         });
-        status_ui(ui, status, simulation.advice().time_step, out);
+        let can_undo = simulation.twin().is_none();
+        status_ui(ui, status, simulation.advice().time_step, can_undo, out);
     }
 }
 
@@ -184,7 +185,13 @@ fn warnings_ui(ui: &mut egui::Ui, warnings: &[String]) {
 }
 
 /// How far the bed is prepared, or what went wrong and what to do; nothing while all goes well.
-pub fn status_ui(ui: &mut egui::Ui, status: &Status, time_step: f64, out: &mut Vec<Request>) {
+pub fn status_ui(
+    ui: &mut egui::Ui,
+    status: &Status,
+    time_step: f64,
+    can_undo: bool,
+    out: &mut Vec<Request>,
+) {
     match status {
         Status::Running | Status::Paused => {}
         Status::Seeking { progress } => {
@@ -196,7 +203,7 @@ pub fn status_ui(ui: &mut egui::Ui, status: &Status, time_step: f64, out: &mut V
         }
         Status::Faulted(fault) => message_ui(ui, "The run stopped", &fault.to_string(), |ui| {
             ui.label(remedy(time_step));
-            if ui.button("Undo the last change").clicked() {
+            if can_undo && ui.button("Undo the last change").clicked() {
                 out.push(Request::Command(Command::Undo));
             }
             if ui.button("Back to time zero").clicked() {

@@ -44,6 +44,10 @@ impl Panel for Velocity {
         "Velocity map"
     }
 
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
     fn concerns(&self, simulation: &Simulation) -> bool {
         matches!(
             simulation.scene().container,

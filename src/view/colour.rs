@@ -67,23 +67,23 @@ impl Scheme {
     }
 }
 
-/// What the colours of `world` mean; `None` for species. An automatic range stays as it was in `before` while it suits, so
+/// What the colours of `worlds` mean, the same in all of them; `None` for species, or of no world. An automatic range stays as it was in `before` while it suits, so
 /// that colours do not jump from frame to frame.
 pub fn legend(
-    world: &World,
+    worlds: &[&World],
     colour_by: ColourBy,
     range: ColourRange,
     before: Option<&Legend>,
 ) -> Option<Legend> {
-    if colour_by == ColourBy::Species {
+    if colour_by == ColourBy::Species || worlds.is_empty() {
         return None;
     }
     let title = colour_by.label();
     let before = before.filter(|before| before.title == title && before.min == 0.0);
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
-        ColourRange::Percentiles(low, high) => percentiles(world, colour_by, low, high),
-        ColourRange::Automatic => (0.0, automatic_maximum(world, colour_by, before)),
+        ColourRange::Percentiles(low, high) => percentiles(worlds, colour_by, low, high),
+        ColourRange::Automatic => (0.0, automatic_maximum(worlds, colour_by, before)),
     };
     Some(Legend {
         title,
@@ -136,8 +136,8 @@ fn value(world: &World, colour_by: ColourBy, i: usize) -> f64 {
 }
 
 /// The numbers that these shares of the grains stay below.
-fn percentiles(world: &World, colour_by: ColourBy, low: f64, high: f64) -> (f64, f64) {
-    let mut values = values(world, colour_by);
+fn percentiles(worlds: &[&World], colour_by: ColourBy, low: f64, high: f64) -> (f64, f64) {
+    let mut values = values(worlds, colour_by);
     if values.is_empty() {
         return (0.0, 1.0);
     }
@@ -150,16 +150,18 @@ fn percentiles(world: &World, colour_by: ColourBy, low: f64, high: f64) -> (f64,
 }
 
 /// The numbers behind the colours of all grains, as far as they are numbers.
-fn values(world: &World, colour_by: ColourBy) -> Vec<f64> {
-    (0..world.grains.len())
-        .map(|i| value(world, colour_by, i))
-        .filter(|value| value.is_finite())
-        .collect()
+fn values(worlds: &[&World], colour_by: ColourBy) -> Vec<f64> {
+    let mut values = Vec::with_capacity(worlds.iter().map(|world| world.grains.len()).sum());
+    for world in worlds {
+        let own = (0..world.grains.len()).map(|i| value(world, colour_by, i));
+        values.extend(own.filter(|value| value.is_finite()));
+    }
+    values
 }
 
 /// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
-fn automatic_maximum(world: &World, colour_by: ColourBy, before: Option<&Legend>) -> f64 {
-    let mut values = values(world, colour_by);
+fn automatic_maximum(worlds: &[&World], colour_by: ColourBy, before: Option<&Legend>) -> f64 {
+    let mut values = values(worlds, colour_by);
     if values.is_empty() {
         return 1.0;
     }
@@ -260,7 +262,7 @@ mod tests {
             }
             world.grains.velocity[0].x = 100.0;
             shown = legend(
-                &world,
+                &[&world],
                 ColourBy::Speed,
                 ColourRange::Automatic,
                 shown.as_ref(),
@@ -272,8 +274,24 @@ mod tests {
             );
         }
         let fixed = ColourRange::Fixed(0.1, 0.7);
-        let shown = legend(&world, ColourBy::Speed, fixed, shown.as_ref()).unwrap();
+        let shown = legend(&[&world], ColourBy::Speed, fixed, shown.as_ref()).unwrap();
         assert_eq!((shown.min, shown.max), (0.1, 0.7));
-        assert_eq!(legend(&world, ColourBy::Species, fixed, None), None);
+        assert_eq!(legend(&[&world], ColourBy::Species, fixed, None), None);
+    }
+
+    #[test]
+    fn two_worlds_share_the_range_that_holds_the_grains_of_both() {
+        let [mut slow, mut fast] = [(); 2].map(|()| crate::view::tests::grains_in_a_row(100));
+        for (world, speed) in [(&mut slow, 0.01), (&mut fast, 0.3)] {
+            world.grains.velocity.iter_mut().for_each(|v| v.x = speed);
+        }
+        let range = |range, worlds: &[&World]| {
+            let legend = legend(worlds, ColourBy::Speed, range, None).unwrap();
+            (legend.min, legend.max)
+        };
+        let all = ColourRange::Percentiles(0.0, 1.0);
+        assert_eq!(range(all, &[&slow, &fast]), (0.01, 0.3));
+        assert_eq!(range(ColourRange::Automatic, &[&slow, &fast]), (0.0, 0.4));
+        assert_eq!(range(ColourRange::Automatic, &[&slow]).1, 0.01);
     }
 }

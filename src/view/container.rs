@@ -4,7 +4,8 @@
 //! it. Every pane faces the grains and is drawn only from that side, so the near walls never stand in the way.
 
 use super::colour::{Scheme, round_up};
-use super::{Shown, ViewSettings};
+use super::{Shown, ViewSettings, layers};
+use crate::simulation::Half;
 use crate::world::{Container, Shape, Surface, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
@@ -247,8 +248,8 @@ impl Material for WallMaterial {
     }
 }
 
-/// What decides the meshes: the shape, and for planes how many there are.
-type Built = (Shape, usize);
+/// What decides the meshes: the shape, for planes how many there are, and whether they are wanted twice.
+type Built = (Shape, usize, bool);
 
 /// Builds the pieces anew when the container is another.
 fn rebuild(
@@ -262,7 +263,11 @@ fn rebuild(
     let Some(world) = shown.world().filter(|_| shown.is_changed()) else {
         return;
     };
-    let now = (world.container.shape, world.container.walls.len());
+    let now = (
+        world.container.shape,
+        world.container.walls.len(),
+        shown.is_pair(),
+    );
     if *built == Some(now) {
         return;
     }
@@ -270,18 +275,24 @@ fn rebuild(
     for piece in &pieces {
         commands.entity(piece).despawn();
     }
+    let halves = &Half::ALL[..if shown.is_pair() { 2 } else { 1 }];
     for (piece, paint, mesh) in build(world) {
-        commands.spawn((
-            piece,
-            paint,
-            Mesh3d(meshes.add(mesh)),
-            MeshMaterial3d(materials.add(WallMaterial {
-                look: look(paint, &ViewSettings::default()),
-                alpha_mode: AlphaMode::Blend,
-                both_sides: false,
-            })),
-            NoFrustumCulling,
-        ));
+        let mesh = meshes.add(mesh);
+        for half in halves.iter().copied() {
+            commands.spawn((
+                half,
+                layers(half),
+                piece,
+                paint,
+                Mesh3d(mesh.clone()),
+                MeshMaterial3d(materials.add(WallMaterial {
+                    look: look(paint, &ViewSettings::default()),
+                    alpha_mode: AlphaMode::Blend,
+                    both_sides: false,
+                })),
+                NoFrustumCulling,
+            ));
+        }
     }
 }
 
@@ -317,9 +328,11 @@ fn paint(
 }
 
 /// Turns and moves each piece with its wall.
-fn place(shown: Res<Shown>, mut pieces: Query<(&Piece, &mut Transform)>) {
-    let Some(world) = shown.world() else { return };
-    for (piece, mut transform) in &mut pieces {
+fn place(shown: Res<Shown>, mut pieces: Query<(&Half, &Piece, &mut Transform)>) {
+    for (half, piece, mut transform) in &mut pieces {
+        let Some(world) = shown.half(*half) else {
+            continue;
+        };
         transform.set_if_neq(match *piece {
             Piece::Fixed => Transform::IDENTITY,
             Piece::Turning => {

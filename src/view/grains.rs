@@ -6,6 +6,7 @@
 
 use super::occlusion::Shadows;
 use super::{ColourBy, ColourMap, ColourRange, Cut, Shown, ViewSettings, colour};
+use crate::simulation::Half;
 use crate::world::{Polyhedra, Polyhedron, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::prelude::*;
@@ -29,13 +30,19 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(Update, fill.in_set(super::ViewSystems::Fill));
 }
 
-/// The buffer of all grains, in the order of the world.
+/// The buffers of all grains, in the order of the world, one for each half of the picture.
 #[derive(Resource, Default)]
 pub struct GrainBuffer {
-    /// The buffer; another one whenever the number of grains is another.
-    pub(super) handle: Handle<ShaderBuffer>,
-    count: usize,
+    halves: [HalfBuffer; 2],
     shadows_are_whole: bool,
+}
+
+/// The buffer of one half.
+#[derive(Default)]
+struct HalfBuffer {
+    /// The buffer; another one whenever the number of grains is another.
+    handle: Handle<ShaderBuffer>,
+    count: usize,
 }
 
 /// Grains whose shadows are brought up to date in a frame.
@@ -98,6 +105,18 @@ type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>, f32);
 #[derive(Default)]
 struct Kept {
     colouring: Option<Colouring>,
+    halves: [HalfKept; 2],
+}
+
+impl Kept {
+    fn shadows_are_whole(&self) -> bool {
+        self.halves.iter().all(|half| half.shadows.are_whole())
+    }
+}
+
+/// The same of one half of the picture.
+#[derive(Default)]
+struct HalfKept {
     forms: Forms,
     /// Radius of the sphere of the same volume as each polyhedron [m]; none where all are spheres.
     radii: Vec<f32>,
@@ -123,21 +142,23 @@ fn fill(
     );
     let moved = shown.is_changed();
     let recoloured = kept.colouring != Some(colouring);
-    if !moved && !recoloured && kept.shadows.are_whole() {
+    if !moved && !recoloured && kept.shadows_are_whole() {
         return;
     }
     if moved || recoloured {
         kept.colouring = Some(colouring);
-        let world = shown.world();
-        settings.legend = world.and_then(|world| {
-            let before = settings.legend.as_ref();
-            colour::legend(world, settings.colour_by, settings.range, before)
-        });
-        kept.redraw(world, &settings);
+        let worlds: Vec<&World> = shown.worlds().collect();
+        let before = settings.legend.as_ref();
+        settings.legend = colour::legend(&worlds, settings.colour_by, settings.range, before);
+        for half in Half::ALL {
+            kept.halves[half.index()].redraw(shown.half(half), &settings);
+        }
     }
-    kept.shade();
-    buffer.shadows_are_whole = kept.shadows.are_whole();
-    buffer.write(&kept.drawn, &mut buffers);
+    for (half, buffer) in kept.halves.iter_mut().zip(&mut buffer.halves) {
+        half.shade();
+        buffer.write(&half.drawn, &mut buffers);
+    }
+    buffer.shadows_are_whole = kept.shadows_are_whole();
 }
 
 impl GrainBuffer {
@@ -146,9 +167,19 @@ impl GrainBuffer {
         self.shadows_are_whole
     }
 
+    /// The buffer of this half of the picture.
+    pub(super) fn handle(&self, half: Half) -> &Handle<ShaderBuffer> {
+        &self.halves[half.index()].handle
+    }
+}
+
+impl HalfBuffer {
     fn write(&mut self, grains: &[DrawnGrain], buffers: &mut Assets<ShaderBuffer>) {
         // A buffer cannot be empty; nobody draws this one.
         let nobody = [DrawnGrain::zeroed()];
+        if grains.is_empty() && self.count == nobody.len() {
+            return;
+        }
         let grains = if grains.is_empty() { &nobody } else { grains };
         let bytes = bytemuck::cast_slice(grains);
         if grains.len() == self.count
@@ -162,7 +193,7 @@ impl GrainBuffer {
     }
 }
 
-impl Kept {
+impl HalfKept {
     /// Writes places and colours, and lets the shadows follow.
     fn redraw(&mut self, world: Option<&World>, settings: &ViewSettings) {
         self.drawn.clear();

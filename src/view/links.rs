@@ -7,7 +7,8 @@
 use super::colour::{linear, round_up};
 use super::grains::CutPlanes;
 use super::spheres::quads;
-use super::{LinkScales, Shown, ViewSettings};
+use super::{LinkScales, Shown, ViewSettings, layers};
+use crate::simulation::Half;
 use crate::world::{Contact, Partner, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
@@ -105,7 +106,7 @@ struct Link {
     unused: f32,
 }
 
-/// The entity that draws all links.
+/// The entity that draws all links of one half of the picture.
 #[derive(Component, Default)]
 struct Links {
     /// How many its mesh and its buffer hold.
@@ -118,26 +119,31 @@ fn spawn(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<LinkMaterial>>,
 ) {
-    commands.spawn((
-        Links::default(),
-        Mesh3d(meshes.add(quads(&[0]))),
-        MeshMaterial3d(materials.add(LinkMaterial {
-            links: Handle::default(),
-        })),
-        Visibility::Hidden,
-        NoFrustumCulling,
-    ));
+    for half in Half::ALL {
+        commands.spawn((
+            half,
+            layers(half),
+            Links::default(),
+            Mesh3d(meshes.add(quads(&[0]))),
+            MeshMaterial3d(materials.add(LinkMaterial {
+                links: Handle::default(),
+            })),
+            Visibility::Hidden,
+            NoFrustumCulling,
+        ));
+    }
 }
 
 /// What decides the links beside the world.
 type Choice = (bool, bool, bool, Option<super::Cut>);
 
-/// Draws the links of the world shown when it or the choice is another.
+/// Draws the links of the worlds shown when they or the choice are others.
 fn update(
     shown: Res<Shown>,
     mut settings: ResMut<ViewSettings>,
     mut last: Local<Option<Choice>>,
-    drawn: Single<(
+    mut halves: Query<(
+        &Half,
         &mut Links,
         &mut Mesh3d,
         &MeshMaterial3d<LinkMaterial>,
@@ -157,71 +163,86 @@ fn update(
         return;
     }
     *last = Some(choice);
-    let (mut links, mut mesh, material, mut visibility) = drawn.into_inner();
-    links.drawn.clear();
-    let scales = match shown.world() {
-        Some(world) => links.draw(world, &settings),
-        None => LinkScales::default(),
-    };
+    let worlds: Vec<&World> = shown.worlds().collect();
+    let scales = scales(&worlds, &settings);
     if settings.link_scales != scales {
         settings.link_scales = scales;
     }
-    if links.drawn.is_empty() {
-        visibility.set_if_neq(Visibility::Hidden);
-        return;
-    }
-    visibility.set_if_neq(Visibility::Inherited);
-    let room = links.drawn.len().next_power_of_two();
-    links.drawn.resize(room, Link::zeroed());
-    let bytes: &[u8] = bytemuck::cast_slice(&links.drawn);
-    let handle = materials.get(&material.0).map(|m| m.links.clone());
-    if room == links.room
-        && let Some(mut buffer) = handle.and_then(|handle| buffers.get_mut(&handle))
-    {
-        buffer.data = Some(bytes.to_vec());
-    } else if let Some(mut material) = materials.get_mut(&material.0) {
-        let all: Vec<u32> = (0..room as u32).collect();
-        mesh.0 = meshes.add(quads(&all));
-        material.links = buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
-        links.room = room;
+    for (half, mut links, mut mesh, material, mut visibility) in &mut halves {
+        links.drawn.clear();
+        if let Some(world) = shown.half(*half) {
+            links.draw(world, &settings);
+        }
+        if links.drawn.is_empty() {
+            visibility.set_if_neq(Visibility::Hidden);
+            continue;
+        }
+        visibility.set_if_neq(Visibility::Inherited);
+        let room = links.drawn.len().next_power_of_two();
+        links.drawn.resize(room, Link::zeroed());
+        let bytes: &[u8] = bytemuck::cast_slice(&links.drawn);
+        let handle = materials.get(&material.0).map(|m| m.links.clone());
+        if room == links.room
+            && let Some(mut buffer) = handle.and_then(|handle| buffers.get_mut(&handle))
+        {
+            buffer.data = Some(bytes.to_vec());
+        } else if let Some(mut material) = materials.get_mut(&material.0) {
+            let all: Vec<u32> = (0..room as u32).collect();
+            mesh.0 = meshes.add(quads(&all));
+            let buffer = ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD);
+            material.links = buffers.add(buffer);
+            links.room = room;
+        }
     }
 }
 
+/// What the bars that are asked for mean, the same in all `worlds`.
+fn scales(worlds: &[&World], settings: &ViewSettings) -> LinkScales {
+    let before = &settings.link_scales;
+    let mut scales = LinkScales::default();
+    let Some(radius) = worlds.first().map(|world| mean_radius(world)) else {
+        return scales;
+    };
+    if settings.show_forces {
+        let contacts = worlds.iter().flat_map(|world| &world.contacts);
+        let force = |contact: &Contact| contact.force.length();
+        scales.force = Some(steady(reference(contacts.map(force)), before.force));
+        scales.thickness = 2.0 * FORCE_RADIUS * radius;
+    }
+    if settings.show_bridges {
+        scales.liquid = worlds.iter().any(|world| world.wetting().is_some());
+    }
+    if settings.show_velocities {
+        let velocities = worlds.iter().flat_map(|world| &world.grains.velocity);
+        let speed = |v: &DVec3| v.length();
+        scales.speed = Some(steady(reference(velocities.map(speed)), before.speed));
+        scales.length = ARROW_LENGTH * radius;
+    }
+    scales
+}
+
 impl Links {
-    /// Makes the bars; says what they mean.
-    fn draw(&mut self, world: &World, settings: &ViewSettings) -> LinkScales {
+    /// Makes the bars of `world`, as large as the scales say.
+    fn draw(&mut self, world: &World, settings: &ViewSettings) {
         let cut = CutPlanes::of(settings.cut);
-        let before = &settings.link_scales;
-        let mut scales = LinkScales::default();
         let radius = mean_radius(world);
-        if settings.show_forces {
-            let force = |contact: &Contact| contact.force.length();
-            let reference = steady(reference(world.contacts.iter().map(force)), before.force);
-            scales.force = Some(reference);
-            scales.thickness = 2.0 * FORCE_RADIUS * radius;
+        if let Some(reference) = settings.link_scales.force {
             for contact in &world.contacts {
                 self.force(world, contact, reference, radius);
             }
         }
         if settings.show_bridges {
-            scales.liquid = world.wetting().is_some();
             for contact in &world.contacts {
                 self.bridge(world, contact);
             }
         }
-        if settings.show_velocities {
-            let speed = |v: &DVec3| v.length();
-            let speeds = world.grains.velocity.iter().map(speed);
-            let reference = steady(reference(speeds), before.speed);
-            scales.speed = Some(reference);
-            scales.length = ARROW_LENGTH * radius;
+        if let Some(reference) = settings.link_scales.speed {
             self.arrows(world, reference, radius);
         }
         self.drawn.retain(|link| {
             let middle = 0.5 * (Vec3::from(link.from) + Vec3::from(link.to));
             !cut.take_away(middle)
         });
-        scales
     }
 
     fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], colour: [f32; 3]) {

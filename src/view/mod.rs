@@ -20,7 +20,7 @@
 //! | `container` | drum, box and planes as one-sided panes |
 //! | `links` | force chains, liquid bridges, velocity arrows |
 //! | `pick` | which grain a point of the picture shows |
-//! | `trail` | the way of the selected grain |
+//! | `trail` | the ways of chosen grains |
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `rig` | Bevy's camera entity that follows it |
 //! | `overlay` | scale bar, clock, legend in the picture |
@@ -48,7 +48,8 @@ pub(crate) use colour::round_up;
 pub use colour::species_colour;
 pub use film::{FILM_RATE, Film, FilmKind};
 pub use grains::GrainBuffer;
-pub use overlay::{Caption, ScaleBar, overlay, viewport_ui};
+use overlay::parts;
+pub use overlay::{Caption, ScaleBar, trail_colour, viewport_ui};
 pub use png::{save_part, save_png};
 pub use polyhedra::Meshing;
 pub use rig::WorldCamera;
@@ -56,11 +57,13 @@ pub use settings::{
     Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, LinkScales,
     ProjectionKind, SAVED_VIEWS, Side, ViewSettings,
 };
+pub use trail::Trail;
 
-use crate::simulation::Simulation;
+use crate::simulation::{Half, Simulation};
 use crate::world::World;
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::CameraUpdateSystems;
+use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
 use bevy_egui::EguiPostUpdateSet;
 use std::sync::Arc;
@@ -121,36 +124,62 @@ impl Plugin for ViewPlugin {
     }
 }
 
-/// The world in the picture.
+/// The world in the picture, or the two worlds in its halves.
 #[derive(Resource, Default)]
 pub struct Shown {
-    world: Option<Arc<World>>,
+    halves: [Option<Arc<World>>; 2],
 }
 
 impl Shown {
-    /// Shows this world from now on.
+    /// Shows this world from now on, alone.
     pub fn show(&mut self, world: Option<Arc<World>>) {
-        self.world = world;
+        self.halves = [world, None];
     }
 
-    /// The world in the picture.
+    /// Shows these two from now on, side by side.
+    pub fn show_twins(&mut self, left: Arc<World>, right: Arc<World>) {
+        self.halves = [Some(left), Some(right)];
+    }
+
+    /// The world in the picture; of two the left one.
     pub fn world(&self) -> Option<&World> {
-        self.world.as_deref()
+        self.half(Half::Left)
+    }
+
+    /// The world in this half of the picture.
+    pub fn half(&self, half: Half) -> Option<&World> {
+        self.halves[half.index()].as_deref()
+    }
+
+    /// All worlds in the picture.
+    pub fn worlds(&self) -> impl Iterator<Item = &World> {
+        self.halves.iter().flatten().map(AsRef::as_ref)
+    }
+
+    /// Whether two worlds are shown.
+    pub fn is_pair(&self) -> bool {
+        self.halves[Half::Right.index()].is_some()
     }
 }
 
-/// Shows the newest state that the simulation has published. Two states are never at the same address while one of them
-/// is shown.
+/// What the camera of this half of the picture sees.
+fn layers(half: Half) -> RenderLayers {
+    RenderLayers::layer(half.index())
+}
+
+/// Shows the newest states that the simulation and its twin have published. Two states are never at the same address while
+/// one of them is shown.
 fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<Shown>) {
     let Some(simulation) = simulation else { return };
-    let newest = simulation.world();
-    let same = match (newest, &shown.world) {
+    let right = simulation.twin().and_then(|twin| twin.run().world());
+    let newest = [simulation.world(), right];
+    let is_shown = |half: Half| match (newest[half.index()], &shown.halves[half.index()]) {
         (Some(newest), Some(shown)) => Arc::ptr_eq(newest, shown),
         (None, None) => true,
         _ => false,
     };
-    if !same {
-        shown.show(newest.cloned());
+    if !Half::ALL.into_iter().all(is_shown) {
+        shown.halves = newest.map(Option::<&Arc<World>>::cloned);
     }
 }
 

@@ -9,62 +9,128 @@ use super::container::ring_distance;
 use super::links::{LIQUID, PULL, PUSH, VELOCITY};
 use super::pick::pick;
 use super::{Axis, ColourMap, Legend, OrbitCamera, ViewSettings};
+use crate::simulation::Half;
 use crate::world::{self, World};
 use bevy::color::{Color, ColorToPacked};
 use bevy::math::{Vec2, Vec3};
 use bevy_egui::egui::{
-    Align2, Color32, CornerRadius, FontId, Id, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke,
-    StrokeKind, Ui, pos2, vec2,
+    Align2, Color32, CornerRadius, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape,
+    Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 /// Distance of everything from the edge of the picture, in points.
 const INSET: f32 = 18.0;
 /// sRGB colour of what is selected.
 const SELECTED: [u8; 3] = [0xFF, 0xE0, 0x66];
+/// sRGB colours of trails, light ones: they lie over grains of every colour.
+const TRAILS: [[u8; 3]; 6] = [
+    SELECTED,
+    [0x7F, 0xD8, 0xFF],
+    [0xFF, 0x9A, 0xD5],
+    [0xA6, 0xE8, 0x8C],
+    [0xFF, 0xFF, 0xFF],
+    [0xFF, 0xA8, 0x5C],
+];
 /// Length that the scale bar does not exceed, in points.
 const LONGEST_BAR: f32 = 180.0;
 
-/// What the overlay says beside what the settings know.
-#[derive(Clone, Copy, Debug)]
+/// What the overlay of one half of the picture, or of all of it, says beside what the settings know.
+#[derive(Clone, Debug)]
 pub struct Caption<'a> {
     /// The world shown.
     pub world: Option<&'a World>,
     /// Simulated seconds per second on the wall, while running.
     pub real_time_factor: Option<f64>,
+    /// What tells this half from the other.
+    pub title: Option<String>,
+}
+
+/// Where something is written: which half of the picture, and whether it has the left or the right edge of all of it.
+#[derive(Clone, Copy)]
+struct Part {
+    half: Half,
+    is_first: bool,
+    is_last: bool,
+}
+
+/// Room between two halves, in points.
+const BETWEEN: f32 = 2.0;
+
+/// `rect` in `count` equal parts, from left to right.
+pub(super) fn parts(rect: Rect, count: usize) -> impl Iterator<Item = Rect> {
+    let width = ((rect.width() + BETWEEN) / count as f32 - BETWEEN).max(0.0);
+    (0..count).map(move |i| {
+        let left = rect.left() + i as f32 * (width + BETWEEN);
+        Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()))
+    })
 }
 
 /// The free part of the window: call it after all panels with what they left. The pointer moves the camera there, the
-/// picture is fitted into it, and the overlay is drawn.
+/// picture is fitted into it, and the overlay is drawn; twice, side by side, where there are two `captions`.
 pub fn viewport_ui(
     ui: &mut Ui,
-    caption: Caption,
+    captions: &[Caption],
     settings: &mut ViewSettings,
     camera: &mut OrbitCamera,
 ) {
-    let rect = ui.available_rect_before_wrap();
-    settings.free_rect = Some(rect);
+    let free = ui.available_rect_before_wrap();
+    settings.free_rect = Some(free);
     settings.pixels_per_point = ui.ctx().pixels_per_point();
-    let response = ui.interact(rect, Id::new("picture"), Sense::click_and_drag());
-    apply_response(&response, camera);
-    if let (Some(world), Some(at)) = (caption.world, response.interact_pointer_pos())
-        && response.clicked()
-    {
-        let at = at - rect.min;
-        let picked = pick(world, camera, settings, Vec2::new(at.x, at.y));
-        if picked != settings.selected {
-            (settings.selected, settings.beside) = (picked, None);
+    let halves = Half::ALL.into_iter().zip(captions);
+    for (rect, (half, caption)) in parts(free, captions.len()).zip(halves) {
+        let response = ui.interact(rect, Id::new(("picture", half)), Sense::click_and_drag());
+        response.widget_info(|| {
+            let title = caption
+                .title
+                .as_ref()
+                .map_or_else(String::new, |title| format!(": {title}"));
+            WidgetInfo::labeled(WidgetType::Image, true, format!("Picture{title}"))
+        });
+        apply_response(&response, camera);
+        click(&response, half, caption, settings, camera);
+        if settings.show_overlay {
+            let part = Part {
+                half,
+                is_first: half == Half::Left,
+                is_last: half.index() + 1 == captions.len(),
+            };
+            overlay(&ui.painter_at(rect), rect, caption, part, settings, camera);
         }
-    }
-    if settings.show_overlay {
-        overlay(&ui.painter_at(rect), rect, caption, settings, camera);
     }
 }
 
-/// Draws the overlay into `rect`.
-pub fn overlay(
+/// Puts the grain that is clicked on under the microscope; with Shift, traces it.
+fn click(
+    response: &Response,
+    half: Half,
+    caption: &Caption,
+    settings: &mut ViewSettings,
+    camera: &OrbitCamera,
+) {
+    let (Some(world), Some(at)) = (caption.world, response.interact_pointer_pos()) else {
+        return;
+    };
+    if !response.clicked() {
+        return;
+    }
+    settings.focus = half;
+    let at = at - response.rect.min;
+    let picked = pick(world, camera, settings, Vec2::new(at.x, at.y));
+    if response.ctx.input(|input| input.modifiers.shift) {
+        if let Some(grain) = picked {
+            settings.trace(grain);
+        }
+    } else if picked != settings.selected {
+        (settings.selected, settings.beside) = (picked, None);
+    }
+}
+
+/// Draws the overlay of one `part` into `rect`.
+fn overlay(
     painter: &Painter,
     rect: Rect,
-    caption: Caption,
+    caption: &Caption,
+    part: Part,
     settings: &ViewSettings,
     camera: &OrbitCamera,
 ) {
@@ -75,38 +141,64 @@ pub fn overlay(
         faint: rgb(scheme.faint_text),
         veil: rgb(srgb(scheme.background)).gamma_multiply(0.75),
     };
-    let inner = rect.shrink(INSET);
+    let mut inner = rect.shrink(INSET);
+    if let Some(title) = &caption.title {
+        let is_described = part.half == settings.focus;
+        inner.min.y = heading(&ink, rect, title, is_described).bottom() + 10.0;
+        if !part.is_last {
+            let edge = rect.x_range().max + 0.5 * BETWEEN;
+            let stroke = Stroke::new(BETWEEN, ink.faint);
+            painter
+                .with_clip_rect(rect.expand(BETWEEN))
+                .vline(edge, rect.y_range(), stroke);
+        }
+    }
     if let Some(world) = caption.world {
         if let world::Shape::Column { radius, .. } = world.container.shape
             && settings.show_container
         {
             ring_labels(&ink, rect, camera, world, radius);
         }
-        clock(
-            &ink,
-            inner.left_top(),
-            world.time(),
-            caption.real_time_factor,
-        );
-        trail(&ink, rect, camera, settings);
+        if part.is_first {
+            let at = inner.left_top();
+            clock(&ink, at, world.time(), caption.real_time_factor);
+        }
+        trails(&ink, rect, camera, part.half, settings);
         selection(&ink, rect, camera, world, settings);
-        if settings.legend.is_none() && world.species.len() > 1 {
+        if part.is_last && settings.legend.is_none() && world.species.len() > 1 {
             species(&ink, inner.right_bottom(), world);
         }
     }
-    scale_bar(&ink, inner.left_bottom(), camera.metres_per_point());
-    links(
-        &ink,
-        inner.left_bottom() - vec2(0.0, 40.0),
-        camera,
-        settings,
-    );
-    if settings.show_axes {
+    if part.is_first {
+        let corner = inner.left_bottom();
+        scale_bar(&ink, corner, camera.metres_per_point());
+        links(&ink, corner - vec2(0.0, 40.0), camera, settings);
+    }
+    if part.is_last && settings.show_axes {
         axes(&ink, inner.right_top() + vec2(-44.0, 44.0), camera);
     }
-    if let Some(legend) = &settings.legend {
+    if let Some(legend) = settings.legend.as_ref().filter(|_| part.is_last) {
         colour_bar(&ink, inner.right_bottom(), legend, settings.colour_map);
     }
+}
+
+/// What tells a half from the other, above it; framed where the panels describe it. Returns where it stands.
+fn heading(ink: &Ink, rect: Rect, title: &str, is_described: bool) -> Rect {
+    let font = FontId::proportional(16.0);
+    let room = (rect.width() - 24.0).max(1.0);
+    let text = (ink.painter).layout(title.to_owned(), font, ink.text, room);
+    let middle = pos2(rect.center().x, rect.top() + 10.0 + 0.5 * text.size().y);
+    let place = Rect::from_center_size(middle, text.size());
+    let ground = place.expand2(vec2(8.0, 3.0));
+    ink.painter
+        .rect_filled(ground, CornerRadius::same(5), ink.veil);
+    if is_described {
+        let stroke = Stroke::new(1.5, ink.text);
+        ink.painter
+            .rect_stroke(ground, CornerRadius::same(5), stroke, StrokeKind::Inside);
+    }
+    ink.painter.galley(place.min, text, ink.text);
+    ground
 }
 
 struct Ink<'a> {
@@ -239,30 +331,46 @@ fn selection(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, setting
         ink.painter
             .circle_stroke(at, radius, Stroke::new(width, rgb(SELECTED)));
         if named {
-            let text_at = at - vec2(0.0, radius + 4.0);
-            let shadow = text_at + vec2(1.0, 1.0);
             let text = format!("grain {grain}");
-            for (at, colour) in [(shadow, Color32::BLACK), (text_at, rgb(SELECTED))] {
-                ink.write(at, Align2::CENTER_BOTTOM, &text, 13.0, colour);
-            }
+            outlined(ink, at - vec2(0.0, radius + 4.0), &text, rgb(SELECTED));
         }
     }
 }
 
-/// Where the selected grain has been.
-fn trail(ink: &Ink, rect: Rect, camera: &OrbitCamera, settings: &ViewSettings) {
-    if !settings.show_trail {
-        return;
+/// Where the traced grains have been in this `half`, with their numbers.
+fn trails(ink: &Ink, rect: Rect, camera: &OrbitCamera, half: Half, settings: &ViewSettings) {
+    for trail in settings.trails.iter().filter(|trail| trail.half == half) {
+        let index = settings
+            .traced
+            .iter()
+            .position(|grain| *grain == trail.grain);
+        let colour = rgb(trail_colour(index.unwrap_or(0)));
+        let points = trail.places.iter().filter_map(|(_, x)| {
+            let (place, _) = camera.project(*x)?;
+            Some(rect.min + vec2(place.x, place.y))
+        });
+        let points: Vec<Pos2> = points.collect();
+        let Some(head) = points.last().copied() else {
+            continue;
+        };
+        ink.painter
+            .add(Shape::line(points, Stroke::new(2.0, colour)));
+        if settings.selected != Some(trail.grain) {
+            outlined(ink, head - vec2(0.0, 6.0), &trail.grain.to_string(), colour);
+        }
     }
-    let points = settings.trail.iter().filter_map(|(_, x)| {
-        let (place, _) = camera.project(*x)?;
-        Some(rect.min + vec2(place.x, place.y))
-    });
-    let points: Vec<Pos2> = points.collect();
-    if points.len() > 1 {
-        let stroke = Stroke::new(2.0, rgb(SELECTED).gamma_multiply(0.8));
-        ink.painter.add(Shape::line(points, stroke));
+}
+
+/// Text over its `at` that stands out from any grain: dark beside light.
+fn outlined(ink: &Ink, at: Pos2, text: &str, colour: Color32) {
+    for (at, colour) in [(at + vec2(1.0, 1.0), Color32::BLACK), (at, colour)] {
+        ink.write(at, Align2::CENTER_BOTTOM, text, 13.0, colour);
     }
+}
+
+/// The sRGB colour of the trail of this index.
+pub fn trail_colour(index: usize) -> [u8; 3] {
+    TRAILS[index % TRAILS.len()]
 }
 
 /// The directions of the axes.
@@ -441,6 +549,16 @@ fn short_number(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halves_are_equal_and_fill_the_picture() {
+        let free = Rect::from_min_max(pos2(300.0, 40.0), pos2(1002.0, 700.0));
+        let halves: Vec<Rect> = parts(free, 2).collect();
+        assert_eq!(halves[0].size(), halves[1].size());
+        assert_eq!((halves[0].left(), halves[1].right()), (300.0, 1002.0));
+        assert_eq!(halves[1].left() - halves[0].right(), BETWEEN);
+        assert_eq!(parts(free, 1).collect::<Vec<_>>(), [free]);
+    }
 
     #[test]
     fn scale_bar_is_round_and_as_long_as_it_says() {

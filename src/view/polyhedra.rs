@@ -3,11 +3,12 @@
 //! In: the buffer of grains and the shapes of those that are no spheres. Out: meshes of some thousand grains each, made
 //! once for a scene, some a frame, so that no frame waits for all of them. A corner holds its place in the body frame and
 //! the grain's index; the shader finds where the body is in the buffer. Where something is cut away the shader meets each
-//! body's section with the planes of its faces.
+//! body's section with the planes of its faces. Twins have the same shapes, so both halves of a picture share the meshes.
 
 use super::facets::Facets;
 use super::grains::{CutPlanes, Forms, GrainBuffer, polyhedron};
-use super::{Shown, ViewSettings};
+use super::{Shown, ViewSettings, layers};
+use crate::simulation::Half;
 use crate::world::{Polyhedra, Polyhedron};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
@@ -130,7 +131,7 @@ struct PlaneRange {
     count: u32,
 }
 
-/// One of the meshes.
+/// One of the meshes in one half of the picture.
 #[derive(Component)]
 struct Chunk;
 
@@ -145,7 +146,8 @@ pub struct Meshing {
     next: usize,
     planes: Vec<Vec4>,
     bodies: Vec<PlaneRange>,
-    material: Handle<PolyhedronMaterial>,
+    /// One for each half of the picture.
+    materials: [Handle<PolyhedronMaterial>; 2],
 }
 
 impl Meshing {
@@ -204,11 +206,15 @@ fn start_over(
         meshing.forms = forms;
         if world.polyhedra.is_some() {
             meshing.count = world.grains.len();
-            meshing.material = materials.add(PolyhedronMaterial {
-                grains: grains.handle.clone(),
-                cut: CutPlanes::default(),
-                planes: buffers.add(buffer(&[Vec4::ZERO])),
-                bodies: buffers.add(buffer(&[PlaneRange::zeroed()])),
+            let planes = buffers.add(buffer(&[Vec4::ZERO]));
+            let bodies = buffers.add(buffer(&[PlaneRange::zeroed()]));
+            meshing.materials = Half::ALL.map(|half| {
+                materials.add(PolyhedronMaterial {
+                    grains: grains.handle(half).clone(),
+                    cut: CutPlanes::default(),
+                    planes: planes.clone(),
+                    bodies: bodies.clone(),
+                })
             });
         }
     }
@@ -239,24 +245,31 @@ fn mesh_some(
     let began = Instant::now();
     while !meshing.is_whole() && began.elapsed() < PATIENCE {
         if let Some(mesh) = meshing.next_chunk(polyhedra) {
-            commands.spawn((
-                Chunk,
-                Mesh3d(meshes.add(mesh)),
-                MeshMaterial3d(meshing.material.clone()),
-                NoFrustumCulling,
-            ));
+            let mesh = meshes.add(mesh);
+            commands.spawn_batch(Half::ALL.map(|half| {
+                (
+                    Chunk,
+                    layers(half),
+                    Mesh3d(mesh.clone()),
+                    MeshMaterial3d(meshing.materials[half.index()].clone()),
+                    NoFrustumCulling,
+                )
+            }));
         }
     }
-    if meshing.is_whole()
-        && !meshing.planes.is_empty()
-        && let Some(mut material) = materials.get_mut(&meshing.material)
-    {
-        material.planes = buffers.add(buffer(&std::mem::take(&mut meshing.planes)));
-        material.bodies = buffers.add(buffer(&std::mem::take(&mut meshing.bodies)));
+    if meshing.is_whole() && !meshing.planes.is_empty() {
+        let planes = buffers.add(buffer(&std::mem::take(&mut meshing.planes)));
+        let bodies = buffers.add(buffer(&std::mem::take(&mut meshing.bodies)));
+        for material in &meshing.materials {
+            if let Some(mut material) = materials.get_mut(material) {
+                material.planes = planes.clone();
+                material.bodies = bodies.clone();
+            }
+        }
     }
 }
 
-/// Draws from the present buffer, cut as asked.
+/// Draws from the present buffers, cut as asked.
 fn update(
     settings: Res<ViewSettings>,
     grains: Res<GrainBuffer>,
@@ -264,11 +277,15 @@ fn update(
     mut materials: ResMut<Assets<PolyhedronMaterial>>,
 ) {
     let cut = CutPlanes::of(settings.cut);
-    if let Some(mut material) = materials.get_mut(&meshing.material)
-        && (material.cut != cut || material.grains != grains.handle)
-    {
-        material.cut = cut;
-        material.grains = grains.handle.clone();
+    for half in Half::ALL {
+        let (material, own) = (&meshing.materials[half.index()], grains.handle(half));
+        let stale = |material: &PolyhedronMaterial| material.cut != cut || material.grains != *own;
+        if materials.get(material).is_some_and(stale)
+            && let Some(mut material) = materials.get_mut(material)
+        {
+            material.cut = cut;
+            material.grains = own.clone();
+        }
     }
 }
 

@@ -1,8 +1,9 @@
-//! Bevy's camera entity, which follows [`OrbitCamera`] and fills the free part of the window.
+//! Bevy's camera entities, which follow [`OrbitCamera`] and fill the free part of the window: one, or one for each half.
 
 use super::camera::HOME;
 use super::colour::Scheme;
-use super::{OrbitCamera, ProjectionKind, Shown, ViewSettings, container};
+use super::{OrbitCamera, ProjectionKind, Shown, ViewSettings, container, layers, parts};
+use crate::simulation::Half;
 use crate::world::Shape;
 use bevy::camera::{ClearColorConfig, ScalingMode, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
@@ -11,24 +12,33 @@ use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy_egui::egui;
 
-/// Marks the camera that shows the world.
+/// Marks the cameras that show the worlds.
 #[derive(Component)]
 pub struct WorldCamera;
 
 pub(super) fn spawn(mut commands: Commands, settings: Res<ViewSettings>) {
-    commands.spawn((
-        WorldCamera,
-        Camera3d::default(),
-        Camera::default(),
-        Tonemapping::None,
-        DebandDither::Disabled,
-        ClusterConfig::Single,
-        if settings.smooth_edges {
-            Msaa::Sample4
-        } else {
-            Msaa::Off
-        },
-    ));
+    for half in Half::ALL {
+        commands.spawn((
+            WorldCamera,
+            half,
+            layers(half),
+            Camera3d::default(),
+            Camera {
+                // The left one clears the picture for both.
+                order: half.index().cast_signed(),
+                is_active: half == Half::Left,
+                ..default()
+            },
+            Tonemapping::None,
+            DebandDither::Disabled,
+            ClusterConfig::Single,
+            if settings.smooth_edges {
+                Msaa::Sample4
+            } else {
+                Msaa::Off
+            },
+        ));
+    }
 }
 
 /// What the picture was last fitted to.
@@ -82,24 +92,47 @@ fn home(shape: Shape) -> (f32, f32) {
     }
 }
 
-/// Moves Bevy's camera to where [`OrbitCamera`] is.
+/// Moves Bevy's cameras to where [`OrbitCamera`] is, each with its part of the picture.
 pub(super) fn follow(
     settings: Res<ViewSettings>,
+    shown: Res<Shown>,
     mut orbit: ResMut<OrbitCamera>,
-    mut camera: Single<(&mut Camera, &mut Transform, &mut Projection), With<WorldCamera>>,
+    mut cameras: Query<(&Half, &mut Camera, &mut Transform, &mut Projection), With<WorldCamera>>,
 ) {
-    let (camera, transform, projection) = &mut *camera;
-    camera.clear_color = ClearColorConfig::Custom(Scheme::of(settings.background).background);
-    if let Some(target) = camera.physical_target_size() {
-        let viewport = viewport(settings.free_rect, settings.pixels_per_point, target);
-        let shape = viewport.as_ref().map_or(target, |v| v.physical_size);
-        if settings.free_rect.is_none() {
-            orbit.viewport = shape.as_vec2();
+    let count = if shown.is_pair() { 2 } else { 1 };
+    let draws = (cameras.iter()).any(|(half, camera, ..)| *half == Half::Left && camera.is_active);
+    for (half, mut camera, mut transform, mut projection) in &mut cameras {
+        if *half == Half::Left {
+            let background = Scheme::of(settings.background).background;
+            camera.clear_color = ClearColorConfig::Custom(background);
+        } else {
+            camera.clear_color = ClearColorConfig::None;
+            camera.is_active = draws && shown.is_pair();
         }
-        camera.viewport = viewport;
+        if let Some(target) = camera.physical_target_size() {
+            let whole = egui::Rect::from_min_size(egui::Pos2::ZERO, points(target, &settings));
+            let free = settings.free_rect.or(shown.is_pair().then_some(whole));
+            let part = free.and_then(|free| parts(free, count).nth(half.index()));
+            let viewport = viewport(part, settings.pixels_per_point, target);
+            let shape = viewport.as_ref().map_or(target, |v| v.physical_size);
+            if settings.free_rect.is_none() && *half == Half::Left {
+                orbit.viewport = shape.as_vec2();
+            }
+            camera.viewport = viewport;
+        }
+        *transform = Transform::from_translation(orbit.eye()).with_rotation(orbit.rotation());
+        *projection = seen_by(&orbit);
     }
-    **transform = Transform::from_translation(orbit.eye()).with_rotation(orbit.rotation());
-    **projection = match orbit.projection {
+}
+
+/// The size of a target in egui points.
+fn points(target: UVec2, settings: &ViewSettings) -> egui::Vec2 {
+    let size = target.as_vec2() / settings.pixels_per_point;
+    egui::vec2(size.x, size.y)
+}
+
+fn seen_by(orbit: &OrbitCamera) -> Projection {
+    match orbit.projection {
         ProjectionKind::Perspective => Projection::Perspective(PerspectiveProjection {
             fov: orbit.field_of_view(),
             near: 0.02 * orbit.distance(),
@@ -114,7 +147,7 @@ pub(super) fn follow(
             },
             ..OrthographicProjection::default_3d()
         }),
-    };
+    }
 }
 
 /// The pixels of the free rectangle, kept inside a target of `size` pixels; `None` for all of it.

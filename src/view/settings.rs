@@ -2,6 +2,8 @@
 //!
 //! In: choices made in panels. Out: plain data that the view reads every frame. Nothing here draws.
 
+use super::Trail;
+use crate::simulation::Half;
 use bevy::prelude::Resource;
 use bevy_egui::egui;
 
@@ -29,8 +31,10 @@ pub struct ViewSettings {
     pub selected: Option<usize>,
     /// The grain beside it whose contact with it is looked at.
     pub beside: Option<usize>,
-    /// Whether the way of the selected grain is drawn.
-    pub show_trail: bool,
+    /// The grains whose ways are drawn, by their numbers.
+    pub traced: Vec<usize>,
+    /// The half of the picture that the panels describe, where there are two.
+    pub focus: Half,
     /// Whether the directions of the axes are drawn.
     pub show_axes: bool,
     /// Whether the container is drawn.
@@ -55,8 +59,8 @@ pub struct ViewSettings {
     pub legend: Option<Legend>,
     /// Out: what thickness and length of bars and arrows mean.
     pub link_scales: LinkScales,
-    /// Out: where the selected grain has been: times [s] and places [m], in order of time.
-    pub trail: Vec<(f64, bevy::math::Vec3)>,
+    /// Out: where the traced grains have been.
+    pub trails: Vec<Trail>,
 }
 
 impl Default for ViewSettings {
@@ -72,7 +76,8 @@ impl Default for ViewSettings {
             show_velocities: false,
             selected: None,
             beside: None,
-            show_trail: false,
+            traced: Vec::new(),
+            focus: Half::Left,
             show_axes: false,
             show_container: true,
             container_opacity: 0.5,
@@ -85,7 +90,17 @@ impl Default for ViewSettings {
             smooth_edges: true,
             legend: None,
             link_scales: LinkScales::default(),
-            trail: Vec::new(),
+            trails: Vec::new(),
+        }
+    }
+}
+
+impl ViewSettings {
+    /// Begins or ends to draw the way of `grain`.
+    pub fn trace(&mut self, grain: usize) {
+        match self.traced.iter().position(|traced| *traced == grain) {
+            Some(index) => drop(self.traced.remove(index)),
+            None => self.traced.push(grain),
         }
     }
 }

@@ -4,7 +4,8 @@
 //! finds the grain in the buffer and raymarches it.
 
 use super::grains::{CutPlanes, Forms, GrainBuffer, polyhedron};
-use super::{Shown, ViewSettings};
+use super::{Shown, ViewSettings, layers};
+use crate::simulation::Half;
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};
@@ -76,7 +77,7 @@ impl Material for SphereMaterial {
     }
 }
 
-/// The entity that draws all spheres.
+/// The entity that draws all spheres of one half of the picture.
 #[derive(Component)]
 struct Spheres {
     /// What its mesh was made of.
@@ -91,27 +92,32 @@ fn spawn(
     mut materials: ResMut<Assets<SphereMaterial>>,
     grains: Res<GrainBuffer>,
 ) {
-    commands.spawn((
-        Spheres {
-            forms: Forms::default(),
-            any: false,
-        },
-        Mesh3d(meshes.add(quads(&[0]))),
-        MeshMaterial3d(materials.add(SphereMaterial {
-            grains: grains.handle.clone(),
-            cut: CutPlanes::default(),
-        })),
-        Visibility::Hidden,
-        NoFrustumCulling,
-    ));
+    for half in Half::ALL {
+        commands.spawn((
+            half,
+            layers(half),
+            Spheres {
+                forms: Forms::default(),
+                any: false,
+            },
+            Mesh3d(meshes.add(quads(&[0]))),
+            MeshMaterial3d(materials.add(SphereMaterial {
+                grains: grains.handle(half).clone(),
+                cut: CutPlanes::default(),
+            })),
+            Visibility::Hidden,
+            NoFrustumCulling,
+        ));
+    }
 }
 
-/// Draws the spheres of the world shown, from the present buffer and cut as asked.
+/// Draws the spheres of the worlds shown, from the present buffers and cut as asked.
 fn update(
     shown: Res<Shown>,
     settings: Res<ViewSettings>,
     grains: Res<GrainBuffer>,
-    drawn: Single<(
+    mut halves: Query<(
+        &Half,
         &mut Spheres,
         &mut Mesh3d,
         &MeshMaterial3d<SphereMaterial>,
@@ -120,33 +126,36 @@ fn update(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<SphereMaterial>>,
 ) {
-    let (mut drawn, mut mesh, material, mut visibility) = drawn.into_inner();
-    if let Some(world) = shown.world()
-        && shown.is_changed()
-        && drawn.forms.renew(world)
-    {
-        let polyhedra = world.polyhedra.as_deref();
-        let is_sphere = |i: &u32| polyhedron(polyhedra, *i as usize).is_none();
-        let spheres: Vec<u32> = (0..world.grains.len() as u32).filter(is_sphere).collect();
-        drawn.any = !spheres.is_empty();
-        // A mesh cannot be empty.
-        if drawn.any {
-            mesh.0 = meshes.add(quads(&spheres));
-        }
-    }
-    visibility.set_if_neq(if drawn.any && shown.world().is_some() {
-        Visibility::Inherited
-    } else {
-        Visibility::Hidden
-    });
     let cut = CutPlanes::of(settings.cut);
-    if materials
-        .get(&material.0)
-        .is_some_and(|material| material.cut != cut || material.grains != grains.handle)
-        && let Some(mut material) = materials.get_mut(&material.0)
-    {
-        material.cut = cut;
-        material.grains = grains.handle.clone();
+    for (half, mut drawn, mut mesh, material, mut visibility) in &mut halves {
+        let world = shown.half(*half);
+        if let Some(world) = world
+            && shown.is_changed()
+            && drawn.forms.renew(world)
+        {
+            let polyhedra = world.polyhedra.as_deref();
+            let is_sphere = |i: &u32| polyhedron(polyhedra, *i as usize).is_none();
+            let spheres: Vec<u32> = (0..world.grains.len() as u32).filter(is_sphere).collect();
+            drawn.any = !spheres.is_empty();
+            // A mesh cannot be empty.
+            if drawn.any {
+                mesh.0 = meshes.add(quads(&spheres));
+            }
+        }
+        visibility.set_if_neq(if drawn.any && world.is_some() {
+            Visibility::Inherited
+        } else {
+            Visibility::Hidden
+        });
+        let own = grains.handle(*half);
+        if materials
+            .get(&material.0)
+            .is_some_and(|material| material.cut != cut || material.grains != *own)
+            && let Some(mut material) = materials.get_mut(&material.0)
+        {
+            material.cut = cut;
+            material.grains = own.clone();
+        }
     }
 }
 

@@ -1,40 +1,70 @@
-//! The way of the selected grain through the picture.
+//! The ways of chosen grains through the picture.
 //!
-//! In: the world shown, which grain is selected. Out: its places in order of time, in the view's settings.
+//! In: the worlds shown, which grains are traced. Out: their places in order of time, in the view's settings.
 
 use super::{Shown, ViewSettings};
+use crate::simulation::Half;
 use bevy::prelude::*;
+use std::collections::VecDeque;
 
 /// Places kept: at sixty a second, a minute.
 const LONGEST: usize = 3600;
 
-/// Adds the place of the selected grain. Places after the moment shown are forgotten: the run may take another way.
-pub(super) fn follow(
-    shown: Res<Shown>,
-    mut settings: ResMut<ViewSettings>,
-    mut last: Local<Option<usize>>,
-) {
-    let selected = settings.selected.filter(|_| settings.show_trail);
-    let another = *last != selected;
-    let moved = shown.is_changed() && selected.is_some();
-    if !another && !moved {
-        return;
+/// The way of a grain in one half of the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trail {
+    /// Which grain.
+    pub grain: usize,
+    /// In which half.
+    pub half: Half,
+    /// Times [s] and places [m], in order of time.
+    pub places: VecDeque<(f64, Vec3)>,
+}
+
+impl Trail {
+    /// Adds where the grain is at `time` [s]. Places after that are forgotten: the run may take another way.
+    fn add(&mut self, time: f64, place: Vec3) {
+        let kept = self.places.partition_point(|(then, _)| *then < time);
+        self.places.truncate(kept);
+        if self.places.len() >= LONGEST {
+            self.places.pop_front();
+        }
+        self.places.push_back((time, place));
     }
-    *last = selected;
-    if another {
-        settings.trail.clear();
-    }
-    let (Some(world), Some(grain)) = (shown.world(), selected) else {
-        return;
+}
+
+/// Adds the places of the grains that are traced.
+pub(super) fn follow(shown: Res<Shown>, mut settings: ResMut<ViewSettings>) {
+    let is_traced = |trail: &Trail, traced: &[usize]| {
+        shown.half(trail.half).is_some() && traced.contains(&trail.grain)
     };
-    let Some(place) = world.grains.position.get(grain) else {
-        settings.trail.clear();
+    let wanted = shown.worlds().count() * settings.traced.len();
+    let are_there = settings.trails.len() == wanted
+        && (settings.trails.iter()).all(|trail| is_traced(trail, &settings.traced));
+    if are_there && (wanted == 0 || !shown.is_changed()) {
         return;
-    };
-    let time = world.time();
-    settings.trail.retain(|(then, _)| *then < time);
-    if settings.trail.len() >= LONGEST {
-        settings.trail.remove(0);
     }
-    settings.trail.push((time, place.as_vec3()));
+    let ViewSettings { traced, trails, .. } = &mut *settings;
+    trails.retain(|trail| is_traced(trail, traced));
+    for (half, grain) in Half::ALL
+        .into_iter()
+        .flat_map(|half| traced.iter().map(move |i| (half, *i)))
+    {
+        let Some(world) = shown.half(half) else {
+            continue;
+        };
+        let Some(place) = world.grains.position.get(grain) else {
+            continue;
+        };
+        let own = (trails.iter()).position(|trail| (trail.half, trail.grain) == (half, grain));
+        let own = own.unwrap_or_else(|| {
+            trails.push(Trail {
+                grain,
+                half,
+                places: VecDeque::new(),
+            });
+            trails.len() - 1
+        });
+        trails[own].add(world.time(), place.as_vec3());
+    }
 }

@@ -3,8 +3,8 @@
 //! In: a [`PictureJob`] and the simulation. Out: the file and an [`Outcome`].
 
 use super::picture::{Canvas, WARM_UP, screenshot};
-use super::{PictureJob, WindowError};
-use crate::simulation::{Provenance, Simulation, Status};
+use super::{Comparison, PictureJob, WindowError};
+use crate::simulation::{Half, Provenance, Simulation, Status};
 use crate::view::{GrainBuffer, Meshing, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
@@ -65,7 +65,7 @@ pub(super) fn carry_out(
     mut commission: ResMut<Commission>,
     mut simulation: ResMut<Simulation>,
     canvas: Option<Res<Canvas>>,
-    (meshing, grains): (Res<Meshing>, Res<GrainBuffer>),
+    (meshing, grains, comparison): (Res<Meshing>, Res<GrainBuffer>, Res<Comparison>),
     mut cameras: Query<&mut Camera>,
     mut exit: MessageWriter<AppExit>,
     mut commands: Commands,
@@ -87,14 +87,25 @@ pub(super) fn carry_out(
         }
         _ => {}
     }
+    if let Some(reason) = &comparison.refused {
+        exit.write(
+            commission
+                .outcome
+                .fail(WindowError::Picture(reason.clone())),
+        );
+    }
     commission.stage = match commission.stage {
+        Stage::Preparing if comparison.wanted.is_some() => Stage::Preparing,
         Stage::Preparing => {
             let step = (simulation.world()).map(|world| world.clock.step_at(commission.picture.at));
             simulation.hold_at(step.or(Some(0)));
             step.map_or(Stage::Preparing, Stage::Running)
         }
         Stage::Running(step) => {
-            let reached = (simulation.world()).is_some_and(|world| world.clock.step >= step);
+            let has_come = |run: &Simulation| run.world().is_some_and(|w| w.clock.step >= step);
+            let reached = Half::ALL
+                .into_iter()
+                .all(|half| has_come(simulation.half(half)));
             if reached {
                 Stage::Drawing(WARM_UP)
             } else {
@@ -103,8 +114,7 @@ pub(super) fn carry_out(
         }
         Stage::Drawing(_) if !(meshing.is_whole() && grains.is_whole()) => Stage::Drawing(WARM_UP),
         Stage::Drawing(0) => {
-            let world = simulation.world();
-            let from = world.map(|world| Provenance::of(simulation.scene(), world));
+            let from = simulation.provenance();
             take(&commission, from, canvas.as_deref(), &mut commands);
             Stage::Taking
         }

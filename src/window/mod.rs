@@ -9,7 +9,7 @@ pub mod picture;
 mod recording;
 
 use crate::scene::Scene;
-use crate::simulation::{Options, Session, Simulation, SimulationPlugin};
+use crate::simulation::{Options, Parameter, Session, Simulation, SimulationPlugin};
 use crate::ui::{Desk, Memory, UiPlugin};
 use crate::view::{ViewPlugin, ViewSettings};
 use bevy::app::ScheduleRunnerPlugin;
@@ -42,6 +42,8 @@ pub struct Job {
     pub opened: Opened,
     /// How it is run.
     pub options: Options,
+    /// A live parameter and its value [SI unit] in a second run beside the first.
+    pub compared: Option<(Parameter, f64)>,
     /// A picture to take before the program ends by itself; without one a person ends it.
     pub picture: Option<PictureJob>,
 }
@@ -190,12 +192,42 @@ fn build(mut job: Job, software: bool, outcome: Outcome) -> App {
         Opened::Session(_) => desk.session_opened(&job.name),
     }
     desk.is_hidden = job.picture.as_ref().is_some_and(|picture| picture.plain);
-    app.insert_resource(job.opened.run(job.options));
+    app.insert_resource(job.opened.run(job.options))
+        .insert_resource(Comparison {
+            wanted: job.compared,
+            refused: None,
+        })
+        .add_systems(Update, begin_comparison);
     if let Some(picture) = job.picture {
         app.insert_resource(Commission::new(picture, outcome))
-            .add_systems(Update, commission::carry_out);
+            .add_systems(Update, commission::carry_out.after(begin_comparison));
     }
     app
+}
+
+/// A second run that the window opens with.
+#[derive(Resource)]
+struct Comparison {
+    wanted: Option<(Parameter, f64)>,
+    /// Why there is none.
+    refused: Option<String>,
+}
+
+/// Begins the second run as soon as the first one stands.
+fn begin_comparison(
+    mut comparison: ResMut<Comparison>,
+    simulation: Option<ResMut<Simulation>>,
+    mut desk: ResMut<Desk>,
+) {
+    let Some(mut simulation) = simulation.filter(|simulation| simulation.can_start_twin()) else {
+        return;
+    };
+    if let Some((parameter, value)) = comparison.bypass_change_detection().wanted.take()
+        && let Err(reason) = simulation.start_twin(&parameter, value)
+    {
+        desk.notify(reason.as_str());
+        comparison.refused = Some(reason);
+    }
 }
 
 fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGroup {
@@ -255,7 +287,8 @@ fn spawn_panel_camera(mut commands: Commands) {
         RenderLayers::none(),
         Msaa::Off,
         Camera {
-            order: 1,
+            // After those of both halves of the picture.
+            order: 2,
             output_mode: CameraOutputMode::Write {
                 blend_state: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 clear_color: ClearColorConfig::None,

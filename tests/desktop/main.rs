@@ -5,5 +5,6 @@ mod polyhedra;
 mod recording;
 mod session;
 mod timeline;
+mod twin;
 mod view;
 mod window;

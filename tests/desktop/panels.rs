@@ -4,7 +4,7 @@ use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use grainfall::measure::Avalanche;
+use grainfall::measure::{Avalanche, Measure, Sample, Series};
 use grainfall::scene::{LIQUID_CASES, PAPER_VOLUME, Scene};
 use grainfall::simulation::{
     BedStore, Command, DisplayUnit, DriverKind, Options, Parameter, ParameterInfo, Simulation,
@@ -109,6 +109,10 @@ impl Window {
             );
         harness.run_steps(4);
         harness
+    }
+
+    pub fn show_panel(&mut self, title: &str) {
+        self.desk.show_panel(title);
     }
 }
 
@@ -617,7 +621,7 @@ fn while_the_bed_is_prepared_there_is_progress_and_nothing_to_play() {
         stage: "settling".into(),
         progress: 0.43,
     };
-    let harness = Harness::new_ui(move |ui| status_ui(ui, &status, 1e-5, &mut Vec::new()));
+    let harness = Harness::new_ui(move |ui| status_ui(ui, &status, 1e-5, true, &mut Vec::new()));
     let bar = harness.get_by_role_and_label(Role::ProgressIndicator, "Preparing the bed");
     assert_eq!(numeric_value(&bar), Some(f64::from(0.43_f32)));
 }
@@ -636,7 +640,7 @@ fn a_fault_says_what_happened_and_what_to_do() {
         kind: FaultKind::NotFinite("velocity"),
     });
     let mut harness = Harness::new_ui_state(
-        move |ui, asked: &mut Vec<Request>| status_ui(ui, &status, 2e-5, asked),
+        move |ui, asked: &mut Vec<Request>| status_ui(ui, &status, 2e-5, true, asked),
         Vec::new(),
     );
     harness.get_by_label_contains("grain 17 at t = 1.250000 s");
@@ -814,20 +818,18 @@ fn view_settings_change_what_they_name() {
 
 /// Ten thousand samples of a sawtooth, with its avalanches.
 struct Sawtooth {
-    time: Vec<f64>,
-    angle: Vec<f64>,
-    temperature: Vec<f64>,
+    series: Series,
     avalanches: Vec<Avalanche>,
 }
 
 impl Sawtooth {
     fn new() -> Self {
-        let time: Vec<f64> = (0..10_000).map(|i| f64::from(i) * 0.02).collect();
-        let angle = time.iter().map(|t| 0.4 + 0.05 * (t % 1.0)).collect();
-        let temperature = time
-            .iter()
-            .map(|t| if t % 1.0 < 0.1 { 1e-5 } else { 1e-10 })
-            .collect();
+        let mut series = Series::default();
+        for i in 0..10_000 {
+            let time = f64::from(i) * 0.02;
+            let temperature = if time % 1.0 < 0.1 { 1e-5 } else { 1e-10 };
+            series.push(sample(time, 0.4 + 0.05 * (time % 1.0), temperature));
+        }
         let avalanche = |i: u32| Avalanche {
             start: f64::from(i),
             end: f64::from(i) + 0.1,
@@ -835,23 +837,32 @@ impl Sawtooth {
             theta_r: 0.40,
         };
         Self {
-            time,
-            angle,
-            temperature,
+            series,
             avalanches: (0..200).map(avalanche).collect(),
         }
     }
 
     fn curves(&self) -> Curves<'_> {
         Curves {
-            time: &self.time,
-            angle: &self.angle,
-            temperature: &self.temperature,
+            series: &self.series,
+            twin: None,
             avalanches: &self.avalanches,
             changes: &[3.0, 3.01, 190.0],
             kept: &[],
             shown: None,
         }
+    }
+}
+
+/// A sample at `time` [s] of a surface of this `angle` [rad].
+pub fn sample(time: f64, angle: f64, temperature: f64) -> Sample {
+    let mut values = [f64::NAN; Measure::COUNT];
+    values[Measure::SurfaceAngle as usize] = angle;
+    values[Measure::GranularTemperature as usize] = temperature;
+    Sample {
+        step: (time * 1e5).round() as u64,
+        time,
+        values,
     }
 }
 
@@ -877,16 +888,18 @@ fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
 #[test]
 fn plots_without_samples_draw_nothing_and_do_not_fail() {
     let mut plots = Plots::default();
-    let empty = Curves {
-        time: &[],
-        angle: &[],
-        temperature: &[],
-        avalanches: &[],
-        changes: &[],
-        kept: &[],
-        shown: None,
-    };
-    let mut harness = Harness::new_ui(move |ui| assert_eq!(plots.curves_ui(ui, &empty), None));
+    let series = Series::default();
+    let mut harness = Harness::new_ui(move |ui| {
+        let empty = Curves {
+            series: &series,
+            twin: None,
+            avalanches: &[],
+            changes: &[],
+            kept: &[],
+            shown: None,
+        };
+        assert_eq!(plots.curves_ui(ui, &empty), None);
+    });
     harness.run_steps(3);
     harness.get_by_label("Surface angle θ [°]");
 }
@@ -1038,8 +1051,9 @@ fn a_click_on_the_picture_picks_the_grain_under_it() {
             let caption = Caption {
                 world: Some(&world),
                 real_time_factor: None,
+                title: None,
             };
-            viewport_ui(ui, caption, settings, camera);
+            viewport_ui(ui, &[caption], settings, camera);
         },
         (ViewSettings::default(), camera),
     );

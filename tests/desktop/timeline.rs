@@ -1,11 +1,11 @@
 //! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and without a GPU.
 
-use crate::panels::{Window, commands, friction, prepared, ready, set};
+use crate::panels::{Window, commands, friction, prepared, ready, sample, set};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use grainfall::measure::{Avalanche, Measure, Sample};
+use grainfall::measure::{Avalanche, Measure, Sample, Series};
 use grainfall::scene::TimeStep;
 use grainfall::simulation::{BedStore, Command, DriverKind, Options, Record, Simulation, Status};
 use grainfall::ui::{Curves, Level, Plots, Request, checks};
@@ -110,7 +110,7 @@ fn undo_and_redo_are_there_when_they_mean_something() {
 fn changes_are_listed_with_time_and_values_and_lead_to_their_moments() {
     let mut harness = Window::of(changed());
     harness
-        .get_by_label_contains("friction glass – glass 0.4000 → 0.2500")
+        .get_by_label_contains("friction glass – glass 0.4 → 0.25")
         .click();
     assert_eq!(asked(&mut harness), [Command::Seek(1000)]);
     harness.get_by_label("Save the list…").click();
@@ -134,8 +134,10 @@ fn runs_that_were_left_can_be_taken_up_and_forgotten() {
 
 #[test]
 fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
-    let time: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 0.02).collect();
-    let angle = vec![0.4; time.len()];
+    let mut series = Series::default();
+    for i in 0..=1000 {
+        series.push(sample(f64::from(i) * 0.02, 0.4, 0.4));
+    }
     let avalanche = Avalanche {
         start: 10.0,
         end: 10.5,
@@ -153,15 +155,14 @@ fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
             values: [0.3; Measure::COUNT],
         });
     }
-    let kept = [Arc::new(left)];
-    let (time, angle, kept) = (&time, &angle, &kept);
+    let kept = [("Run 1".to_owned(), Arc::new(left))];
+    let (series, kept) = (&series, &kept);
     let mut plots = Plots::default();
     let mut harness = Harness::builder().with_size([600.0, 500.0]).build_ui_state(
         move |ui, clicked: &mut Vec<f64>| {
             let curves = Curves {
-                time,
-                angle,
-                temperature: angle,
+                series,
+                twin: None,
                 avalanches: std::slice::from_ref(&avalanche),
                 changes: &[],
                 kept,

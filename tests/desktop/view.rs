@@ -97,6 +97,11 @@ pub fn photograph(
         .resource_mut::<Shown>()
         .show(Some(Arc::new(world)));
     make_ready(&mut app);
+    photographed(&mut app, name)
+}
+
+/// The picture that `app` shows now.
+pub fn photographed(app: &mut App, name: &str) -> Photograph {
     for _ in 0..WARM_UP {
         app.update();
     }

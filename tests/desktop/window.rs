@@ -18,6 +18,7 @@ fn job(path: &Path) -> Job {
         name: "bouncing-grain".to_owned(),
         opened: Scene::open("bouncing-grain").unwrap().into(),
         options: Options::window(),
+        compared: None,
         picture: Some(PictureJob {
             path: path.to_owned(),
             at: 0.05,

@@ -1,0 +1,279 @@
+//! Two runs side by side: the panel by its accessible labels, and both halves of the picture in the app as a whole.
+
+use crate::panels::{Window, friction, prepared, sample, set};
+use crate::timeline::carried_out;
+use crate::view::{Photograph, SIZE, photographed, studio};
+use bevy::math::{Vec2, Vec3};
+use bevy::prelude::*;
+use bevy_egui::egui::accesskit::Role;
+use bevy_egui::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use grainfall::measure::Series;
+use grainfall::scene::Scene;
+use grainfall::simulation::{
+    BedStore, Command, DriverKind, Half, Options, Parameter, Simulation, SimulationPlugin, Status,
+};
+use grainfall::ui::{Curves, Desk, DeskPlugin, Plots, Request, Requests};
+use grainfall::view::{ColourBy, OrbitCamera, ViewPlugin, ViewSettings};
+use grainfall::window::picture::{CanvasPlugin, make_ready, offscreen_plugins};
+use std::time::Duration;
+
+/// Three grains that fell, twice: with a friction of 0.4 on the left and of 0.9 on the right.
+fn pair() -> Simulation {
+    let mut simulation = prepared();
+    simulation.start_twin(&friction(), 0.9).unwrap();
+    while simulation
+        .twin()
+        .is_some_and(|twin| twin.run().world().is_none())
+    {
+        simulation.tick(Duration::from_millis(16));
+    }
+    carried_out(&mut simulation, Command::Step(2000));
+    simulation
+}
+
+fn open_panel(harness: &mut Harness<'_, Window>) {
+    harness.get_by_label("Compare two values").click();
+    harness.run_steps(6);
+}
+
+fn asked(harness: &mut Harness<'_, Window>) -> Vec<Request> {
+    harness.run_steps(2);
+    std::mem::take(&mut harness.state_mut().asked)
+}
+
+fn type_into(harness: &mut Harness<'_, Window>, label: &str, text: &str) {
+    harness
+        .get_by_role_and_label(Role::SpinButton, label)
+        .click();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.event(egui::Event::Text(text.to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+}
+
+#[test]
+fn two_values_are_chosen_by_name_or_number_and_started() {
+    let mut harness = Window::of(prepared());
+    open_panel(&mut harness);
+    harness.get_by_label("Left: 0.4, the present value");
+    // The farthest named value stands there already.
+    harness.get_by_label("Start side by side").click();
+    assert_eq!(asked(&mut harness), [Request::StartTwin(friction(), 0.8)]);
+    type_into(&mut harness, "value on the right", "0.4");
+    harness.get_by_label("Start side by side").click();
+    assert!(asked(&mut harness).is_empty(), "both values are the same");
+    type_into(&mut harness, "value on the right", "0.85");
+    harness.get_by_label("Start side by side").click();
+    assert_eq!(asked(&mut harness), [Request::StartTwin(friction(), 0.85)]);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Parameter to compare")
+        .click();
+    harness.run_steps(3);
+    harness.get_by_label("Gravity").click();
+    harness.run_steps(3);
+    harness.get_by_label("Left: 9.81 m/s², the present value");
+}
+
+#[test]
+fn a_key_leads_to_the_panel() {
+    let mut harness = Window::of(prepared());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::T);
+    assert_eq!(asked(&mut harness), [Request::Compare]);
+    harness.state_mut().show_panel("Compare two values");
+    harness.run_steps(8);
+    harness.get_by_label("Start side by side");
+}
+
+#[test]
+fn each_half_has_its_own_row_and_the_comparison_its_ends() {
+    let mut harness = Window::of(pair());
+    type_into(&mut harness, "friction glass – glass, right", "0.7");
+    assert_eq!(asked(&mut harness), [Request::TwinValue(0.7)]);
+    type_into(&mut harness, "friction glass – glass, left", "0.2");
+    assert_eq!(
+        asked(&mut harness),
+        [Request::Command(set(friction(), 0.2))]
+    );
+    open_panel(&mut harness);
+    harness.get_by_label("Left: friction glass – glass 0.4");
+    harness.get_by_label("Right: friction glass – glass 0.9");
+    harness.get_by_label("End it, keep the left run").click();
+    assert_eq!(asked(&mut harness), [Request::EndTwin(Half::Left)]);
+    harness.get_by_label("End it, keep the right run").click();
+    assert_eq!(asked(&mut harness), [Request::EndTwin(Half::Right)]);
+}
+
+#[test]
+fn what_belongs_to_one_run_cannot_be_pressed() {
+    let mut simulation = prepared();
+    carried_out(&mut simulation, Command::Step(100));
+    carried_out(&mut simulation, set(friction(), 0.3));
+    simulation.start_twin(&friction(), 0.9).unwrap();
+    while simulation
+        .twin()
+        .is_some_and(|twin| twin.run().world().is_none())
+    {
+        simulation.tick(Duration::from_millis(16));
+    }
+    assert!(simulation.past().undo.is_some());
+    let mut harness = Window::of(simulation);
+    assert!(harness.get_by_label("Undo").accesskit_node().is_disabled());
+    harness.get_by_label("Play").click();
+    assert_eq!(asked(&mut harness), [Request::Command(Command::Play)]);
+}
+
+#[test]
+fn both_curves_are_on_each_plot_and_the_newest_of_both_beside_its_name() {
+    let [mut left, mut right] = [(); 2].map(|()| Series::default());
+    for i in 0..500 {
+        let time = 0.02 * f64::from(i);
+        left.push(sample(time, 0.5, 1e-6));
+        right.push(sample(time, 0.3, 1e-8));
+    }
+    let mut plots = Plots::default();
+    let mut harness = Harness::builder()
+        .with_size([500.0, 500.0])
+        .build_ui(move |ui| {
+            let curves = Curves {
+                series: &left,
+                twin: Some(&right),
+                avalanches: &[],
+                changes: &[],
+                kept: &[],
+                shown: None,
+            };
+            plots.curves_ui(ui, &curves);
+        });
+    harness.run_steps(3);
+    for newest in ["28.65", "17.19", "1.00·10⁻⁶", "1.00·10⁻⁸"] {
+        assert!(
+            harness.query_by_label_contains(newest).is_some(),
+            "{newest}"
+        );
+    }
+    // Heights of 28.65° and of 17.19° both lie in the plot: each has a line of its own in it.
+    let dashes = harness.output().shapes.iter().filter(|clipped| {
+        matches!(clipped.shape, egui::Shape::LineSegment { stroke, .. } if stroke.width == 2.0)
+    });
+    assert!(dashes.count() > 20, "the right one is dashed");
+}
+
+/// The app of a grain that falls, drawn without a window; requests go in as panels make them.
+fn laboratory() -> App {
+    let options = Options {
+        driver: DriverKind::Thread,
+        threads: 2,
+        autoplay: false,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    let mut app = App::new();
+    app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
+        .add_plugins((
+            CanvasPlugin(SIZE),
+            SimulationPlugin,
+            ViewPlugin,
+            DeskPlugin {
+                options: options.clone(),
+            },
+        ));
+    let scene = Scene::open("bouncing-grain").unwrap();
+    app.insert_resource(Simulation::open(scene, options));
+    let mut camera = OrbitCamera::default();
+    (camera.yaw, camera.pitch, camera.height) = (0.0, 0.0, 0.1);
+    (camera.focus, camera.fits) = (Vec3::new(0.0, 0.04, 0.0), false);
+    app.insert_resource(camera);
+    app.world_mut()
+        .resource_mut::<ViewSettings>()
+        .show_container = false;
+    make_ready(&mut app);
+    while *simulation(&app).status() != Status::Paused {
+        app.update();
+    }
+    app
+}
+
+fn simulation(app: &App) -> &Simulation {
+    app.world().resource::<Simulation>()
+}
+
+fn ask(app: &mut App, request: Request, done: impl Fn(&Simulation) -> bool) {
+    app.world_mut().resource_mut::<Requests>().ask(request);
+    for _ in 0..20_000 {
+        app.update();
+        let simulation = simulation(app);
+        if done(simulation) && simulation.has_answered() && *simulation.status() == Status::Paused {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    panic!("still {:?}", simulation(app).status());
+}
+
+/// Where the grain of this half lands in the whole picture.
+fn place(app: &App, photograph: &Photograph, half: Half) -> Vec2 {
+    let world = simulation(app).half(half).world().unwrap();
+    let centre = world.grains.position[0].as_vec3();
+    let (place, _) = photograph.camera.project(centre).unwrap();
+    // The halves are two pixels apart.
+    let offset = 0.5 * (SIZE.x as f32 + 2.0) * half.index() as f32;
+    place + Vec2::new(offset, 0.0)
+}
+
+#[test]
+fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends() {
+    let name = "each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends";
+    let Some(_studio) = studio(name) else {
+        return;
+    };
+    let mut app = laboratory();
+    app.world_mut().resource_mut::<ViewSettings>().colour_by = ColourBy::Speed;
+    let has_twin = |s: &Simulation| s.twin().is_some_and(|twin| twin.run().world().is_some());
+    ask(
+        &mut app,
+        Request::StartTwin(Parameter::Gravity, 0.0),
+        has_twin,
+    );
+    let start = photographed(&mut app, "twin-start");
+    let [left, right] = Half::ALL.map(|half| place(&app, &start, half));
+    assert_eq!(left.y, right.y, "they start at the same place");
+    assert!(start.covered(left) && start.covered(right));
+
+    // It falls by g t²/2 = 12 mm, four radii; the other one has no weight.
+    let fall = simulation(&app).world().unwrap().clock.step_at(0.05);
+    ask(&mut app, Request::Command(Command::Step(fall)), |s| {
+        s.step() == fall
+    });
+    let fallen = photographed(&mut app, "twin-fallen");
+    let [left, right] = Half::ALL.map(|half| place(&app, &fallen, half));
+    assert!(left.y > right.y + 40.0, "{left} {right}");
+    let across = |at: Vec2, of: Vec2| Vec2::new(at.x, of.y);
+    assert!(fallen.covered(left) && !fallen.covered(across(left, right)));
+    assert!(fallen.covered(right) && !fallen.covered(across(right, left)));
+    // One range for both: the fast one is yellow at its upper end, the other one violet at its lower.
+    let legend = app
+        .world()
+        .resource::<ViewSettings>()
+        .legend
+        .clone()
+        .unwrap();
+    assert!((0.49..=1.0).contains(&legend.max), "{legend:?}");
+    let [fast, still] = [fallen.at(left), fallen.at(right)];
+    assert!(fast[1] > still[1] + 60, "{fast:?} {still:?}");
+
+    let state = simulation(&app).half(Half::Right).world().unwrap().hash();
+    ask(&mut app, Request::EndTwin(Half::Right), |s| {
+        s.twin().is_none() && s.world().is_some_and(|world| world.hash() == state)
+    });
+    assert_eq!(simulation(&app).value(&Parameter::Gravity), 0.0);
+    let alone = photographed(&mut app, "twin-ended");
+    let centre = simulation(&app).world().unwrap().grains.position[0].as_vec3();
+    let (middle, _) = alone.camera.project(centre).unwrap();
+    assert!(alone.covered(middle) && (middle.x - 0.5 * SIZE.x as f32).abs() < 1.0);
+    assert!(!alone.covered(left) && !alone.covered(right));
+    assert!(app.world().resource::<Desk>().open_error().is_none());
+}
