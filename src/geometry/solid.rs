@@ -32,7 +32,7 @@ pub struct Solid {
     pub vertices: Vec<DVec3>,
     /// Its faces: each a loop of corners, anticlockwise seen from outside.
     pub faces: Vec<Vec<u16>>,
-    /// Extent of the box it was cut from [m].
+    /// Largest extent of its corners, or of those of the box that it was cut from [m].
     size: f64,
 }
 
@@ -65,6 +65,16 @@ pub enum Flaw {
 }
 
 impl Solid {
+    /// The solid with these corners [m] and faces, each a loop of corners, anticlockwise seen from outside.
+    pub fn new(vertices: Vec<DVec3>, faces: Vec<Vec<u16>>) -> Self {
+        let (min, max) = bounds(&vertices);
+        Self {
+            vertices,
+            faces,
+            size: (max - min).max_element(),
+        }
+    }
+
     /// The box between two corners.
     pub fn cuboid(min: DVec3, max: DVec3) -> Self {
         let corner = |i: usize| {

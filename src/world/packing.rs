@@ -16,8 +16,8 @@ use rayon::prelude::*;
 
 /// Random stream of the cells that are taken away.
 const REMOVED: u64 = 4;
-/// Cells of a slice of work, some ten milliseconds.
-const SLICE: usize = 256;
+/// Slices of work that the cells are made in, each some ten milliseconds to a second long.
+const SLICES: usize = 16;
 /// A cell whose point is farther than this from a column's or a drum's wall lies wholly outside, in diagonals of a lattice
 /// cell.
 const MARGIN: f64 = 1.0;
@@ -88,9 +88,10 @@ impl Packing {
 
     /// Makes the next few cells and says whether all are made.
     pub fn advance(&mut self) -> bool {
-        let end = (self.next + SLICE).min(self.sites.len());
-        let slice = &self.sites[self.next..end];
-        let made = slice.par_iter().filter_map(|&site| self.grain(site));
+        let slice = self.sites.len().div_ceil(SLICES);
+        let end = (self.next + slice).min(self.sites.len());
+        let cells = self.tessellation.cells(&self.sites[self.next..end]);
+        let made = cells.into_par_iter().filter_map(|cell| self.grain(cell));
         let made: Vec<Rounded> = made.collect();
         self.made.extend(made);
         self.next = end;
@@ -122,11 +123,11 @@ impl Packing {
         self.made
     }
 
-    /// The grain that the cell at `site` is, if its centroid lies in the region.
+    /// The grain that `cell` is, if its centroid lies in the region.
     ///
     /// A cell too thin to be rounded by the whole radius is rounded by half of it, or half of that.
-    fn grain(&self, site: usize) -> Option<Rounded> {
-        let cell = self.region.keep(self.tessellation.cell(site))?;
+    fn grain(&self, cell: Solid) -> Option<Rounded> {
+        let cell = self.region.keep(cell)?;
         let mut rounding = self.cells.rounding;
         while rounding > 1e-3 * self.cells.rounding {
             if let Ok(grain) = Polyhedron::rounded(&cell, rounding) {

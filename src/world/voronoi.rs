@@ -2,12 +2,13 @@
 //!
 //! In: a box, the wanted size of a lattice cell and a seed. Out: the Voronoi cell of each point as a [`Solid`]; together
 //! they fill the box. A point is uniformly distributed in its lattice cell, as in the program of Man et al. 2023; so no
-//! place is farther from the nearest point than a lattice cell is wide from corner to corner, which bounds both a cell and
-//! the neighbours that can cut it.
+//! place is farther from the nearest point than a lattice cell is wide from corner to corner. The cells themselves are
+//! those of `meshless_voronoi`, which treats degenerate cases exactly.
 
 use super::mixture::random;
-use crate::geometry::{HalfSpace, Solid};
+use crate::geometry::Solid;
 use glam::DVec3;
+use meshless_voronoi::{Dimensionality, VoronoiIntegrator};
 use rand::RngExt;
 
 /// Random stream of the points.
@@ -22,12 +23,11 @@ pub enum Boundary {
     Periodic,
 }
 
-/// A box filled with Voronoi cells, each computed when it is asked for.
+/// A box filled with Voronoi cells, computed when they are asked for.
 #[derive(Clone, Debug)]
 pub struct Tessellation {
     min: DVec3,
     max: DVec3,
-    counts: [i64; 3],
     lattice_cell: DVec3,
     boundary: Boundary,
     points: Vec<DVec3>,
@@ -48,7 +48,6 @@ impl Tessellation {
         Self {
             min,
             max,
-            counts,
             lattice_cell,
             boundary,
             points,
@@ -75,72 +74,36 @@ impl Tessellation {
         self.lattice_cell.length()
     }
 
-    /// The cell at `index`: all places of the box that are nearer to its point than to any other.
-    pub fn cell(&self, index: usize) -> Solid {
-        let centre = self.points[index];
-        let reach = DVec3::splat(self.largest_distance());
-        let (low, high) = match self.boundary {
-            Boundary::Walls => (
-                (self.min - centre).max(-reach),
-                (self.max - centre).min(reach),
-            ),
-            Boundary::Periodic => (-reach, reach),
-        };
-        let mut cell = Solid::cuboid(low, high);
-        let mut farthest = farthest_corner(&cell);
-        let site = self.site(index);
-        let narrow = self.lattice_cell.min_element();
-        for ring in 0.. {
-            for offset in self.ring(site, centre, ring) {
-                let distance = offset.length();
-                if 0.5 * distance < farthest && distance > 0.0 {
-                    cell.clip(HalfSpace {
-                        normal: offset / distance,
-                        offset: 0.5 * distance,
-                    });
-                    farthest = farthest_corner(&cell);
-                }
-            }
-            // Points of the next ring are at least this many lattice cells away.
-            if 0.5 * ring as f64 * narrow >= farthest {
-                break;
-            }
+    /// The cells of the points at `indices`, which ascend: all places of the box that are nearer to the one point than to
+    /// any other. Cells of a box that repeats itself reach out of it.
+    pub fn cells(&self, indices: &[usize]) -> Vec<Solid> {
+        let mut wanted = vec![false; self.len()];
+        for index in indices {
+            wanted[*index] = true;
         }
-        cell.moved(centre)
-    }
-
-    fn site(&self, index: usize) -> [i64; 3] {
-        let [x, _, z] = self.counts;
-        let index = i64::from(index as u32);
-        [index / z % x, index / (x * z), index % z]
-    }
-
-    /// Where the points of the lattice cells `ring` cells away from `site` are, seen from `centre`, the nearest first.
-    fn ring(&self, site: [i64; 3], centre: DVec3, ring: i64) -> Vec<DVec3> {
-        let mut offsets: Vec<DVec3> = shell(ring)
-            .filter_map(|step| self.neighbour([0, 1, 2].map(|axis| site[axis] + step[axis])))
-            .map(|point| point - centre)
-            .collect();
-        offsets.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
-        offsets
-    }
-
-    /// The point of the lattice cell at `site`; outside of the box that of its image, or none.
-    fn neighbour(&self, site: [i64; 3]) -> Option<DVec3> {
-        let mut home = site;
-        let mut shift = DVec3::ZERO;
-        for axis in 0..3 {
-            let count = self.counts[axis];
-            home[axis] = site[axis].rem_euclid(count);
-            let turns = site[axis].div_euclid(count);
-            if turns != 0 && self.boundary == Boundary::Walls {
-                return None;
-            }
-            shift[axis] = turns as f64 * (self.max - self.min)[axis];
-        }
-        let [x, y, z] = home;
-        let index = (y * self.counts[0] + x) * self.counts[2] + z;
-        Some(self.points[index as usize] + shift)
+        let points: Vec<_> = (self.points.iter()).map(|x| x.to_array().into()).collect();
+        let cells = VoronoiIntegrator::build(
+            &points,
+            Some(&wanted),
+            self.min.to_array().into(),
+            (self.max - self.min).to_array().into(),
+            Dimensionality::ThreeD,
+            self.boundary == Boundary::Periodic,
+        );
+        let cells = cells.with_faces();
+        let solids = cells.cells_iter().map(|cell| {
+            let corner = |v: &usize| *v as u16;
+            // There loops run clockwise seen from outside.
+            let face = |face| cell.face_vertices(face).iter().rev().map(corner).collect();
+            let vertices = cell.vertices.iter();
+            Solid::new(
+                vertices
+                    .map(|vertex| vertex.loc.to_array().into())
+                    .collect(),
+                (0..cell.face_count()).map(face).collect(),
+            )
+        });
+        solids.collect()
     }
 }
 
@@ -149,17 +112,4 @@ pub fn lattice_counts(extent: DVec3, size: f64) -> [i64; 3] {
     extent
         .to_array()
         .map(|length| ((length / size).round() as i64).max(1))
-}
-
-/// Steps to the lattice cells that are `ring` cells away along at least one axis and no farther along any.
-fn shell(ring: i64) -> impl Iterator<Item = [i64; 3]> {
-    let steps = move || -ring..=ring;
-    steps()
-        .flat_map(move |y| steps().flat_map(move |x| steps().map(move |z| [x, y, z])))
-        .filter(move |step| step.iter().any(|i| i.abs() == ring))
-}
-
-fn farthest_corner(cell: &Solid) -> f64 {
-    let squares = cell.vertices.iter().map(|x| x.length_squared());
-    squares.fold(0.0, f64::max).sqrt()
 }

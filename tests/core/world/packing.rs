@@ -91,8 +91,8 @@ fn neighbours_touch_along_their_faces_and_do_not_overlap() {
     let tessellation =
         Tessellation::new(DVec3::ZERO, DVec3::splat(0.012), 2e-3, Boundary::Walls, 4);
     let rounding = 2e-4;
-    let bodies: Vec<(Solid, Solid)> = (0..tessellation.len())
-        .map(|index| tessellation.cell(index))
+    let all: Vec<usize> = (0..tessellation.len()).collect();
+    let bodies: Vec<(Solid, Solid)> = (tessellation.cells(&all).into_iter())
         .map(|cell| (cell.eroded(rounding).unwrap(), cell))
         .collect();
     let (mut touching, mut faces) = (0, 0);
@@ -241,7 +241,7 @@ fn a_packing_is_the_same_everywhere() {
     let world = world_of(&Scene::open("small-column").unwrap());
     let bytes = postcard::to_stdvec(&(&world.grains, &world.polyhedra)).unwrap();
     let hash = blake3::hash(&bytes).to_hex();
-    assert_eq!(&hash[..16], "4cb114b6a248b8b2");
+    assert_eq!(&hash[..16], "2deca73b30a07135");
 }
 
 #[test]

@@ -8,9 +8,12 @@ fn cells(counts: [u32; 3], boundary: Boundary, seed: u64) -> Vec<Solid> {
     let max = DVec3::from_array(counts.map(f64::from)) * 2e-3;
     let tessellation = Tessellation::new(DVec3::ZERO, max, 2e-3, boundary, seed);
     assert_eq!(tessellation.len(), counts.iter().product::<u32>() as usize);
-    (0..tessellation.len())
-        .map(|index| tessellation.cell(index))
-        .collect()
+    all_cells(&tessellation)
+}
+
+fn all_cells(tessellation: &Tessellation) -> Vec<Solid> {
+    let all: Vec<usize> = (0..tessellation.len()).collect();
+    tessellation.cells(&all)
 }
 
 fn mean(cells: &[Solid], count: impl Fn(&Solid) -> usize) -> f64 {
@@ -37,10 +40,29 @@ fn cells_fill_the_box() {
 }
 
 #[test]
+fn some_of_the_cells_are_those_of_all() {
+    let tessellation = Tessellation::new(DVec3::ZERO, DVec3::splat(0.6), 0.1, Boundary::Walls, 8);
+    let all = all_cells(&tessellation);
+    let some = [0, 3, 77, 78, 215];
+    let expected: Vec<Solid> = some.iter().map(|index| all[*index].clone()).collect();
+    assert_eq!(tessellation.cells(&some), expected);
+    assert!(tessellation.cells(&[]).is_empty());
+}
+
+#[test]
+fn a_box_of_few_cells_is_filled_too() {
+    for counts in [[1, 1, 1], [1, 2, 1], [3, 1, 1]] {
+        let cells = cells(counts, Boundary::Walls, 1);
+        let filled: f64 = cells.iter().map(|cell| cell.moments().volume).sum();
+        let whole = 8e-9 * f64::from(counts.iter().product::<u32>());
+        assert!((filled / whole - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
 fn a_cell_holds_its_point_and_none_is_as_near() {
     let tessellation = Tessellation::new(DVec3::ZERO, DVec3::splat(0.6), 0.1, Boundary::Walls, 8);
-    for index in 0..tessellation.len() {
-        let cell = tessellation.cell(index);
+    for (index, cell) in all_cells(&tessellation).into_iter().enumerate() {
         let distance = |x: DVec3, point: usize| tessellation.point(point).distance(x);
         for &corner in &cell.vertices {
             let nearest = (0..tessellation.len())
