@@ -9,29 +9,22 @@ struct Look {
     surface: vec4<f32>,
     line: vec4<f32>,
     mark: vec4<f32>,
-    // What `uv` means and which lines are drawn: see the constants.
-    pattern: u32,
-    // Distance at which a grid has faded away, in cells; zero for never.
+    // Distance at which a grid has faded away, in cells.
     fade: f32,
     // Radius of the circle that is marked on a floor, in cells.
     circle: f32,
-    unused: f32,
+    unused: vec2<f32>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> look: Look;
 
-// uv: nothing.
-const PLAIN: u32 = 0u;
-// uv: place on the unit disc.
-const PLATE: u32 = 1u;
-// uv: turns round the axis, place along it from back (0) to front (1).
-const RIM: u32 = 2u;
-// uv: place in cells.
-const GRID: u32 = 3u;
-// uv: turns round the axis, place from the inside (0) to the outside (1).
-const HOOP: u32 = 4u;
-// uv: place in cells, from the axis.
-const RINGS: u32 = 5u;
+// The pattern is a definition, not a number in `Look`: some drivers compile a shader anew whenever a number that decides a
+// branch is handed over. What `uv` means under each:
+// PLATE: place on the unit disc.
+// RIM: turns round the axis, place along it from back (0) to front (1).
+// GRID: place in cells.
+// HOOP: turns round the axis, place from the inside (0) to the outside (1).
+// RINGS: place in cells, from the axis.
 
 const SPOKES: f32 = 12.0;
 const TURN: f32 = 6.2831853;
@@ -92,18 +85,22 @@ fn hoop(place: vec2<f32>) -> vec2<f32> {
 fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // x: of the lines, y: of the mark.
     var drawn = vec2<f32>(0.0);
-    var veil = 1.0;
-    switch look.pattern {
-        case PLATE: { drawn = plate(in.uv); }
-        case RIM: { drawn = rim(in.uv); }
-        case GRID: { drawn.x = grid(in.uv); }
-        case RINGS: { drawn = rings(in.uv); }
-        case HOOP: { drawn = hoop(in.uv); }
-        default: {}
-    }
-    if look.fade > 0.0 {
-        veil = 1.0 - smoothstep(0.25 * look.fade, look.fade, length(in.uv));
-    }
+#ifdef PLATE
+    drawn = plate(in.uv);
+#endif
+#ifdef RIM
+    drawn = rim(in.uv);
+#endif
+#ifdef GRID
+    drawn.x = grid(in.uv);
+#endif
+#ifdef HOOP
+    drawn = hoop(in.uv);
+#endif
+#ifdef RINGS
+    drawn = rings(in.uv);
+#endif
+    let veil = 1.0 - smoothstep(0.25 * look.fade, look.fade, length(in.uv));
     let to_eye = normalize(view.world_position - in.world_position.xyz);
     let normal = normalize(in.world_normal) * select(-1.0, 1.0, front);
     let pane = vec4<f32>(look.surface.rgb * matt_light(normal) + 0.05 * gloss(normal, to_eye), look.surface.a);

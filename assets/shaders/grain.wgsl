@@ -43,12 +43,13 @@ fn orthographic() -> bool {
     return view.clip_from_view[3][3] == 1.0;
 }
 
-// The ray of sight through a point of the world.
+// The ray of sight through a point of the world. Selected, not branched to: some drivers compile a shader anew whenever a
+// number that decides a branch is handed over.
 fn ray_through(x: vec3<f32>) -> Ray {
-    if orthographic() {
-        return Ray(x, -normalize(view.world_from_view[2].xyz));
-    }
-    return Ray(view.world_position, normalize(x - view.world_position));
+    let parallel = orthographic();
+    let origin = select(view.world_position, x, parallel);
+    let away = select(x - view.world_position, -view.world_from_view[2].xyz, parallel);
+    return Ray(origin, normalize(away));
 }
 
 fn is_cut_away(cut: Cut, x: vec3<f32>) -> bool {

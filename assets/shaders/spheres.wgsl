@@ -42,17 +42,15 @@ fn vertex(corner: Corner) -> Covered {
     covered.hidden_a = vec4<f32>(grain.hidden_gradient, grain.hidden_xx);
     covered.hidden_b = vec4<f32>(grain.hidden_yy, grain.hidden_xy, grain.hidden_yz, grain.hidden_zx);
 
-    let offset = grain.centre - view.world_position;
-    var forward = -normalize(view.world_from_view[2].xyz);
-    var outline = grain.radius;
-    var pixel = 2.0 / (view.clip_from_view[1][1] * view.viewport.w);
-    if !orthographic() {
-        let distance = length(offset);
-        forward = offset / distance;
-        let tangent = distance * distance - grain.radius * grain.radius;
-        outline = select(0.0, grain.radius * distance * inverseSqrt(tangent), tangent > 0.0);
-        pixel *= distance;
-    }
+    // Selected, not branched to, as in `ray_through`.
+    let parallel = orthographic();
+    let ray = ray_through(grain.centre);
+    let forward = ray.direction;
+    let distance = select(length(grain.centre - view.world_position), 1.0, parallel);
+    let tangent = distance * distance - grain.radius * grain.radius;
+    let seen = select(0.0, grain.radius * distance * inverseSqrt(tangent), tangent > 0.0);
+    var outline = select(seen, grain.radius, parallel);
+    let pixel = 2.0 * distance / (view.clip_from_view[1][1] * view.viewport.w);
     if is_sphere_cut_away(cut, grain.centre, grain.radius) {
         outline = 0.0;
     }

@@ -173,26 +173,51 @@ enum Paint {
     Frame(Pattern),
 }
 
-/// The lines on a piece and what its `uv` means, as the shader numbers them.
-#[derive(Clone, Copy, PartialEq)]
+impl Paint {
+    fn pattern(self) -> Pattern {
+        match self {
+            Self::Pane(pattern) | Self::Floor { pattern, .. } | Self::Frame(pattern) => pattern,
+        }
+    }
+}
+
+/// The lines on a piece and what its `uv` means: a definition of the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
 enum Pattern {
-    Plain = 0,
-    Plate = 1,
-    Rim = 2,
-    Grid = 3,
-    Hoop = 4,
-    Rings = 5,
+    Plain,
+    Plate,
+    Rim,
+    Grid,
+    Hoop,
+    Rings,
+}
+
+impl Pattern {
+    fn definition(self) -> Option<&'static str> {
+        match self {
+            Self::Plain => None,
+            Self::Plate => Some("PLATE"),
+            Self::Rim => Some("RIM"),
+            Self::Grid => Some("GRID"),
+            Self::Hoop => Some("HOOP"),
+            Self::Rings => Some("RINGS"),
+        }
+    }
 }
 
 /// Cells from the middle to where a floor with a grid has faded away.
 const FLOOR_CELLS: f32 = 40.0;
+/// The same for what never fades.
+const NEVER_FADED: f32 = 1e30;
 
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
-#[bind_group_data(BothSides)]
+#[bind_group_data(WallKey)]
 struct WallMaterial {
     #[uniform(0)]
     look: Look,
     alpha_mode: AlphaMode,
+    pattern: Pattern,
     both_sides: bool,
 }
 
@@ -201,20 +226,25 @@ struct Look {
     surface: Vec4,
     line: Vec4,
     mark: Vec4,
-    pattern: u32,
     fade: f32,
     circle: f32,
-    unused: f32,
+    unused: Vec2,
 }
 
-/// Whether a piece is drawn from both sides; part of the pipeline's key.
+/// What of a piece is part of the pipeline's key: its lines, and whether it is drawn from both sides.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(C)]
-struct BothSides(bool);
+struct WallKey {
+    pattern: Pattern,
+    both_sides: bool,
+}
 
-impl From<&WallMaterial> for BothSides {
+impl From<&WallMaterial> for WallKey {
     fn from(material: &WallMaterial) -> Self {
-        Self(material.both_sides)
+        Self {
+            pattern: material.pattern,
+            both_sides: material.both_sides,
+        }
     }
 }
 
@@ -241,8 +271,15 @@ impl Material for WallMaterial {
         _layout: &MeshVertexBufferLayoutRef,
         key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        if key.bind_group_data.0 {
+        let WallKey {
+            pattern,
+            both_sides,
+        } = key.bind_group_data;
+        if both_sides {
             descriptor.primitive.cull_mode = None;
+        }
+        if let (Some(fragment), Some(pattern)) = (&mut descriptor.fragment, pattern.definition()) {
+            fragment.shader_defs.push(pattern.into());
         }
         Ok(())
     }
@@ -288,6 +325,7 @@ fn rebuild(
                 MeshMaterial3d(materials.add(WallMaterial {
                     look: look(paint, &ViewSettings::default()),
                     alpha_mode: AlphaMode::Blend,
+                    pattern: paint.pattern(),
                     both_sides: false,
                 })),
                 NoFrustumCulling,
@@ -367,24 +405,23 @@ fn look(paint: Paint, settings: &ViewSettings) -> Look {
     let scheme = Scheme::of(settings.background);
     let opacity = settings.container_opacity.clamp(0.0, 1.0);
     let with_alpha = |colour: Color, alpha: f32| colour.to_linear().with_alpha(alpha).to_vec4();
-    let (pattern, surface) = match paint {
-        Paint::Pane(pattern) => (pattern, with_alpha(scheme.surface, 0.55 * opacity)),
-        Paint::Floor { pattern, .. } => (pattern, with_alpha(scheme.surface, 0.45 * opacity)),
-        Paint::Frame(pattern) => (pattern, with_alpha(scheme.frame, 1.0)),
+    let surface = match paint {
+        Paint::Pane(_) => with_alpha(scheme.surface, 0.55 * opacity),
+        Paint::Floor { .. } => with_alpha(scheme.surface, 0.45 * opacity),
+        Paint::Frame(_) => with_alpha(scheme.frame, 1.0),
     };
     let (fade, circle) = match paint {
         Paint::Floor { fade, circle, .. } => (fade, circle),
-        Paint::Pane(_) | Paint::Frame(_) => (0.0, 0.0),
+        Paint::Pane(_) | Paint::Frame(_) => (NEVER_FADED, 0.0),
     };
     let frame = matches!(paint, Paint::Frame(_));
     Look {
         surface,
         line: with_alpha(scheme.line, if frame { 0.8 } else { 0.8 * opacity }),
         mark: with_alpha(scheme.mark, if frame { 1.0 } else { opacity.powf(0.3) }),
-        pattern: pattern as u32,
         fade,
         circle,
-        unused: 0.0,
+        unused: Vec2::ZERO,
     }
 }
 
