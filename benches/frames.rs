@@ -1,21 +1,57 @@
 //! What a frame of the picture costs the processor when the world in it is another, without a graphics device: colours,
 //! shadows and places of all grains, for two drums of spheres and a column of as many polyhedra as the tallest one of
-//! Man et al. 2023; and what it costs to make the meshes of those polyhedra, once for a scene.
+//! Man et al. 2023; and what it costs to make the meshes of those polyhedra, once for a scene. Then the same for the whole
+//! window, every panel open and a grain under the microscope, with what a frame allocates.
 //!
 //! `cargo bench --bench frames`, see `benches/README.md`.
 
+use bevy::camera::ClearColorConfig;
+use bevy::camera::visibility::RenderLayers;
+use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::settings::WgpuSettings;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
+use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DQuat, DVec3};
 use grainfall::scene::Scene;
-use grainfall::view::{Meshing, Shown, ViewPlugin};
+use grainfall::simulation::{BedStore, Command, Options, Simulation, SimulationPlugin, Status};
+use grainfall::ui::{Desk, UiPlugin};
+use grainfall::view::{ColourBy, GrainBuffer, Meshing, Shown, ViewPlugin, ViewSettings};
+use grainfall::window::picture::CanvasPlugin;
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
+use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
-use std::time::Instant;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often and how many bytes anything has allocated.
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
+
+/// The system's allocator, counting.
+struct Counting;
+
+#[expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        ALLOCATED.fetch_add(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
 
 /// Grains of the column of 35 cm.
 const POLYHEDRA: usize = 68_722;
@@ -77,8 +113,8 @@ fn column() -> World {
     world
 }
 
-/// The view without a window and without a graphics device.
-fn view() -> App {
+/// An app without a window and without a graphics device.
+fn app() -> App {
     let mut app = App::new();
     app.add_plugins(
         DefaultPlugins
@@ -98,12 +134,86 @@ fn view() -> App {
                 .into(),
                 ..default()
             }),
-    )
-    .add_plugins(ViewPlugin);
+    );
+    app
+}
+
+/// The view alone.
+fn view() -> App {
+    let mut app = app();
+    app.add_plugins(ViewPlugin);
     app.finish();
     app.cleanup();
     app.update();
     app
+}
+
+/// The whole window with `scene`, every panel open and a grain under the microscope.
+fn window(scene: Scene) -> App {
+    let mut app = app();
+    let options = Options {
+        threads: 1,
+        autoplay: false,
+        beds: BedStore::user(),
+        memory: 0,
+        ..Options::window()
+    };
+    app.add_plugins(EguiPlugin::default())
+        .insert_resource(EguiGlobalSettings {
+            auto_create_primary_context: false,
+            ..default()
+        })
+        .add_plugins((
+            CanvasPlugin(UVec2::new(1440, 860)),
+            SimulationPlugin,
+            ViewPlugin,
+            UiPlugin {
+                options: options.clone(),
+            },
+        ))
+        .insert_resource(Simulation::open(scene, options));
+    app.world_mut().spawn((
+        PrimaryEguiContext,
+        Camera2d,
+        RenderLayers::none(),
+        Camera {
+            order: 2,
+            clear_color: ClearColorConfig::Custom(Color::NONE),
+            ..default()
+        },
+    ));
+    app.finish();
+    app.cleanup();
+    let mut view = app.world_mut().resource_mut::<ViewSettings>();
+    (view.selected, view.traced) = (Some(0), vec![0, 1, 2]);
+    (view.colour_by, view.show_forces) = (ColourBy::Speed, true);
+    let is_ready = |app: &App| {
+        let standing = *app.world().resource::<Simulation>().status() == Status::Paused;
+        let (meshing, grains) = (
+            app.world().resource::<Meshing>(),
+            app.world().resource::<GrainBuffer>(),
+        );
+        standing && meshing.is_whole() && grains.is_whole()
+    };
+    while !is_ready(&app) {
+        app.update();
+    }
+    app.world_mut().resource_mut::<Desk>().show_all_panels();
+    for _ in 0..10 {
+        app.update();
+    }
+    app
+}
+
+/// Lets the run take a step and waits for it, outside of any frame.
+fn step(app: &mut App) {
+    let mut simulation = app.world_mut().resource_mut::<Simulation>();
+    let before = simulation.generation();
+    simulation.send(Command::Step(1));
+    while simulation.generation() == before || *simulation.status() != Status::Paused {
+        simulation.tick(Duration::from_millis(1));
+        std::thread::sleep(Duration::from_micros(200));
+    }
 }
 
 fn show(app: &mut App, world: &Arc<World>) {
@@ -140,5 +250,54 @@ fn frames(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames);
+/// Prints what a frame with a new state allocates.
+fn count_allocations(name: &str, app: &mut App) {
+    let load = |counter: &AtomicUsize| counter.load(Ordering::Relaxed);
+    let counted = || [load(&ALLOCATIONS), load(&ALLOCATED)];
+    step(app);
+    let before = counted();
+    app.update();
+    let after = counted();
+    let [times, bytes] = [0, 1].map(|i| after[i] - before[i]);
+    println!(
+        "{name}: a frame allocates {times} times, {} kB",
+        bytes / 1000
+    );
+}
+
+fn windows(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("window");
+    let scene = |name: &str| Scene::open(name).expect("a built-in scene");
+    let mut column = scene("column");
+    column.set("height", "35cm").expect("a height");
+    for (name, scene) in [
+        ("470 spheres", scene("dry-r3")),
+        ("6494 spheres", scene("dry-r1.25")),
+        ("68722 polyhedra", column),
+    ] {
+        group.sample_size(20);
+        // Made when it is asked for: a column takes its time.
+        let mut made = None;
+        group.bench_function(name, |b| {
+            let app = made.get_or_insert_with(|| {
+                let mut app = window(scene.clone());
+                count_allocations(name, &mut app);
+                app
+            });
+            b.iter_custom(|frames| {
+                let mut spent = Duration::ZERO;
+                for _ in 0..frames {
+                    step(app);
+                    let began = Instant::now();
+                    app.update();
+                    spent += began.elapsed();
+                }
+                spent
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, frames, windows);
 criterion_main!(benches);

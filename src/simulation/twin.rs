@@ -15,12 +15,11 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Wall-clock time that both work until they meet again: longer than a frame, so that little of it is spent waiting.
-const SLICE: Duration = Duration::from_millis(60);
+/// Wall-clock time that both work until they meet again, at least and at most: two frames where these take long, so that
+/// little of it is spent waiting for the next one.
+const SLICE: [Duration; 2] = [Duration::from_millis(60), Duration::from_millis(500)];
 /// Steps until the first meeting.
 const FIRST_SLICE: u64 = 50;
-/// Most wall-clock time that is caught up with.
-const LONGEST_DEBT: Duration = Duration::from_millis(100);
 /// Why some commands are refused.
 const OF_ONE_RUN: &str = "Undo, redo and kept runs belong to one run: end the twin first. To take a change back in both, go back along the timeline.";
 
@@ -89,15 +88,27 @@ struct Slice {
     steps: u64,
     /// Where and when the present one was begun.
     begun: Option<(u64, Instant)>,
+    /// When the last tick was, and how long frames take.
+    ticked: Option<Instant>,
+    frame: Duration,
 }
 
 impl Slice {
+    /// Takes note of a tick: some come at once, then none until the next frame.
+    fn tick(&mut self) {
+        let now = Instant::now();
+        let apart = self.ticked.map_or(Duration::ZERO, |last| now - last);
+        self.ticked = Some(now);
+        self.frame = apart.max(self.frame.mul_f64(0.95));
+    }
+
     /// Fits it to [`SLICE`], now that both have come to `step`.
     fn end(&mut self, step: u64) {
         if let Some((from, since)) = self.begun.take() {
             let steps = step.saturating_sub(from);
+            let wanted = (2 * self.frame).clamp(SLICE[0], SLICE[1]);
             let fitting =
-                steps as f64 * SLICE.as_secs_f64() / since.elapsed().as_secs_f64().max(1e-9);
+                steps as f64 * wanted.as_secs_f64() / since.elapsed().as_secs_f64().max(1e-9);
             // A short one, because no more was granted, says little of long ones.
             let most = 4 * steps.max(self.steps);
             self.steps = (fitting as u64).clamp(1, most.max(FIRST_SLICE));
@@ -120,6 +131,8 @@ impl Twin {
             slice: Slice {
                 steps: FIRST_SLICE,
                 begun: None,
+                ticked: None,
+                frame: Duration::ZERO,
             },
         }
     }
@@ -200,6 +213,7 @@ impl Twin {
 
     /// Lets both go on by `passed` wall-clock time; what the pair does now.
     pub(super) fn tick(&mut self, first: &mut Simulation, passed: Duration) -> Status {
+        self.slice.tick();
         first.gather(passed);
         self.run.gather(passed);
         self.grant(first.speed(), passed);
@@ -235,7 +249,7 @@ impl Twin {
 
     fn grant(&mut self, speed: f64, passed: Duration) {
         if self.mode == Mode::Running {
-            let most = speed * LONGEST_DEBT.as_secs_f64();
+            let most = speed * SLICE[1].as_secs_f64();
             self.owed = (self.owed + speed * passed.as_secs_f64()).min(most);
         } else {
             self.owed = 0.0;

@@ -169,6 +169,7 @@ impl Desk {
             first_play_ui(root, simulation, out);
         }
         self.windows_ui(root.ctx(), out);
+        focus_ui(root.ctx(), Palette::of(root.visuals()));
     }
 
     /// Takes `memory` up, and keeps it from now on.
@@ -189,6 +190,13 @@ impl Desk {
             if let Some(section) = wanted {
                 (section.is_wanted, *shown) = (true, true);
             }
+        }
+    }
+
+    /// Opens every panel on both sides.
+    pub fn show_all_panels(&mut self) {
+        for section in self.left.iter_mut().chain(&mut self.right) {
+            section.is_wanted = true;
         }
     }
 
@@ -434,6 +442,23 @@ fn sections_ui(
             }
         }
     });
+}
+
+/// A ring round the control that the keyboard works.
+fn focus_ui(ctx: &egui::Context, palette: Palette) {
+    let focused = ctx.memory(egui::Memory::focused);
+    let Some(response) = focused.and_then(|id| ctx.read_response(id)) else {
+        return;
+    };
+    let ring = response.rect.intersect(response.interact_rect).expand(2.0);
+    if ring.is_positive() {
+        let stroke = egui::Stroke::new(2.0, palette.warning);
+        ctx.layer_painter(egui::LayerId::new(
+            egui::Order::Foreground,
+            Id::new("focus"),
+        ))
+        .rect_stroke(ring, 4.0, stroke, egui::StrokeKind::Outside);
+    }
 }
 
 fn bar_frame(ui: &egui::Ui) -> egui::Frame {

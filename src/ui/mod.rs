@@ -8,7 +8,7 @@
 //! |---|---|
 //! | `desk` | the register of panels, where they stand, what lies over them |
 //! | `request`, `carry_out` | what panels ask for, and how it is fulfilled |
-//! | `shortcuts` | what each key does |
+//! | `shortcuts`, `keyboard` | what each key does; what was held with it |
 //! | `menu`, `transport`, `scrub` | menu bar, bar under the picture, the timeline in it |
 //! | `gallery`, `memory` | scenes with their pictures; what is remembered from start to start |
 //! | `badge` | whether the run can be trusted, and why |
@@ -39,6 +39,7 @@ mod detail;
 mod energy;
 mod explorer;
 mod gallery;
+mod keyboard;
 mod memory;
 mod menu;
 mod microscope;
@@ -91,7 +92,7 @@ use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use crate::world::{Shape, World};
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
-use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use bevy_egui::{EguiContexts, EguiPreUpdateSet, EguiPrimaryContextPass, egui};
 
 /// A part of the window: one file, one struct, one function.
 pub trait Panel: Send + Sync + 'static {
@@ -155,7 +156,13 @@ impl Plugin for UiPlugin {
     fn build(&self, app: &mut App) {
         let options = self.options.clone();
         app.add_plugins(DeskPlugin { options })
-            .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain());
+            .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain())
+            .add_systems(
+                PreUpdate,
+                keyboard::tell_modifiers
+                    .after(EguiPreUpdateSet::ProcessInput)
+                    .before(EguiPreUpdateSet::BeginPass),
+            );
     }
 }
 

@@ -70,7 +70,11 @@ impl Panel for Velocity {
             ui.checkbox(&mut self.relative, "Relative to the drum")
                 .on_hover_text("Takes out the drum's own turning: what rests in the drum is dark");
         }
-        self.renew(world, simulation.generation());
+        let room = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), HIGHEST));
+        // Out of sight it may be an old one.
+        if self.latest.is_none() || ui.is_rect_visible(room) {
+            self.renew(world, simulation.generation());
+        }
         let Some(drawn) = &self.latest else {
             ui.weak("There are no grains.");
             return;

@@ -361,11 +361,18 @@ fn trails(ink: &Ink, rect: Rect, camera: &OrbitCamera, half: Half, settings: &Vi
     }
 }
 
-/// Text over its `at` that stands out from any grain: dark beside light.
+/// Light text over its `at` that stands out from any grain: on a dark ground.
 fn outlined(ink: &Ink, at: Pos2, text: &str, colour: Color32) {
-    for (at, colour) in [(at + vec2(1.0, 1.0), Color32::BLACK), (at, colour)] {
-        ink.write(at, Align2::CENTER_BOTTOM, text, 13.0, colour);
-    }
+    let font = FontId::proportional(13.0);
+    let text = ink.painter.layout_no_wrap(text.to_owned(), font, colour);
+    let place = Align2::CENTER_BOTTOM.anchor_size(at, text.size());
+    let ground = place.expand2(vec2(4.0, 0.0));
+    ink.painter.rect_filled(
+        ground,
+        CornerRadius::same(4),
+        Color32::from_black_alpha(190),
+    );
+    ink.painter.galley(place.min, text, colour);
 }
 
 /// The sRGB colour of the trail of this index.

@@ -1058,24 +1058,34 @@ fn a_click_on_the_picture_picks_the_grain_under_it() {
         (ViewSettings::default(), camera),
     );
     harness.run_steps(2);
-    let click = |harness: &mut Harness<'_, _>, pos: egui::Pos2| {
+    let click = |harness: &mut Harness<'_, _>, pos: egui::Pos2, modifiers: Modifiers| {
         harness.event(egui::Event::PointerMoved(pos));
         for pressed in [true, false] {
-            harness.event(egui::Event::PointerButton {
-                pos,
-                button: egui::PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::NONE,
-            });
+            harness.event_modifiers(
+                egui::Event::PointerButton {
+                    pos,
+                    button: egui::PointerButton::Primary,
+                    pressed,
+                    modifiers,
+                },
+                modifiers,
+            );
             harness.run_steps(1);
         }
         harness.run_steps(1);
     };
     let rect = harness.state().0.free_rect.unwrap();
-    click(&mut harness, rect.center());
+    click(&mut harness, rect.center(), Modifiers::NONE);
     assert_eq!(harness.state().0.selected, Some(1));
-    click(&mut harness, rect.min + egui::vec2(5.0, 5.0));
+    let aside = rect.min + egui::vec2(5.0, 5.0);
+    click(&mut harness, aside, Modifiers::NONE);
     assert_eq!(harness.state().0.selected, None);
+    // With Shift it is traced, and with another click no longer.
+    for traced in [vec![1], vec![]] {
+        click(&mut harness, rect.center(), Modifiers::SHIFT);
+        assert_eq!(harness.state().0.traced, traced);
+        assert_eq!(harness.state().0.selected, None);
+    }
 }
 
 /// A drum whose surface has slid twice, as its samples tell.
