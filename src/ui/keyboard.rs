@@ -6,40 +6,20 @@
 
 use bevy::input::keyboard::{Key, KeyboardFocusLost, KeyboardInput};
 use bevy::prelude::*;
+use bevy_egui::egui::{self, Modifiers};
 use bevy_egui::helpers::{bevy_to_egui_key, bevy_to_egui_physical_key};
-use bevy_egui::{EguiInput, PrimaryEguiContext, egui};
+use bevy_egui::{EguiInput, PrimaryEguiContext};
 
-/// The keys that are held.
-#[derive(Clone, Copy, Default)]
-pub struct Held {
-    shift: bool,
-    ctrl: bool,
-    alt: bool,
-    command: bool,
-}
-
-impl Held {
-    /// Takes note of a key.
-    fn follow(&mut self, input: &KeyboardInput) {
-        let held = match input.logical_key {
-            Key::Shift => &mut self.shift,
-            Key::Control => &mut self.ctrl,
-            Key::Alt => &mut self.alt,
-            Key::Super | Key::Meta => &mut self.command,
-            _ => return,
-        };
-        *held = input.state.is_pressed();
-    }
-
-    fn modifiers(self) -> egui::Modifiers {
-        let is_mac = cfg!(target_os = "macos");
-        egui::Modifiers {
-            alt: self.alt,
-            ctrl: self.ctrl,
-            shift: self.shift,
-            mac_cmd: is_mac && self.command,
-            command: if is_mac { self.command } else { self.ctrl },
-        }
+/// Takes note in `held` of a key that is pressed or let go.
+fn follow(held: &mut Modifiers, input: &KeyboardInput) {
+    let (is_mac, is_down) = (cfg!(target_os = "macos"), input.state.is_pressed());
+    match input.logical_key {
+        Key::Shift => held.shift = is_down,
+        Key::Alt => held.alt = is_down,
+        Key::Control if is_mac => held.ctrl = is_down,
+        Key::Control => (held.ctrl, held.command) = (is_down, is_down),
+        Key::Super | Key::Meta if is_mac => (held.mac_cmd, held.command) = (is_down, is_down),
+        _ => {}
     }
 }
 
@@ -47,11 +27,11 @@ impl Held {
 pub fn tell_modifiers(
     mut inputs: MessageReader<KeyboardInput>,
     mut focus_lost: MessageReader<KeyboardFocusLost>,
-    mut held: Local<Held>,
+    mut held: Local<Modifiers>,
     context: Option<Single<&mut EguiInput, With<PrimaryEguiContext>>>,
 ) {
     if focus_lost.read().count() > 0 {
-        *held = Held::default();
+        *held = Modifiers::NONE;
     }
     let mut nobody = Vec::new();
     let mut context = context.map(Single::into_inner);
@@ -63,12 +43,12 @@ pub fn tell_modifiers(
 /// text.
 fn correct<'a>(
     inputs: impl Iterator<Item = &'a KeyboardInput>,
-    held: &mut Held,
+    held: &mut Modifiers,
     events: &mut Vec<egui::Event>,
 ) {
     let mut next = 0;
     for input in inputs {
-        held.follow(input);
+        follow(held, input);
         let key = bevy_to_egui_key(&input.logical_key);
         if key.or(bevy_to_egui_physical_key(&input.key_code)).is_none() {
             continue;
@@ -81,13 +61,13 @@ fn correct<'a>(
         let text = place.checked_sub(1).filter(|before| *before >= next);
         let is_text = |at: &usize| matches!(events[*at], egui::Event::Text(_));
         if let Some(text) = text.filter(is_text)
-            && held.modifiers().command
+            && held.command
         {
             events.remove(text);
             place = text;
         }
         if let egui::Event::Key { modifiers, .. } = &mut events[place] {
-            *modifiers = held.modifiers();
+            *modifiers = *held;
         }
         next = place + 1;
     }
@@ -115,7 +95,7 @@ mod tests {
             physical_key: None,
             pressed,
             repeat: false,
-            modifiers: egui::Modifiers::NONE,
+            modifiers: Modifiers::NONE,
         }
     }
 
@@ -146,7 +126,7 @@ mod tests {
             event(egui::Key::G, false),
         ]);
         events.extend([typed(), event(egui::Key::G, true)]);
-        let mut held = Held::default();
+        let mut held = Modifiers::NONE;
         correct(inputs.iter(), &mut held, &mut events);
         let told: Vec<_> = (events.iter())
             .map(|event| match event {
