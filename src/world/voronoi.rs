@@ -93,7 +93,7 @@ impl Tessellation {
         let cells = cells.with_faces();
         let solids = cells.cells_iter().map(|cell| {
             let corner = |v: &usize| *v as u16;
-            // There loops run clockwise seen from outside.
+            // The crate's loops run clockwise seen from outside.
             let face = |face| cell.face_vertices(face).iter().rev().map(corner).collect();
             let vertices = cell.vertices.iter();
             Solid::new(

@@ -141,7 +141,7 @@ fn in_the_lab(simulation: Simulation) -> Harness<'static, Window> {
 }
 
 /// Types `text` into a field of a number: a click begins the edit, Return ends it.
-fn type_number<S>(harness: &mut Harness<'_, S>, label: &str, text: &str) {
+pub fn type_number<S>(harness: &mut Harness<'_, S>, label: &str, text: &str) {
     harness
         .get_by_role_and_label(Role::SpinButton, label)
         .click();

@@ -1,6 +1,6 @@
 //! Two runs side by side: the panel by its accessible labels, and both halves of the picture in the app as a whole.
 
-use crate::panels::{Window, friction, prepared, sample, set};
+use crate::panels::{Window, friction, prepared, sample, set, type_number};
 use crate::timeline::carried_out;
 use crate::view::{Photograph, SIZE, photographed, studio};
 use bevy::math::{Vec2, Vec3};
@@ -43,18 +43,6 @@ fn asked(harness: &mut Harness<'_, Window>) -> Vec<Request> {
     std::mem::take(&mut harness.state_mut().asked)
 }
 
-fn type_into(harness: &mut Harness<'_, Window>, label: &str, text: &str) {
-    harness
-        .get_by_role_and_label(Role::SpinButton, label)
-        .click();
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.event(egui::Event::Text(text.to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-}
-
 #[test]
 fn two_values_are_chosen_by_name_or_number_and_started() {
     let mut harness = Window::of(prepared());
@@ -63,10 +51,10 @@ fn two_values_are_chosen_by_name_or_number_and_started() {
     // The farthest named value stands there already.
     harness.get_by_label("Start side by side").click();
     assert_eq!(asked(&mut harness), [Request::StartTwin(friction(), 0.8)]);
-    type_into(&mut harness, "value on the right", "0.4");
+    type_number(&mut harness, "value on the right", "0.4");
     harness.get_by_label("Start side by side").click();
     assert!(asked(&mut harness).is_empty(), "both values are the same");
-    type_into(&mut harness, "value on the right", "0.85");
+    type_number(&mut harness, "value on the right", "0.85");
     harness.get_by_label("Start side by side").click();
     assert_eq!(asked(&mut harness), [Request::StartTwin(friction(), 0.85)]);
     harness
@@ -91,9 +79,9 @@ fn a_key_leads_to_the_panel() {
 #[test]
 fn each_half_has_its_own_row_and_the_comparison_its_ends() {
     let mut harness = Window::of(pair());
-    type_into(&mut harness, "friction glass – glass, right", "0.7");
+    type_number(&mut harness, "friction glass – glass, right", "0.7");
     assert_eq!(asked(&mut harness), [Request::TwinValue(0.7)]);
-    type_into(&mut harness, "friction glass – glass, left", "0.2");
+    type_number(&mut harness, "friction glass – glass, left", "0.2");
     assert_eq!(
         asked(&mut harness),
         [Request::Command(set(friction(), 0.2))]
