@@ -16,6 +16,7 @@ use bevy::winit::WinitPlugin;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DQuat, DVec3};
+use grainfall::measure::GrainQuantity;
 use grainfall::scene::Scene;
 use grainfall::simulation::{BedStore, Command, Options, Simulation, SimulationPlugin, Status};
 use grainfall::ui::{Desk, UiPlugin};
@@ -186,7 +187,7 @@ fn window(scene: Scene) -> App {
     app.cleanup();
     let mut view = app.world_mut().resource_mut::<ViewSettings>();
     (view.selected, view.traced) = (Some(0), vec![0, 1, 2]);
-    (view.colour_by, view.show_forces) = (ColourBy::Speed, true);
+    (view.colour_by, view.show_forces) = (ColourBy::Quantity(GrainQuantity::Speed), true);
     let is_ready = |app: &App| {
         let standing = *app.world().resource::<Simulation>().status() == Status::Paused;
         let (meshing, grains) = (

@@ -17,6 +17,7 @@
 //! | `flow` | velocity in the cross-section, its profile over depth, its fastest moments |
 //! | `velocity_map` | mean velocities on a grid over the cross-section |
 //! | `reference` | stored dry drums to compare wet ones with |
+//! | `grain` | numbers of each grain, to colour a picture by |
 //! | `liquid` | bridges, capillary and Galilei number, torque of a drum |
 //! | `column` | the column that collapses: `α_eff`, `μ_p`, the laws of Man et al. 2023 |
 //! | `deposit` | the heap it becomes: front, height, profile, shape |
@@ -32,6 +33,7 @@ mod contacts;
 mod deposit;
 mod energy;
 mod flow;
+mod grain;
 mod liquid;
 mod neighbours;
 mod packing;
@@ -53,6 +55,7 @@ pub use contacts::{contact_shares, coordination_number, largest_overlap};
 pub use deposit::{Deposit, DepositShape, HeightProfile};
 pub use energy::{EnergyLedger, elastic_energy};
 pub use flow::{FlowHistory, FlowProfile, kernel_reach, mean_velocity};
+pub use grain::GrainQuantity;
 pub use liquid::{bridges, capillary_number, drop_ratio_law, drum_torque, galilei_number};
 pub use packing::packing_fraction;
 pub use quantity::{Measure, QUANTITIES, Quantity};

@@ -35,15 +35,10 @@ impl Panel for Picture {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        colour_ui(ui, view);
-        cut_ui(ui, view, simulation.world().map(AsRef::as_ref));
-        between_ui(
-            ui,
-            view,
-            simulation
-                .world()
-                .is_some_and(|world| world.liquid.is_some()),
-        );
+        let world = simulation.world().map(AsRef::as_ref);
+        colour_ui(ui, view, world);
+        cut_ui(ui, view, world);
+        between_ui(ui, view, world.is_some_and(|world| world.liquid.is_some()));
         ui.horizontal(|ui| {
             ui.checkbox(&mut view.show_container, "Container");
             let opacity =
@@ -76,9 +71,18 @@ impl Panel for Picture {
     }
 }
 
-fn colour_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
-    let by = ColourBy::ALL.map(|choice| (choice, choice.label()));
+fn colour_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
+    let before = view.colour_by;
+    let offered = |by: &ColourBy| *by == before || world.is_none_or(|world| by.applies(world));
+    let by: Vec<_> = ColourBy::all()
+        .filter(offered)
+        .map(|choice| (choice, choice.label()))
+        .collect();
     combo_ui(ui, "Colour by", &mut view.colour_by, &by);
+    if view.colour_by != before && matches!(view.range, ColourRange::Fixed(..)) {
+        // The numbers were of another quantity.
+        view.range = ColourRange::Automatic;
+    }
     if view.colour_by == ColourBy::Species {
         return;
     }

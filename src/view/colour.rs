@@ -3,6 +3,7 @@
 //! In: a world and what to colour by. Out: one linear colour per grain and the legend that explains it.
 
 use super::{Background, ColourBy, ColourMap, ColourRange, Legend};
+use crate::measure::GrainQuantity;
 use crate::world::World;
 use bevy::color::{Color, ColorToComponents, LinearRgba};
 
@@ -75,21 +76,24 @@ pub fn legend(
     range: ColourRange,
     before: Option<&Legend>,
 ) -> Option<Legend> {
-    if colour_by == ColourBy::Species || worlds.is_empty() {
+    let ColourBy::Quantity(quantity) = colour_by else {
+        return None;
+    };
+    if worlds.is_empty() {
         return None;
     }
-    let title = colour_by.label();
+    let title = quantity.name();
     let before = before.filter(|before| before.title == title && before.min == 0.0);
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
-        ColourRange::Percentiles(low, high) => percentiles(worlds, colour_by, low, high),
-        ColourRange::Automatic => (0.0, automatic_maximum(worlds, colour_by, before)),
+        ColourRange::Percentiles(low, high) => percentiles(worlds, quantity, low, high),
+        ColourRange::Automatic => (0.0, automatic_maximum(worlds, quantity, before)),
     };
     Some(Legend {
         title,
         min,
         max,
-        unit: colour_by.unit(),
+        unit: quantity.unit(),
     })
 }
 
@@ -101,10 +105,9 @@ pub fn colours(
     legend: Option<&Legend>,
     mut paint: impl FnMut([f32; 3]),
 ) {
-    let grains = &world.grains;
-    let Some(legend) = legend else {
+    let (ColourBy::Quantity(quantity), Some(legend)) = (colour_by, legend) else {
         let palette = SPECIES.map(linear);
-        for (i, species) in grains.species.iter().enumerate() {
+        for (i, species) in world.grains.species.iter().enumerate() {
             let colour = palette[usize::from(species.0) % palette.len()];
             paint(colour.map(|c| c * individual_lightness(i)));
         }
@@ -118,26 +121,15 @@ pub fn colours(
     } else {
         0.0
     };
-    for i in 0..grains.len() {
-        let place = (value(world, colour_by, i) - legend.min) * scale;
+    for value in values(&[world], quantity) {
+        let place = (value - legend.min) * scale;
         paint(table[place.round().clamp(0.0, 255.0) as usize]);
     }
 }
 
-/// The number behind the colour of grain `i`, in its SI unit.
-fn value(world: &World, colour_by: ColourBy, i: usize) -> f64 {
-    let grains = &world.grains;
-    match colour_by {
-        ColourBy::Species => f64::from(grains.species[i].0),
-        ColourBy::Speed => grains.velocity[i].length(),
-        ColourBy::Spin => grains.spin[i].length(),
-        ColourBy::Coordination => f64::from(grains.contact_count[i]),
-    }
-}
-
 /// The numbers that these shares of the grains stay below.
-fn percentiles(worlds: &[&World], colour_by: ColourBy, low: f64, high: f64) -> (f64, f64) {
-    let mut values = values(worlds, colour_by);
+fn percentiles(worlds: &[&World], quantity: GrainQuantity, low: f64, high: f64) -> (f64, f64) {
+    let mut values = finite_values(worlds, quantity);
     if values.is_empty() {
         return (0.0, 1.0);
     }
@@ -149,19 +141,24 @@ fn percentiles(worlds: &[&World], colour_by: ColourBy, low: f64, high: f64) -> (
     (at(low), at(high))
 }
 
-/// The numbers behind the colours of all grains, as far as they are numbers.
-fn values(worlds: &[&World], colour_by: ColourBy) -> Vec<f64> {
+/// The numbers behind the colours of all grains.
+fn values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
     let mut values = Vec::with_capacity(worlds.iter().map(|world| world.grains.len()).sum());
     for world in worlds {
-        let own = (0..world.grains.len()).map(|i| value(world, colour_by, i));
-        values.extend(own.filter(|value| value.is_finite()));
+        quantity.append(world, &mut values);
     }
     values
 }
 
+fn finite_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
+    let mut values = values(worlds, quantity);
+    values.retain(|value| value.is_finite());
+    values
+}
+
 /// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
-fn automatic_maximum(worlds: &[&World], colour_by: ColourBy, before: Option<&Legend>) -> f64 {
-    let mut values = values(worlds, colour_by);
+fn automatic_maximum(worlds: &[&World], quantity: GrainQuantity, before: Option<&Legend>) -> f64 {
+    let mut values = finite_values(worlds, quantity);
     if values.is_empty() {
         return 1.0;
     }
@@ -172,7 +169,7 @@ fn automatic_maximum(worlds: &[&World], colour_by: ColourBy, before: Option<&Leg
     {
         return before.max;
     }
-    if colour_by == ColourBy::Coordination {
+    if quantity == GrainQuantity::Coordination {
         (*most / 4.0).ceil().max(2.0) * 4.0
     } else {
         // Quarters of these are round too.
@@ -263,7 +260,7 @@ mod tests {
             world.grains.velocity[0].x = 100.0;
             shown = legend(
                 &[&world],
-                ColourBy::Speed,
+                ColourBy::Quantity(GrainQuantity::Speed),
                 ColourRange::Automatic,
                 shown.as_ref(),
             );
@@ -274,7 +271,13 @@ mod tests {
             );
         }
         let fixed = ColourRange::Fixed(0.1, 0.7);
-        let shown = legend(&[&world], ColourBy::Speed, fixed, shown.as_ref()).unwrap();
+        let shown = legend(
+            &[&world],
+            ColourBy::Quantity(GrainQuantity::Speed),
+            fixed,
+            shown.as_ref(),
+        )
+        .unwrap();
         assert_eq!((shown.min, shown.max), (0.1, 0.7));
         assert_eq!(legend(&[&world], ColourBy::Species, fixed, None), None);
     }
@@ -286,7 +289,13 @@ mod tests {
             world.grains.velocity.iter_mut().for_each(|v| v.x = speed);
         }
         let range = |range, worlds: &[&World]| {
-            let legend = legend(worlds, ColourBy::Speed, range, None).unwrap();
+            let legend = legend(
+                worlds,
+                ColourBy::Quantity(GrainQuantity::Speed),
+                range,
+                None,
+            )
+            .unwrap();
             (legend.min, legend.max)
         };
         let all = ColourRange::Percentiles(0.0, 1.0);

@@ -525,12 +525,22 @@ struct Prefixed {
 }
 
 impl Prefixed {
-    /// For numbers up to `largest`: metres per second become mm/s or µm/s where that reads better.
+    /// For numbers up to `largest`: metres per second become mm/s, pascal kPa, joule nJ where that reads better.
     fn new(largest: f64, unit: &str) -> Self {
-        let (factor, prefix) = match largest {
-            x if !unit.starts_with('m') || x > 0.15 => (1.0, ""),
-            x if x > 0.15e-3 => (1e3, "m"),
-            _ => (1e6, "µ"),
+        const PREFIXES: [(f64, &str); 7] = [
+            (1e-6, "M"),
+            (1e-3, "k"),
+            (1.0, ""),
+            (1e3, "m"),
+            (1e6, "µ"),
+            (1e9, "n"),
+            (1e12, "p"),
+        ];
+        let takes_one = !unit.is_empty() && !unit.starts_with("rad");
+        let fits = |(factor, _): &&(f64, &str)| largest * factor > 0.15;
+        let (factor, prefix) = match PREFIXES.iter().find(fits) {
+            Some(prefixed) if takes_one && largest > 0.0 => *prefixed,
+            _ => (1.0, ""),
         };
         Self {
             factor,
@@ -603,5 +613,8 @@ mod tests {
         assert_eq!(Prefixed::new(0.5, "m/s").unit, "m/s");
         assert_eq!(Prefixed::new(0.05, "rad/s").unit, "rad/s");
         assert_eq!(Prefixed::new(8.0, "").unit, "");
+        assert_eq!(Prefixed::new(4e4, "Pa").unit, "kPa");
+        assert_eq!(Prefixed::new(2e-8, "J").unit, "nJ");
+        assert_eq!(Prefixed::new(0.0, "N").unit, "N");
     }
 }

@@ -3,7 +3,9 @@
 //! In: choices made in panels. Out: plain data that the view reads every frame. Nothing here draws.
 
 use super::Trail;
+use crate::measure::GrainQuantity;
 use crate::simulation::Half;
+use crate::world::World;
 use bevy::prelude::Resource;
 use bevy_egui::egui;
 
@@ -111,34 +113,38 @@ pub enum ColourBy {
     /// What kind it is.
     #[default]
     Species,
-    /// Speed of its centre in the laboratory frame [m/s].
-    Speed,
-    /// Magnitude of its angular velocity [rad/s].
-    Spin,
-    /// Number of touching partners, walls too.
-    Coordination,
+    /// How much it has of this.
+    Quantity(GrainQuantity),
 }
 
 impl ColourBy {
     /// All of them, in the order of a menu.
-    pub const ALL: [Self; 4] = [Self::Species, Self::Speed, Self::Spin, Self::Coordination];
+    pub fn all() -> impl Iterator<Item = Self> {
+        let quantities = GrainQuantity::ALL.into_iter().map(Self::Quantity);
+        std::iter::once(Self::Species).chain(quantities)
+    }
 
     /// What people call it.
     pub fn label(self) -> &'static str {
         match self {
             Self::Species => "Species",
-            Self::Speed => "Speed",
-            Self::Spin => "Spin",
-            Self::Coordination => "Coordination number",
+            Self::Quantity(quantity) => quantity.name(),
         }
     }
 
     /// SI unit of the number behind the colour; empty for a count and for species.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Species | Self::Coordination => "",
-            Self::Speed => "m/s",
-            Self::Spin => "rad/s",
+            Self::Species => "",
+            Self::Quantity(quantity) => quantity.unit(),
+        }
+    }
+
+    /// Whether grains of `world` have it.
+    pub fn applies(self, world: &World) -> bool {
+        match self {
+            Self::Species => true,
+            Self::Quantity(quantity) => quantity.applies(world),
         }
     }
 }

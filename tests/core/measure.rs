@@ -6,6 +6,7 @@ mod contacts;
 mod deposit;
 mod energy;
 mod flow;
+mod grain;
 mod packing;
 mod sample;
 mod series;

@@ -4,7 +4,7 @@ use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use grainfall::measure::{Avalanche, Measure, Sample, Series};
+use grainfall::measure::{Avalanche, GrainQuantity, Measure, Sample, Series};
 use grainfall::scene::{LIQUID_CASES, PAPER_VOLUME, Scene};
 use grainfall::simulation::{
     BedStore, Command, DisplayUnit, DriverKind, Options, Parameter, ParameterInfo, Simulation,
@@ -799,7 +799,10 @@ fn view_settings_change_what_they_name() {
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "Speed").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().view.colour_by, ColourBy::Speed);
+    assert_eq!(
+        harness.state().view.colour_by,
+        ColourBy::Quantity(GrainQuantity::Speed)
+    );
     harness.get_by_label("Fixed").click();
     harness.run_steps(3);
     assert!(matches!(harness.state().view.range, ColourRange::Fixed(..)));

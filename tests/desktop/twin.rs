@@ -9,7 +9,7 @@ use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use grainfall::measure::Series;
+use grainfall::measure::{GrainQuantity, Series};
 use grainfall::scene::Scene;
 use grainfall::simulation::{
     BedStore, Command, DriverKind, Half, Options, Parameter, Simulation, SimulationPlugin, Status,
@@ -219,7 +219,8 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
         return;
     };
     let mut app = laboratory();
-    app.world_mut().resource_mut::<ViewSettings>().colour_by = ColourBy::Speed;
+    app.world_mut().resource_mut::<ViewSettings>().colour_by =
+        ColourBy::Quantity(GrainQuantity::Speed);
     let has_twin = |s: &Simulation| s.twin().is_some_and(|twin| twin.run().world().is_some());
     ask(
         &mut app,

@@ -7,6 +7,7 @@ use bevy::math::{UVec2, Vec2, Vec3};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
 use glam::DVec3;
+use grainfall::measure::GrainQuantity;
 use grainfall::scene::ContactLaw;
 use grainfall::view::{
     Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, Shown,
@@ -252,7 +253,7 @@ fn colours_are_those_of_the_map() {
     }
     let positions = world.grains.position.clone();
     let photograph = photograph("speed", world, |settings, _| {
-        settings.colour_by = ColourBy::Speed;
+        settings.colour_by = ColourBy::Quantity(GrainQuantity::Speed);
         settings.range = ColourRange::Fixed(0.0, 1.0);
     });
     for (position, speed) in positions.iter().zip(speeds) {
