@@ -6,14 +6,19 @@
 
 struct Link {
     from_point: vec3<f32>,
-    from_radius: f32,
+    // The larger of the radii at both ends.
+    radius: f32,
     to_point: vec3<f32>,
-    to_radius: f32,
-    colour: vec3<f32>,
-    unused: f32,
+    // Bytes: the radius at each end in 255ths of the larger one, the place in the palette.
+    shape: u32,
+}
+
+struct Palette {
+    colours: array<vec4<f32>, 4>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> links: array<Link>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> palette: Palette;
 
 struct Corner {
     // x, y: which corner, ±1; z: index of the link.
@@ -41,8 +46,9 @@ fn vertex(corner: Corner) -> Covered {
     // A link that is seen from its end, or has no length, shows nothing.
     covered.side = sideways * inverseSqrt(max(dot(sideways, sideways), 1e-30));
     covered.across = corner.place.x;
-    covered.world = middle + corner.place.x * mix(link.from_radius, link.to_radius, end) * covered.side;
-    covered.colour = link.colour;
+    let shares = unpack4x8unorm(link.shape).xy;
+    covered.world = middle + corner.place.x * link.radius * mix(shares.x, shares.y, end) * covered.side;
+    covered.colour = palette.colours[(link.shape >> 16u) & 3u].rgb;
     covered.position = view.clip_from_world * vec4<f32>(covered.world, 1.0);
     return covered;
 }

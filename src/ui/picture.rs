@@ -16,6 +16,9 @@ use std::ops::RangeInclusive;
 /// Millimetres per metre: positions of cuts are shown in millimetres.
 const MILLIMETRES: f64 = 1e3;
 
+/// Height of a list of choices [points]: all of them at once.
+const CHOICES_HEIGHT: f32 = 400.0;
+
 /// Size of the grains in the picture at which one sees what lies between their centres.
 const LOOK_BETWEEN: f32 = 0.4;
 
@@ -340,6 +343,7 @@ fn combo_ui<T: Copy + PartialEq>(
         let response = egui::ComboBox::from_id_salt(label)
             .selected_text(present.map_or("", |choice| choice.1))
             .width(ui.available_width() - 8.0)
+            .height(CHOICES_HEIGHT)
             .show_ui(ui, |ui| {
                 for (choice, name) in choices {
                     ui.selectable_value(value, *choice, *name);

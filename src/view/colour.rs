@@ -127,18 +127,26 @@ pub fn colours(
     }
 }
 
+/// How many grains or contacts a range is taken from, about: of more, evenly spaced ones.
+const SAMPLED: usize = 4096;
+
+/// Of so many grains or contacts each how manieth is looked at.
+pub(super) fn stride(count: usize) -> usize {
+    count.div_ceil(SAMPLED).max(1)
+}
+
+/// The number that this share of `numbers` stays below, as far as these tell; none of none. Leaves them in another order.
+pub(super) fn quantile(numbers: &mut [f64], share: f64) -> Option<f64> {
+    let last = numbers.len().checked_sub(1)?;
+    let rank = (share.clamp(0.0, 1.0) * last as f64) as usize;
+    Some(*numbers.select_nth_unstable_by(rank, f64::total_cmp).1)
+}
+
 /// The numbers that these shares of the grains stay below.
 fn percentiles(worlds: &[&World], quantity: GrainQuantity, low: f64, high: f64) -> (f64, f64) {
-    let mut values = finite_values(worlds, quantity);
-    if values.is_empty() {
-        return (0.0, 1.0);
-    }
-    let last = values.len() - 1;
-    let mut at = |share: f64| {
-        let rank = (share.clamp(0.0, 1.0) * last as f64).round() as usize;
-        *values.select_nth_unstable_by(rank, f64::total_cmp).1
-    };
-    (at(low), at(high))
+    let mut values = sampled_values(worlds, quantity);
+    let mut at = |share, of_none| quantile(&mut values, share).unwrap_or(of_none);
+    (at(low, 0.0), at(high, 1.0))
 }
 
 /// The numbers behind the colours of all grains.
@@ -150,30 +158,29 @@ fn values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
     values
 }
 
-fn finite_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
-    let mut values = values(worlds, quantity);
-    values.retain(|value| value.is_finite());
-    values
+/// Some of them evenly spaced, as far as they are numbers.
+fn sampled_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
+    let values = values(worlds, quantity);
+    let stride = stride(values.len());
+    let sampled = values.into_iter().step_by(stride);
+    sampled.filter(|value| value.is_finite()).collect()
 }
 
 /// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
 fn automatic_maximum(worlds: &[&World], quantity: GrainQuantity, before: Option<&Legend>) -> f64 {
-    let mut values = finite_values(worlds, quantity);
-    if values.is_empty() {
+    let Some(most) = quantile(&mut sampled_values(worlds, quantity), 0.98) else {
         return 1.0;
-    }
-    let rank = (values.len() - 1) * 49 / 50;
-    let (_, most, _) = values.select_nth_unstable_by(rank, f64::total_cmp);
+    };
     if let Some(before) = before
-        && (0.45 * before.max..=before.max).contains(most)
+        && (0.45 * before.max..=before.max).contains(&most)
     {
         return before.max;
     }
     if quantity == GrainQuantity::Coordination {
-        (*most / 4.0).ceil().max(2.0) * 4.0
+        (most / 4.0).ceil().max(2.0) * 4.0
     } else {
         // Quarters of these are round too.
-        round_up_to(*most, &[1.0, 2.0, 4.0, 8.0])
+        round_up_to(most, &[1.0, 2.0, 4.0, 8.0])
     }
 }
 

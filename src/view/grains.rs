@@ -46,7 +46,7 @@ struct HalfBuffer {
 }
 
 /// Grains whose shadows are brought up to date in a frame.
-const SHADOWS_A_FRAME: usize = 4096;
+const SHADOWS_A_FRAME: usize = 2048;
 
 /// A grain as the shaders read it.
 #[derive(Clone, Copy, Pod, Zeroable)]

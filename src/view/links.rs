@@ -4,7 +4,7 @@
 //! A bar of a force goes from centre to centre, as thick as the force is large; one that pulls has a waist. A bridge is as
 //! thick as its volume makes it. An arrow tapers to its tip.
 
-use super::colour::{linear, round_up};
+use super::colour::{linear, quantile, round_up, stride};
 use super::grains::CutPlanes;
 use super::spheres::quads;
 use super::{LinkScales, Shown, ViewSettings, layers};
@@ -16,7 +16,7 @@ use bevy::mesh::MeshVertexBufferLayoutRef;
 use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
 use bevy::render::render_resource::{
-    AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
+    AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
 };
 use bevy::render::storage::ShaderBuffer;
 use bevy::shader::ShaderRef;
@@ -25,11 +25,33 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 const SHADER: Handle<Shader> = uuid_handle!("c1a9b0de-5f35-4a25-8a53-71f5a2f0cb21");
-/// sRGB colours of what pushes, what pulls, liquid, velocity.
-pub(super) const PUSH: [u8; 3] = [0xF0, 0x8A, 0x4B];
-pub(super) const PULL: [u8; 3] = [0x6F, 0xB6, 0xF2];
-pub(super) const LIQUID: [u8; 3] = [0x46, 0x9F, 0xE0];
-pub(super) const VELOCITY: [u8; 3] = [0xE8, 0xEC, 0xF2];
+/// What a bar stands for; `as usize` gives its place in the palette.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// A force that pushes.
+    Push,
+    /// A force that pulls.
+    Pull,
+    /// A bridge.
+    Liquid,
+    /// A velocity.
+    Velocity,
+}
+
+impl Kind {
+    const ALL: [Self; 4] = [Self::Push, Self::Pull, Self::Liquid, Self::Velocity];
+
+    /// sRGB.
+    pub(super) fn colour(self) -> [u8; 3] {
+        match self {
+            Self::Push => [0xF0, 0x8A, 0x4B],
+            Self::Pull => [0x6F, 0xB6, 0xF2],
+            Self::Liquid => [0x46, 0x9F, 0xE0],
+            Self::Velocity => [0xE8, 0xEC, 0xF2],
+        }
+    }
+}
+
 /// Radius of the bar of the reference force, and of the root of an arrow, in mean radii of grains.
 const FORCE_RADIUS: f64 = 0.3;
 const ARROW_RADIUS: f64 = 0.16;
@@ -59,6 +81,14 @@ pub(super) fn plugin(app: &mut App) {
 struct LinkMaterial {
     #[storage(0, read_only)]
     links: Handle<ShaderBuffer>,
+    #[uniform(1)]
+    palette: Palette,
+}
+
+/// The linear colour of each [`Kind`].
+#[derive(Clone, Copy, ShaderType)]
+struct Palette {
+    colours: [Vec4; Kind::ALL.len()],
 }
 
 impl Material for LinkMaterial {
@@ -94,16 +124,33 @@ impl Material for LinkMaterial {
     }
 }
 
-/// A bar as the shader reads it.
+/// A bar as the shader reads it, small: a picture of the tallest columns has a quarter of a million.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct Link {
     from: [f32; 3],
-    from_radius: f32,
+    /// The larger of the radii at both ends.
+    radius: f32,
     to: [f32; 3],
-    to_radius: f32,
-    colour: [f32; 3],
-    unused: f32,
+    /// Radii at both ends in 255ths of the larger one, and the [`Kind`].
+    shape: [u8; 4],
+}
+
+impl Link {
+    fn new(ends: [DVec3; 2], radii: [f64; 2], kind: Kind) -> Self {
+        let radius = radii[0].max(radii[1]);
+        let share = |r: f64| (255.0 * r / radius).round() as u8;
+        Self {
+            from: ends[0].as_vec3().to_array(),
+            radius: radius as f32,
+            to: ends[1].as_vec3().to_array(),
+            shape: [share(radii[0]), share(radii[1]), kind as u8, 0],
+        }
+    }
+
+    fn middle(&self) -> Vec3 {
+        0.5 * (Vec3::from(self.from) + Vec3::from(self.to))
+    }
 }
 
 /// The entity that draws all links of one half of the picture.
@@ -119,6 +166,8 @@ fn spawn(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<LinkMaterial>>,
 ) {
+    let colours = Kind::ALL.map(|kind| Vec3::from(linear(kind.colour())).extend(1.0));
+    let palette = Palette { colours };
     for half in Half::ALL {
         commands.spawn((
             half,
@@ -127,6 +176,7 @@ fn spawn(
             Mesh3d(meshes.add(quads(&[0]))),
             MeshMaterial3d(materials.add(LinkMaterial {
                 links: Handle::default(),
+                palette,
             })),
             Visibility::Hidden,
             NoFrustumCulling,
@@ -178,7 +228,7 @@ fn update(
             continue;
         }
         visibility.set_if_neq(Visibility::Inherited);
-        let room = links.drawn.len().next_power_of_two();
+        let room = room_for(links.drawn.len(), links.room);
         links.drawn.resize(room, Link::zeroed());
         let bytes: &[u8] = bytemuck::cast_slice(&links.drawn);
         let handle = materials.get(&material.0).map(|m| m.links.clone());
@@ -196,6 +246,15 @@ fn update(
     }
 }
 
+/// For how many of them a mesh and a buffer are made: those there are while neither too small nor much too large.
+fn room_for(count: usize, room: usize) -> usize {
+    if (count..=2 * count).contains(&room) {
+        room
+    } else {
+        count + count / 4
+    }
+}
+
 /// What the bars that are asked for mean, the same in all `worlds`.
 fn scales(worlds: &[&World], settings: &ViewSettings) -> LinkScales {
     let before = &settings.link_scales;
@@ -204,18 +263,22 @@ fn scales(worlds: &[&World], settings: &ViewSettings) -> LinkScales {
         return scales;
     };
     if settings.show_forces {
+        let count = worlds.iter().map(|world| world.contacts.len()).sum();
         let contacts = worlds.iter().flat_map(|world| &world.contacts);
         let force = |contact: &Contact| contact.force.length();
-        scales.force = Some(steady(reference(contacts.map(force)), before.force));
+        let reference = reference(contacts.step_by(stride(count)).map(force));
+        scales.force = Some(steady(reference, before.force));
         scales.thickness = 2.0 * FORCE_RADIUS * radius;
     }
     if settings.show_bridges {
         scales.liquid = worlds.iter().any(|world| world.wetting().is_some());
     }
     if settings.show_velocities {
+        let count = worlds.iter().map(|world| world.grains.len()).sum();
         let velocities = worlds.iter().flat_map(|world| &world.grains.velocity);
         let speed = |v: &DVec3| v.length();
-        scales.speed = Some(steady(reference(velocities.map(speed)), before.speed));
+        let reference = reference(velocities.step_by(stride(count)).map(speed));
+        scales.speed = Some(steady(reference, before.speed));
         scales.length = ARROW_LENGTH * radius;
     }
     scales
@@ -239,21 +302,13 @@ impl Links {
         if let Some(reference) = settings.link_scales.speed {
             self.arrows(world, reference, radius);
         }
-        self.drawn.retain(|link| {
-            let middle = 0.5 * (Vec3::from(link.from) + Vec3::from(link.to));
-            !cut.take_away(middle)
-        });
+        if settings.cut.is_some() {
+            self.drawn.retain(|link| !cut.take_away(link.middle()));
+        }
     }
 
-    fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], colour: [f32; 3]) {
-        self.drawn.push(Link {
-            from: ends[0].as_vec3().to_array(),
-            from_radius: radii[0] as f32,
-            to: ends[1].as_vec3().to_array(),
-            to_radius: radii[1] as f32,
-            colour,
-            unused: 0.0,
-        });
+    fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], kind: Kind) {
+        self.drawn.push(Link::new(ends, radii, kind));
     }
 
     fn force(&mut self, world: &World, contact: &Contact, reference: f64, radius: f64) {
@@ -264,12 +319,12 @@ impl Links {
         let [from, to] = ends(world, contact);
         let thick = FORCE_RADIUS * radius * share.min(LARGEST);
         if contact.force.dot(to - from) <= 0.0 {
-            self.push([from, to], [thick; 2], linear(PUSH));
+            self.push([from, to], [thick; 2], Kind::Push);
             return;
         }
-        let (middle, thin, colour) = (0.5 * (from + to), WAIST * thick, linear(PULL));
-        self.push([from, middle], [thick, thin], colour);
-        self.push([middle, to], [thin, thick], colour);
+        let (middle, thin) = (0.5 * (from + to), WAIST * thick);
+        self.push([from, middle], [thick, thin], Kind::Pull);
+        self.push([middle, to], [thin, thick], Kind::Pull);
     }
 
     fn bridge(&mut self, world: &World, contact: &Contact) {
@@ -289,15 +344,14 @@ impl Links {
             from + normal * inside(radii[0]),
             to - normal * inside(radii[1]),
         ];
-        self.push(ends, [neck; 2], linear(LIQUID));
+        self.push(ends, [neck; 2], Kind::Liquid);
     }
 
     fn arrows(&mut self, world: &World, reference: f64, radius: f64) {
-        let colour = linear(VELOCITY);
         for (x, v) in world.grains.position.iter().zip(&world.grains.velocity) {
             if v.length() > SMALLEST * reference {
                 let tip = *x + *v * (ARROW_LENGTH * radius / reference);
-                self.push([*x, tip], [ARROW_RADIUS * radius, 0.0], colour);
+                self.push([*x, tip], [ARROW_RADIUS * radius, 0.0], Kind::Velocity);
             }
         }
     }
@@ -332,12 +386,7 @@ fn mean_radius(world: &World) -> f64 {
 /// A round number that all but a fiftieth of the numbers above zero stay below.
 fn reference(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut numbers: Vec<f64> = numbers.filter(|x| x.is_finite() && *x > 0.0).collect();
-    if numbers.is_empty() {
-        return 1.0;
-    }
-    let rank = (numbers.len() - 1) * 49 / 50;
-    let (_, most, _) = numbers.select_nth_unstable_by(rank, f64::total_cmp);
-    round_up(*most)
+    quantile(&mut numbers, 0.98).map_or(1.0, round_up)
 }
 
 /// `before` while it suits, so that bars do not jump from frame to frame.
@@ -372,6 +421,16 @@ mod tests {
     }
 
     #[test]
+    fn room_is_kept_while_it_suits() {
+        assert_eq!(room_for(100, 0), 125);
+        assert_eq!(room_for(125, 125), 125);
+        assert_eq!(room_for(126, 125), 157);
+        assert_eq!(room_for(63, 125), 125);
+        assert_eq!(room_for(62, 125), 77);
+        assert_eq!(room_for(1, 0), 1);
+    }
+
+    #[test]
     fn scale_keeps_still_while_it_suits() {
         assert_eq!(steady(0.5, Some(1.0)), 1.0);
         assert_eq!(steady(0.2, Some(1.0)), 0.2);
@@ -400,11 +459,12 @@ mod tests {
         let [push] = bars(-0.5 * along, &mut world)[..] else {
             panic!("a push is one bar");
         };
-        assert_eq!(push.from_radius, 0.15e-3);
-        assert_eq!(push.to_radius, push.from_radius);
+        assert_eq!((push.radius, push.shape), (0.15e-3, [255, 255, 0, 0]));
         let pull = bars(0.5 * along, &mut world);
         assert_eq!(pull.len(), 2);
-        assert!(pull[0].to_radius < 0.5 * pull[0].from_radius);
+        // A waist of 0.35 in 255ths.
+        assert_eq!(pull[0].shape, [255, 89, Kind::Pull as u8, 0]);
+        assert_eq!(pull[1].shape, [89, 255, Kind::Pull as u8, 0]);
         assert!(bars(DVec3::splat(f64::NAN), &mut world).is_empty());
     }
 }

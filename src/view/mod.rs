@@ -65,6 +65,7 @@ use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::CameraUpdateSystems;
 use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
+use bevy::tasks::AsyncComputeTaskPool;
 use bevy_egui::EguiPostUpdateSet;
 use std::sync::Arc;
 
@@ -133,12 +134,21 @@ pub struct Shown {
 impl Shown {
     /// Shows this world from now on, alone.
     pub fn show(&mut self, world: Option<Arc<World>>) {
-        self.halves = [world, None];
+        self.replace([world, None]);
     }
 
     /// Shows these two from now on, side by side.
     pub fn show_twins(&mut self, left: Arc<World>, right: Arc<World>) {
-        self.halves = [Some(left), Some(right)];
+        self.replace([Some(left), Some(right)]);
+    }
+
+    /// What was shown is freed beside the frame: a large world takes milliseconds.
+    fn replace(&mut self, halves: [Option<Arc<World>>; 2]) {
+        let before = std::mem::replace(&mut self.halves, halves);
+        match AsyncComputeTaskPool::try_get() {
+            Some(pool) => pool.spawn(async move { drop(before) }).detach(),
+            None => drop(before),
+        }
     }
 
     /// The world in the picture; of two the left one.
@@ -179,7 +189,7 @@ fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<Shown>) {
         _ => false,
     };
     if !Half::ALL.into_iter().all(is_shown) {
-        shown.halves = newest.map(Option::<&Arc<World>>::cloned);
+        shown.replace(newest.map(Option::<&Arc<World>>::cloned));
     }
 }
 

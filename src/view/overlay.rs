@@ -4,9 +4,9 @@
 //! pointer but [`viewport_ui`], which hands it to the camera.
 
 use super::camera::apply_response;
-use super::colour::{Scheme, species_colour};
+use super::colour::{Scheme, species_colour, stride};
 use super::container::ring_distance;
-use super::links::{LIQUID, PULL, PUSH, VELOCITY};
+use super::links::Kind;
 use super::pick::pick;
 use super::{Axis, ColourMap, Legend, OrbitCamera, ViewSettings};
 use crate::simulation::Half;
@@ -235,7 +235,9 @@ fn ring_labels(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, radiu
     let step = 5.0 * ring_distance(radius);
     let (sin, cos) = (camera.yaw + 0.7).sin_cos();
     let mut beyond = [0; LABELS];
-    for x in &world.grains.position {
+    let places = &world.grains.position;
+    let looked_at = places.iter().step_by(stride(places.len()));
+    for x in looked_at.clone() {
         let ring = (x.x.hypot(x.z) / step) as usize;
         beyond[ring.min(LABELS - 1)] += 1;
     }
@@ -248,7 +250,7 @@ fn ring_labels(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, radiu
             return;
         };
         let place = rect.min + vec2(x, y);
-        if outside * 100 > world.grains.len() || place.distance(place_before) < 32.0 {
+        if outside * 100 > looked_at.len() || place.distance(place_before) < 32.0 {
             continue;
         }
         place_before = place;
@@ -398,45 +400,44 @@ fn links(ink: &Ink, corner: Pos2, camera: &OrbitCamera, settings: &ViewSettings)
     let scales = &settings.link_scales;
     let points = |metres: f64| (metres / f64::from(camera.metres_per_point())) as f32;
     let mut at = corner;
-    let mut line = |colour: [u8; 3], size: bevy_egui::egui::Vec2, text: String| {
+    let mut line = |kind: Kind, size: bevy_egui::egui::Vec2, text: String| {
         let swatch = Rect::from_min_size(at - vec2(0.0, 0.5 * size.y), size);
         ink.painter
-            .rect_filled(swatch, CornerRadius::same(2), rgb(colour));
+            .rect_filled(swatch, CornerRadius::same(2), rgb(kind.colour()));
         let text_at = at + vec2(size.x + 8.0, 0.0);
         ink.write(text_at, Align2::LEFT_CENTER, text, 13.0, ink.text);
         at.y -= (size.y + 8.0).max(22.0);
     };
     if let Some(speed) = scales.speed {
-        let scale = Prefixed::new(speed, "m/s");
-        let text = format!("{} {}", short_number(speed * scale.factor), scale.unit);
-        line(VELOCITY, vec2(points(scales.length), 3.0), text);
+        let text = with_unit(speed, "m/s");
+        line(Kind::Velocity, vec2(points(scales.length), 3.0), text);
     }
     if scales.liquid {
         line(
-            LIQUID,
+            Kind::Liquid,
             vec2(26.0, 10.0),
             "liquid bridges, to scale".to_owned(),
         );
     }
     if let Some(force) = scales.force {
         let thickness = points(scales.thickness).max(1.0);
-        line(PULL, vec2(26.0, 4.0), "pulls (with a waist)".to_owned());
         line(
-            PUSH,
+            Kind::Pull,
+            vec2(26.0, 4.0),
+            "pulls (with a waist)".to_owned(),
+        );
+        line(
+            Kind::Push,
             vec2(26.0, thickness),
-            format!("pushes with {}", newtons(force)),
+            format!("pushes with {}", with_unit(force, "N")),
         );
     }
 }
 
-/// A force [N] with a unit.
-fn newtons(force: f64) -> String {
-    let (factor, unit) = match force {
-        f if f < 0.9e-3 => (1e6, "µN"),
-        f if f < 0.9 => (1e3, "mN"),
-        _ => (1.0, "N"),
-    };
-    format!("{} {unit}", short_number(force * factor))
+/// A number with its unit, which takes a prefix where that reads better.
+fn with_unit(x: f64, unit: &str) -> String {
+    let scale = Prefixed::new(x.abs(), unit);
+    format!("{} {}", short_number(x * scale.factor), scale.unit)
 }
 
 fn species(ink: &Ink, corner: Pos2, world: &World) {
