@@ -45,9 +45,6 @@ struct HalfBuffer {
     count: usize,
 }
 
-/// Grains whose shadows are brought up to date in a frame.
-const SHADOWS_A_FRAME: usize = 2048;
-
 /// A grain as the shaders read it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -154,9 +151,15 @@ fn fill(
             kept.halves[half.index()].redraw(shown.half(half), &settings);
         }
     }
+    let cut = CutPlanes::of(settings.cut);
     for (half, buffer) in kept.halves.iter_mut().zip(&mut buffer.halves) {
-        half.shade();
-        buffer.write(&half.drawn, &mut buffers);
+        let follow = half
+            .shadows
+            .follow(&half.spheres, move |centre| cut.take_away(centre));
+        if follow || moved || recoloured {
+            half.shade();
+            buffer.write(&half.drawn, &mut buffers);
+        }
     }
     buffer.shadows_are_whole = kept.shadows_are_whole();
 }
@@ -202,9 +205,7 @@ impl HalfKept {
             self.place(world, settings.grain_size);
             self.colour(world, settings);
         }
-        let cut = CutPlanes::of(settings.cut);
-        self.shadows
-            .follow(&self.spheres, |centre| cut.take_away(centre));
+        self.shadows.outdate();
     }
 
     fn place(&mut self, world: &World, size: f32) {
@@ -245,9 +246,8 @@ impl HalfKept {
         );
     }
 
-    /// Brings some shadows up to date, and writes all.
+    /// Writes the shadows, as far as they are known.
     fn shade(&mut self) {
-        self.shadows.renew(SHADOWS_A_FRAME);
         for (grain, hidden) in self.drawn.iter_mut().zip(self.shadows.hidden()) {
             grain.hidden_mean = hidden.mean;
             grain.hidden_gradient = hidden.gradient.to_array();

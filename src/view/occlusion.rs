@@ -5,6 +5,8 @@
 //! the positions so that nothing flickers; it is no measure. Walls hide nothing.
 
 use bevy::math::{USizeVec3, Vec3};
+use bevy::tasks::futures::check_ready;
+use bevy::tasks::{AsyncComputeTaskPool, Task};
 
 /// Share of the sky hidden as a function of the surface normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,15 +49,15 @@ impl Occlusion {
     }
 }
 
-/// The shadows of all spheres, brought up to date some spheres at a time, so that no frame waits for all of them.
+/// The shadows of all spheres, which follow them round by round beside the frames, so that no frame waits for them.
 #[derive(Default)]
 pub(super) struct Shadows {
     hidden: Vec<Occlusion>,
-    cells: Cells,
-    /// Where in the order of cells the next ones are.
-    next: usize,
-    /// How many were not looked at since the spheres were others.
-    stale: usize,
+    /// The spheres are others than those of the last round begun.
+    is_stale: bool,
+    under_way: Option<Task<Round>>,
+    /// What the last round leaves for the next one.
+    done: Round,
 }
 
 impl Shadows {
@@ -66,29 +68,64 @@ impl Shadows {
 
     /// Whether all are up to date.
     pub(super) fn are_whole(&self) -> bool {
-        self.stale == 0
+        !self.is_stale && self.under_way.is_none()
     }
 
-    /// From now on the spheres (centre, radius) are these; those for which `absent` holds hide nothing.
-    pub(super) fn follow(&mut self, spheres: &[(Vec3, f32)], absent: impl Fn(Vec3) -> bool) {
-        if self.hidden.len() != spheres.len() {
-            self.hidden.clear();
-            self.hidden.resize(spheres.len(), Occlusion::default());
+    /// The spheres or what is cut away are others from now on.
+    pub(super) fn outdate(&mut self) {
+        self.is_stale = true;
+    }
+
+    /// Takes over a round that has ended, and begins one where the `spheres` (centre, radius) have changed since; those for
+    /// which `absent` holds hide nothing. Whether the shadows are others now.
+    pub(super) fn follow(
+        &mut self,
+        spheres: &[(Vec3, f32)],
+        absent: impl Fn(Vec3) -> bool + Send + 'static,
+    ) -> bool {
+        let ended = self.under_way.as_mut().and_then(check_ready);
+        let has_ended = ended.is_some();
+        if let Some(mut round) = ended {
+            self.under_way = None;
+            std::mem::swap(&mut self.hidden, &mut round.hidden);
+            self.done = round;
         }
-        self.stale = if self.cells.sort(spheres, absent) {
-            spheres.len()
-        } else {
-            0
-        };
+        if self.hidden.len() != spheres.len() {
+            // They were those of another scene.
+            self.hidden.clear();
+        }
+        if self.is_stale && self.under_way.is_none() {
+            self.is_stale = false;
+            let mut round = std::mem::take(&mut self.done);
+            round.spheres.clear();
+            round.spheres.extend_from_slice(spheres);
+            self.under_way = Some(AsyncComputeTaskPool::get().spawn(async move {
+                round.look(absent);
+                round
+            }));
+        }
+        has_ended
     }
+}
 
-    /// Brings up to `most` of them up to date.
-    pub(super) fn renew(&mut self, most: usize) {
-        for _ in 0..most.min(self.stale) {
-            self.next = (self.next + 1) % self.hidden.len();
-            let (sphere, occlusion) = self.cells.occlusion(self.next);
+/// One look at all spheres, with the room that it needs.
+#[derive(Default)]
+struct Round {
+    spheres: Vec<(Vec3, f32)>,
+    cells: Cells,
+    hidden: Vec<Occlusion>,
+}
+
+impl Round {
+    fn look(&mut self, absent: impl Fn(Vec3) -> bool) {
+        self.hidden.clear();
+        self.hidden.resize(self.spheres.len(), Occlusion::default());
+        if !self.cells.sort(&self.spheres, absent) {
+            return;
+        }
+        for place in 0..self.spheres.len() {
+            let (sphere, occlusion) = self.cells.occlusion(place);
             self.hidden[sphere] = occlusion;
-            self.stale -= 1;
         }
     }
 }
@@ -240,10 +277,12 @@ mod tests {
     }
 
     fn occlusions(spheres: &[(Vec3, f32)], absent: bool) -> Vec<Occlusion> {
-        let mut shadows = Shadows::default();
-        shadows.follow(spheres, |_| absent);
-        shadows.renew(spheres.len());
-        shadows.hidden().to_vec()
+        let mut round = Round {
+            spheres: spheres.to_vec(),
+            ..Round::default()
+        };
+        round.look(|_| absent);
+        round.hidden
     }
 
     #[test]
@@ -304,22 +343,24 @@ mod tests {
     }
 
     #[test]
-    fn shadows_are_whole_after_a_round_however_it_is_divided() {
+    fn shadows_follow_spheres_that_move_during_a_round() {
+        AsyncComputeTaskPool::get_or_init(Default::default);
         let mut spheres = scattered();
-        let at_once = occlusions(&spheres, false);
+        let expected = occlusions(&spheres, false);
         let mut shadows = Shadows::default();
-        // Elsewhere at first: half of them are looked at, then all move.
+        // Elsewhere at first: a round is under way when they all move.
         spheres.reverse();
-        shadows.follow(&spheres, |_| false);
-        shadows.renew(200);
+        shadows.outdate();
+        assert!(!shadows.follow(&spheres, |_| false), "none has ended yet");
         spheres.reverse();
-        shadows.follow(&spheres, |_| false);
-        for _ in 0..4 {
-            assert!(!shadows.are_whole());
-            shadows.renew(130);
+        shadows.outdate();
+        let mut rounds = 0;
+        while !shadows.are_whole() {
+            rounds += u32::from(shadows.follow(&spheres, |_| false));
+            std::thread::yield_now();
         }
-        assert!(shadows.are_whole());
-        assert_eq!(shadows.hidden(), at_once);
+        assert_eq!(rounds, 2);
+        assert_eq!(shadows.hidden(), expected);
     }
 
     #[test]
