@@ -27,6 +27,8 @@ const SCENES: &[BuiltIn] = built_in![
     "dry-r1.25" in "papers/kasper2021",
     "wet" in "papers/kasper2021",
     "column" in "papers/man2023",
+    "column-7-3" in "papers/man2023",
+    "column-1-1" in "papers/man2023",
     "small-drum" in "gallery",
     "two-frictions-drum" in "gallery",
     "water-drum" in "gallery",

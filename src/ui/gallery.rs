@@ -30,6 +30,8 @@ const PICTURES: &[(&str, &[u8])] = pictures![
     "dry-r1.25",
     "wet",
     "column",
+    "column-7-3",
+    "column-1-1",
     "small-drum",
     "two-frictions-drum",
     "water-drum",

@@ -6,6 +6,7 @@
 use super::camera::apply_response;
 use super::colour::{Scheme, species_colour, stride};
 use super::container::ring_distance;
+use super::grains::CutPlanes;
 use super::links::Kind;
 use super::pick::pick;
 use super::{Axis, ColourMap, Legend, OrbitCamera, ViewSettings};
@@ -333,7 +334,8 @@ fn selection(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, setting
         ink.painter
             .circle_stroke(at, radius, Stroke::new(width, rgb(SELECTED)));
         if named {
-            let text = format!("grain {grain}");
+            let is_cut = CutPlanes::of(settings.cut).take_away(centre);
+            let text = format!("grain {grain}{}", if is_cut { ", cut away" } else { "" });
             outlined(ink, at - vec2(0.0, radius + 4.0), &text, rgb(SELECTED));
         }
     }
