@@ -6,7 +6,7 @@
 
 use super::colour::{linear, quantile, round_up, stride};
 use super::grains::CutPlanes;
-use super::spheres::quads;
+use super::quads::{self, quads};
 use super::{LinkScales, Shown, ViewSettings, layers};
 use crate::simulation::Half;
 use crate::world::{Contact, Partner, World};
@@ -114,13 +114,7 @@ impl Material for LinkMaterial {
         layout: &MeshVertexBufferLayoutRef,
         _key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.primitive.cull_mode = None;
-        descriptor.vertex.buffers = vec![
-            layout
-                .0
-                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0)])?,
-        ];
-        Ok(())
+        quads::specialize(descriptor, layout)
     }
 }
 

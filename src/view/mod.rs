@@ -14,6 +14,7 @@
 //! | `colour` | every colour, the legend |
 //! | `grains` | place, colour and shadow of all grains in one buffer |
 //! | `spheres` | spheres as one draw, exact |
+//! | `quads` | what spheres and links are drawn on |
 //! | `polyhedra` | polyhedra as a few draws of triangles |
 //! | `facets` | the surface of a rounded polyhedron |
 //! | `occlusion` | the soft shadow in the gaps between grains |
@@ -38,6 +39,7 @@ mod overlay;
 mod pick;
 mod png;
 mod polyhedra;
+mod quads;
 mod rig;
 mod settings;
 mod spheres;

@@ -4,11 +4,12 @@
 //! finds the grain in the buffer and raymarches it.
 
 use super::grains::{CutPlanes, Forms, GrainBuffer, polyhedron};
+use super::quads::{self, quads};
 use super::{Shown, ViewSettings, layers};
 use crate::simulation::Half;
-use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
+use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
-use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};
+use bevy::mesh::MeshVertexBufferLayoutRef;
 use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
 use bevy::render::render_resource::{
@@ -67,13 +68,7 @@ impl Material for SphereMaterial {
         layout: &MeshVertexBufferLayoutRef,
         _key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.primitive.cull_mode = None;
-        descriptor.vertex.buffers = vec![
-            layout
-                .0
-                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0)])?,
-        ];
-        Ok(())
+        quads::specialize(descriptor, layout)
     }
 }
 
@@ -157,27 +152,4 @@ fn update(
             material.grains = own.clone();
         }
     }
-}
-
-/// A quad for each of the `grains`; a vertex holds its corner (±1, ±1) and the grain's index.
-pub(super) fn quads(grains: &[u32]) -> Mesh {
-    let mut places = Vec::with_capacity(4 * grains.len());
-    let mut indices = Vec::with_capacity(6 * grains.len());
-    for (i, grain) in (0_u32..).zip(grains) {
-        // Exact: below 2^24, more grains than any buffer here holds.
-        let index = *grain as f32;
-        places.extend([
-            [-1.0, -1.0, index],
-            [1.0, -1.0, index],
-            [1.0, 1.0, index],
-            [-1.0, 1.0, index],
-        ]);
-        indices.extend([0, 1, 2, 2, 3, 0].map(|corner| 4 * i + corner));
-    }
-    Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::RENDER_WORLD,
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
-    .with_inserted_indices(Indices::U32(indices))
 }
