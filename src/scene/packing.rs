@@ -99,15 +99,29 @@ impl StoredCells {
     }
 }
 
-impl TryFrom<Reference> for StoredCells {
-    type Error = PackingError;
+/// Why the grains of a scene that was kept are not there any more.
+#[derive(Debug, thiserror::Error)]
+#[error("its grains are in {}, which {reason}", .file.display())]
+struct Lost {
+    file: PathBuf,
+    reason: PackingError,
+}
 
-    fn try_from(reference: Reference) -> Result<Self, PackingError> {
-        let stored = Self::read(&reference.file)?;
-        if stored.reference.checksum != reference.checksum {
-            return Err(PackingError::Changed);
+impl TryFrom<Reference> for StoredCells {
+    type Error = Lost;
+
+    fn try_from(reference: Reference) -> Result<Self, Lost> {
+        let lost = |reason| Lost {
+            // Where it was looked for, in full.
+            file: std::path::absolute(&reference.file).unwrap_or(reference.file.clone()),
+            reason,
+        };
+        let stored = Self::read(&reference.file).map_err(lost)?;
+        if stored.reference.checksum == reference.checksum {
+            Ok(stored)
+        } else {
+            Err(lost(PackingError::Changed))
         }
-        Ok(stored)
     }
 }
 

@@ -50,7 +50,7 @@ enum Reason {
     )]
     Version(String),
     #[error(
-        "states a scene that cannot be made here: {0}. Put the file that it needs where it was"
+        "states a scene that cannot be made here: {0}. Where it names a file, put that file there and open this one again"
     )]
     Scene(String),
     #[error(
@@ -138,8 +138,10 @@ impl Session {
         }
         let foreign = "its contents are those of another build of this version";
         let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
-        let claim: Claim =
-            serde_json::from_str(second).map_err(|error| Reason::Scene(error.to_string()))?;
+        // By way of a value: an error then speaks of what is wrong, not of a place in this long line.
+        let claim: Claim = serde_json::from_str(second)
+            .and_then(serde_json::from_value::<Claim>)
+            .map_err(|error| Reason::Scene(error.to_string()))?;
         let archive: Archive = postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
         let hash = archive.shown().map(|world| world.hash().to_string());
         if !archive.is_whole() || !claim.is_genuine() || hash != claim.state_hash {

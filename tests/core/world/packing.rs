@@ -416,6 +416,35 @@ fn grains_from_a_file_are_those_that_were_cut() {
 }
 
 #[test]
+fn a_scene_that_was_kept_says_which_file_its_grains_are_missing_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let grains = Packing::new(&Scene::open("small-column").unwrap())
+        .unwrap()
+        .finish();
+    let cells = folder.path().join("cells.pack");
+    fs::write(&cells, StoredCells::encode(&grains)).unwrap();
+    let file = folder.path().join("scene.ron");
+    let wide = of_file("cells.pack", "").replace("height_mm: 10", "radius_mm: 20, height_mm: 25");
+    fs::write(&file, wide).unwrap();
+    let kept = serde_json::to_string(&Scene::load(&file).unwrap()).unwrap();
+    fs::write(&cells, StoredCells::encode(&grains[1..])).unwrap();
+    let changed = serde_json::from_str::<Scene>(&kept)
+        .unwrap_err()
+        .to_string();
+    fs::remove_file(&cells).unwrap();
+    let gone = serde_json::from_str::<Scene>(&kept)
+        .unwrap_err()
+        .to_string();
+    for (message, reason) in [(changed, "other grains"), (gone, "cannot be read")] {
+        let named = format!("{}, which", cells.display());
+        assert!(
+            message.contains(&named) && message.contains(reason),
+            "{message}"
+        );
+    }
+}
+
+#[test]
 fn files_that_hold_no_grains_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let grains = Packing::new(&Scene::open("small-column").unwrap())
