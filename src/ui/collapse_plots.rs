@@ -77,7 +77,7 @@ fn front(curves: &Curves, window: &RangeInclusive<f64>, columns: usize, palette:
     Curve {
         id: "front",
         title: "Front radius R [mm]",
-        latest: curves.latest(value, |radius| number::fixed(radius, 2)),
+        present: curves.present(value, |radius| number::fixed(radius, 2)),
         colour: palette.angle,
         height: height_of(lines.points(), SMALLEST_FRONT_SPAN),
         lines,
@@ -100,7 +100,7 @@ fn energy(
     Curve {
         id: "energy",
         title: "Kinetic energy per grain [µJ]",
-        latest: curves.latest(value, number::short),
+        present: curves.present(value, number::short),
         colour: palette.temperature,
         height: height_of(lines.points(), SMALLEST_ENERGY_SPAN),
         lines,

@@ -3,7 +3,7 @@
 //!
 //! In: the samples. Out: the plot, its numbers at the moment shown, the moment that is clicked on.
 
-use super::plots::{round_marks, seek, shown, shown_ui, tick};
+use super::plots::{fitting_plot, seek, shown, shown_ui, tick};
 use super::table::{Row, table_ui};
 use super::theme::Palette;
 use super::{Panel, Request, number};
@@ -11,7 +11,7 @@ use crate::measure::{Measure, Series};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Color32, RichText, Stroke, WidgetInfo, WidgetType};
-use egui_plot::{FilledArea, HoverPosition, Line, Plot};
+use egui_plot::{FilledArea, HoverPosition, Line};
 
 /// Samples drawn at most.
 const MOST_SAMPLES: usize = 500;
@@ -101,15 +101,8 @@ impl Panel for Energy {
         let unit = format!("{prefix}J");
         ui.label(RichText::new(format!("Where the energy is and went [{unit}]")).strong());
         let label_unit = unit.clone();
-        let drawn = Plot::new("energy stack")
-            .height((0.24 * ui.ctx().content_rect().height()).clamp(130.0, 320.0))
-            .show_crosshair(false)
-            .allow_scroll(false)
-            .grid_color(palette.grid)
-            .x_grid_spacer(|input| round_marks(input, 10.0, 0.0))
-            .y_grid_spacer(|input| round_marks(input, 3.5, 0.0))
+        let drawn = fitting_plot(ui, "energy stack")
             .x_axis_formatter(|mark, _| format!("{} s", tick(mark.value, false)))
-            .y_axis_formatter(|mark, _| tick(mark.value, false))
             .label_formatter(move |hover| Some(cursor(hover, &label_unit)))
             .show(ui, |plot| {
                 let mut below = vec![0.0; stack.time.len()];

@@ -5,23 +5,21 @@
 
 use super::compare::half_title;
 use super::decimate::decimate;
-use super::plots::{ghosts, halves_ui, round_marks, seek, shown, shown_ui, tick, twin_line};
+use super::plots::{fitting_plot, ghosts, halves_ui, near_start, seek, shown, shown_ui, twin_line};
 use super::theme::{Palette, dash};
 use super::{Panel, Request, number};
 use crate::files::write_whole;
-use crate::measure::{Avalanche, Measure, Series};
+use crate::measure::{Measure, Series};
 use crate::simulation::{DisplayUnit, Half, Provenance, Simulation};
 use crate::sweep::chart;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Rect, RichText, Stroke, WidgetInfo, WidgetType};
-use egui_plot::{HoverPosition, Line, LineStyle, Plot, VLine};
+use egui_plot::{HoverPosition, Line, LineStyle, VLine};
 use std::io;
 use std::path::Path;
 
 /// Most points of a curve over another quantity than time.
 const MOST_POINTS: usize = 4000;
-/// A click this near to the start of an avalanche means it, in points.
-const NEAR: f64 = 7.0;
 
 /// The panel.
 #[derive(Debug, PartialEq)]
@@ -119,7 +117,9 @@ impl Panel for Explorer {
         measure_ui(ui, "Plot", &mut self.quantity, &measures);
         over_ui(ui, &mut self.over, &measures);
         halves_ui(ui, simulation);
-        let rect = self.plot_ui(ui, simulation, out);
+        // With its title and its axes.
+        let drawn = ui.vertical(|ui| self.plot_ui(ui, simulation, out));
+        let rect = drawn.response.rect.expand(4.0);
         let export = ui.button("Export…").on_hover_text(
             "As an SVG or PNG picture, or all samples as CSV: the ending of the file's name decides",
         );
@@ -183,8 +183,8 @@ impl Explorer {
             .collect()
     }
 
-    /// Draws the plot; returns where.
-    fn plot_ui(&self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) -> Rect {
+    /// Draws the plot.
+    fn plot_ui(&self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let palette = Palette::of(ui.visuals());
         let columns = (ui.available_width() * ui.ctx().pixels_per_point()) as usize;
         let (x, y) = self.axes();
@@ -208,15 +208,8 @@ impl Explorer {
         // Another pair of quantities begins with bounds of its own.
         let name = format!("{} over {}", y.label(), x.label());
         ui.label(RichText::new(&name).strong());
-        let plot = Plot::new(name.as_str())
-            .height((0.26 * ui.ctx().content_rect().height()).clamp(130.0, 340.0))
+        let plot = fitting_plot(ui, &name)
             .show_crosshair(true)
-            .allow_scroll(false)
-            .grid_color(palette.grid)
-            .x_grid_spacer(|input| round_marks(input, 10.0, 0.0))
-            .y_grid_spacer(|input| round_marks(input, 3.5, 0.0))
-            .x_axis_formatter(|mark, _| tick(mark.value, false))
-            .y_axis_formatter(|mark, _| tick(mark.value, false))
             .label_formatter(move |hover| Some(cursor(hover, units)));
         let drawn = plot.show(ui, |plot| {
             for avalanche in avalanches {
@@ -254,10 +247,9 @@ impl Explorer {
         let pointer = response.interact_pointer_pos();
         if let Some(pointer) = pointer.filter(|_| over_time && response.clicked()) {
             let time = drawn.transform.value_from_position(pointer).x;
-            let reach = NEAR / drawn.transform.dpos_dvalue_x().abs();
-            out.extend(seek(simulation, near_start(avalanches, time, reach)));
+            let per_point = 1.0 / drawn.transform.dpos_dvalue_x().abs();
+            out.extend(seek(simulation, near_start(avalanches, time, per_point)));
         }
-        response.rect
     }
 
     fn export(&self, simulation: &Simulation, rect: Rect) -> Export {
@@ -291,14 +283,6 @@ impl Explorer {
             rect,
         }
     }
-}
-
-/// The start of the avalanche within `reach` of `time` [s], else that time.
-fn near_start(avalanches: &[Avalanche], time: f64, reach: f64) -> f64 {
-    let starts = avalanches.iter().map(|avalanche| avalanche.start);
-    let near = starts.filter(|start| (start - time).abs() < reach);
-    let nearest = near.min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()));
-    nearest.unwrap_or(time)
 }
 
 /// The numbers under the pointer.

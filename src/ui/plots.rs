@@ -43,6 +43,8 @@ const SPARSE_X: f32 = 5.5;
 const SPARSE_Y: f32 = 3.5;
 /// Room for half of the last label of the time axis.
 const ROOM_AT_THE_RIGHT: f32 = 14.0;
+/// Room for the value of a run beside the title, in points.
+const ROOM_FOR_VALUE: f32 = 92.0;
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// Both plots.
@@ -122,19 +124,20 @@ impl<'a> Curves<'a> {
         }
     }
 
-    /// The newest value of each run in words.
-    pub(super) fn latest(
+    /// The value of each run at the moment shown in words.
+    pub(super) fn present(
         &self,
         value: impl Fn(&Series, usize) -> f64,
         in_words: impl Fn(f64) -> String,
     ) -> Vec<String> {
-        let last = |series: &Series| {
-            let index = series.len().checked_sub(1);
+        let present = |series: &Series| {
+            let until = |shown| series.time().partition_point(|time| *time <= shown);
+            let index = self.shown.map_or(series.len(), until).checked_sub(1);
             in_words(index.map_or(f64::NAN, |index| value(series, index)))
         };
         std::iter::once(self.series)
             .chain(self.twin)
-            .map(last)
+            .map(present)
             .collect()
     }
 }
@@ -168,8 +171,8 @@ pub(super) struct Curve {
     pub id: &'static str,
     /// What stands over it.
     pub title: &'static str,
-    /// The latest value of each run.
-    pub latest: Vec<String>,
+    /// The value of each run at the moment shown.
+    pub present: Vec<String>,
     /// Its line's colour.
     pub colour: Color32,
     /// Its lines.
@@ -337,7 +340,8 @@ impl Plots {
         });
         let mut clicked = None;
         for response in [first, second] {
-            let near = |time| near_avalanche(time, curves.avalanches, &response, &window);
+            let per_point = per_point(&response, &window);
+            let near = |time| near_start(curves.avalanches, time, per_point);
             clicked = clicked.or(clicked_time(&response, &window).map(near));
             self.span.follow_pointer(&response, &window);
         }
@@ -414,14 +418,10 @@ fn per_point(response: &egui::Response, window: &RangeInclusive<f64>) -> f64 {
     (window.end() - window.start()) / f64::from(response.rect.width().max(1.0))
 }
 
-/// The start of the avalanche that is [`NEAR`] to `time` [s], else that time.
-fn near_avalanche(
-    time: f64,
-    avalanches: &[Avalanche],
-    response: &egui::Response,
-    window: &RangeInclusive<f64>,
-) -> f64 {
-    let reach = NEAR * per_point(response, window);
+/// The start of the avalanche within [`NEAR`] points of `time` [s], where a point stands for `per_point` [s]; else that
+/// time.
+pub(super) fn near_start(avalanches: &[Avalanche], time: f64, per_point: f64) -> f64 {
+    let reach = NEAR * per_point;
     let starts = avalanches.iter().map(|avalanche| avalanche.start);
     let near = starts.filter(|start| (start - time).abs() < reach);
     let nearest = near.min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()));
@@ -439,7 +439,7 @@ fn angle_curve(
     Curve {
         id: "angle",
         title: "Surface angle θ [°]",
-        latest: curves.latest(value, |angle| number::fixed(angle, 2)),
+        present: curves.present(value, |angle| number::fixed(angle, 2)),
         colour: palette.angle,
         height: height_of(lines.points(), SMALLEST_ANGLE_SPAN),
         lines,
@@ -469,7 +469,7 @@ fn temperature_curve(
     Curve {
         id: "temperature",
         title: "Granular temperature Tg [m²/s²]",
-        latest: curves.latest(value, number::short),
+        present: curves.present(value, number::short),
         colour: palette.temperature,
         height: height_of(all, if decades { SMALLEST_DECADES } else { 0.0 }),
         lines,
@@ -553,20 +553,11 @@ pub(super) fn curve_ui<'a>(
 ) -> egui::Response {
     let palette = Palette::of(ui.visuals());
     let Lines { own, twin, kept } = curve.lines;
-    egui::Sides::new().shrink_left().truncate().show(
+    head_ui(
         ui,
-        |ui| ui.label(RichText::new(curve.title).strong()),
-        |ui| {
-            // From right to left.
-            let latest = curve.latest.iter().zip([curve.colour, palette.twin]);
-            for (index, (text, colour)) in latest.enumerate().collect::<Vec<_>>().into_iter().rev()
-            {
-                ui.label(RichText::new(text).color(colour).strong());
-                if index > 0 {
-                    ui.weak("|");
-                }
-            }
-        },
+        curve.title,
+        &curve.present,
+        [curve.colour, palette.twin],
     );
     let bounds = PlotBounds::from_min_max(
         [*window.start(), *curve.height.start()],
@@ -620,6 +611,31 @@ pub(super) fn curve_ui<'a>(
     shown.response
 }
 
+/// The title of a plot and the value of each run at the moment shown: in one line where there is room for all of it.
+fn head_ui(ui: &mut egui::Ui, title: &str, values: &[String], colours: [Color32; 2]) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let words = ui
+        .painter()
+        .layout_no_wrap(title.to_owned(), font, Color32::WHITE);
+    let needed = words.size().x + ROOM_FOR_VALUE * values.len() as f32;
+    let title_ui = |ui: &mut egui::Ui| ui.label(RichText::new(title).strong());
+    let values_ui = |ui: &mut egui::Ui| {
+        // From right to left.
+        for (index, (text, colour)) in values.iter().zip(colours).enumerate().rev() {
+            ui.label(RichText::new(text).color(colour).strong());
+            if index > 0 {
+                ui.weak("|");
+            }
+        }
+    };
+    if needed < ui.available_width() {
+        egui::Sides::new().show(ui, title_ui, values_ui);
+    } else {
+        title_ui(ui);
+        egui::Sides::new().show(ui, |_| (), values_ui);
+    }
+}
+
 /// The line of the run beside the first.
 pub(super) fn twin_line<'a>(name: &str, points: Vec<[f64; 2]>, palette: Palette) -> Line<'a> {
     let style = LineStyle::Dashed { length: TWIN_DASH };
@@ -645,6 +661,19 @@ fn kept_ui(plot: &mut PlotUi, index: usize, name: &str, points: Vec<[f64; 2]>, c
     let label = RichText::new(name).small().color(colour);
     let end = time.min(plot.plot_bounds().max()[0]);
     plot.text(Text::new(name, PlotPoint::new(end, value), label).anchor(Align2::RIGHT_BOTTOM));
+}
+
+/// A plot whose curves decide what of them is in view: a quarter of the window high, with a few round marks.
+pub(super) fn fitting_plot<'a>(ui: &egui::Ui, id: &str) -> Plot<'a> {
+    Plot::new(id)
+        .height((0.25 * ui.ctx().content_rect().height()).clamp(130.0, 330.0))
+        .show_crosshair(false)
+        .allow_scroll(false)
+        .grid_color(Palette::of(ui.visuals()).grid)
+        .x_grid_spacer(|input| round_marks(input, 10.0, 0.0))
+        .y_grid_spacer(|input| round_marks(input, SPARSE_Y, 0.0))
+        .x_axis_formatter(|mark, _| tick(mark.value, false))
+        .y_axis_formatter(|mark, _| tick(mark.value, false))
 }
 
 /// Grid lines at round numbers at least `finest` apart, `sparse` times as far apart as the plot would have them at the

@@ -10,8 +10,6 @@ use super::{Request, changes, number};
 use crate::simulation::{Changed, Command, Simulation};
 use bevy_egui::egui::{self, Rect, RichText, WidgetInfo, WidgetType, pos2, vec2};
 
-/// Room for what stands right of the line, in points.
-const ROOM_AT_THE_RIGHT: f32 = 230.0;
 /// Marks closer than this share one, in points.
 const BETWEEN_MARKS: f32 = 3.0;
 
@@ -85,7 +83,7 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let shown = simulation.step();
     let enabled = end.step > 0 && allows(simulation.status(), &Command::Seek(0));
     let mut time = shown.min(end.step) as f64 * time_step;
-    ui.spacing_mut().slider_width = (ui.available_width() - ROOM_AT_THE_RIGHT).max(80.0);
+    ui.spacing_mut().slider_width = (ui.available_width() - room_for_place(ui, end.time)).max(80.0);
     let slider = egui::Slider::new(&mut time, 0.0..=end.time.max(time_step)).show_value(false);
     let response = ui.add_enabled(enabled, slider);
     let value = (time * 1e6).round() / 1e6;
@@ -133,6 +131,26 @@ fn marks_ui(ui: &egui::Ui, line: Rect, simulation: &Simulation, end: f64) {
     }
 }
 
+/// Shows the newest state of the run.
+const TO_THE_NEWEST: &str = "To the newest";
+
+/// `2.04 of 17.22 s`.
+fn place_in_words(time: f64, end: f64) -> String {
+    format!("{} of {} s", number::fixed(time, 2), number::fixed(end, 2))
+}
+
+/// Width of what stands right of the line, with the space before it: the same whatever moment is shown.
+fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let width = |text: String| {
+        let words = (ui.painter()).layout_no_wrap(text, font.clone(), egui::Color32::WHITE);
+        words.size().x
+    };
+    let spacing = ui.spacing();
+    let texts = width(place_in_words(end, end)) + width(TO_THE_NEWEST.to_owned());
+    texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
+}
+
 /// Which moment is shown of how many, and the way back to the newest.
 fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let end = simulation.past().end;
@@ -146,17 +164,13 @@ fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) 
     };
     let time = simulation.step() as f64 * world.clock.time_step;
     let palette = Palette::of(ui.visuals());
-    let text = format!(
-        "{} of {} s",
-        number::fixed(time, 2),
-        number::fixed(end.time, 2)
-    );
+    let text = place_in_words(time, end.time);
     ui.label(RichText::new(text).color(palette.warning))
         .on_hover_text(
             "An earlier moment is shown: Play shows what followed, a change begins another run",
         );
     let enabled = allows(simulation.status(), &Command::Seek(end.step));
-    let button = ui.add_enabled(enabled, egui::Button::new("To the newest"));
+    let button = ui.add_enabled(enabled, egui::Button::new(TO_THE_NEWEST));
     if button
         .on_hover_text("Show the newest state (End)")
         .clicked()

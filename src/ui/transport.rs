@@ -10,6 +10,9 @@ use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec
 /// Speeds to choose from, in simulated seconds per second.
 const SPEEDS: [f64; 8] = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, f64::INFINITY];
 
+/// Room for the clock, and as much for the speed beside it, in points.
+const ROOM_FOR_CLOCK: f32 = 140.0;
+
 /// Below this share of the speed asked for, the bar says that the machine is slower.
 const KEEPING_UP: f64 = 0.9;
 
@@ -153,6 +156,10 @@ fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     let Some(world) = simulation.world() else {
         return;
     };
+    // Where there is little room the clock in the picture will do.
+    if ui.available_width() < ROOM_FOR_CLOCK {
+        return;
+    }
     let palette = Palette::of(ui.visuals());
     let (factor, asked) = (simulation.real_time_factor(), simulation.speed());
     let slower = factor > 0.0 && asked.is_finite() && factor < KEEPING_UP * asked;
@@ -161,7 +168,7 @@ fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
         .size(17.0);
     ui.label(time.strong())
         .on_hover_text(format!("Simulated time, step {}", world.clock.step));
-    if factor > 0.0 {
+    if factor > 0.0 && ui.available_width() >= ROOM_FOR_CLOCK {
         let text = RichText::new(format!("{factor:.2}× real time"));
         if slower {
             let hint = "This machine is slower than the speed asked for: simulated time slows down, nothing is skipped.";
