@@ -3,6 +3,7 @@
 //! The system's dialog runs on a thread of its own and may fail to appear (no D-Bus session, no portal); then, or when
 //! it is asked for again while it has not answered, the field appears. Nothing here waits.
 
+use super::theme::Palette;
 use super::{FilmOrder, Request};
 use crate::simulation::SESSION_EXTENSION;
 use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
@@ -113,17 +114,43 @@ impl Purpose {
         }
     }
 
-    fn request(self, path: PathBuf) -> Request {
+    /// The file that is meant by `path`: with the right ending where there is but one, or none was given.
+    fn file(self, path: &Path) -> PathBuf {
+        let ended = || path.with_extension(self.extension());
         match self {
-            Self::Open => Request::Open(path.display().to_string()),
-            Self::Session => Request::SaveSession(path.with_extension(self.extension())),
-            Self::Picture => Request::SavePicture(path.with_extension(self.extension())),
-            Self::Changes => Request::SaveChanges(path.with_extension(self.extension())),
-            Self::Plot => Request::SavePlot(match path.extension() {
-                Some(_) => path,
-                None => path.with_extension(self.extension()),
-            }),
-            Self::Film => Request::Film(FilmOrder::Begin(path)),
+            Self::Open | Self::Film => path.to_owned(),
+            Self::Plot if path.extension().is_some() => path.to_owned(),
+            Self::Session | Self::Picture | Self::Changes | Self::Plot => ended(),
+        }
+    }
+
+    fn request(self, path: &Path) -> Request {
+        let file = self.file(path);
+        match self {
+            Self::Open => Request::Open(file.display().to_string()),
+            Self::Session => Request::SaveSession(file),
+            Self::Picture => Request::SavePicture(file),
+            Self::Changes => Request::SaveChanges(file),
+            Self::Plot => Request::SavePlot(file),
+            Self::Film => Request::Film(FilmOrder::Begin(file)),
+        }
+    }
+
+    /// What will become of the file that is meant by `path`, in words, or why it cannot be.
+    fn outlook(self, path: &Path) -> Result<String, String> {
+        let file = self.file(path);
+        let whole = std::path::absolute(&file).unwrap_or(file);
+        let shown = whole.display();
+        if self == Self::Open || path.as_os_str().is_empty() {
+            Ok(String::new())
+        } else if whole.is_dir() {
+            Err(format!(
+                "There is a folder {shown} already: choose another name."
+            ))
+        } else if whole.exists() {
+            Ok(format!("Replaces {shown}"))
+        } else {
+            Ok(format!("Goes to {shown}"))
         }
     }
 }
@@ -167,7 +194,7 @@ impl PathDialog {
         if let Some(typed) = &mut self.typed {
             match typed_ui(ctx, typed) {
                 Some(Answer::Path(path)) => {
-                    out.push(typed.purpose.request(path));
+                    out.push(typed.purpose.request(&path));
                     self.typed = None;
                 }
                 Some(Answer::Nothing) => self.typed = None,
@@ -186,7 +213,7 @@ impl PathDialog {
         let purpose = asked.purpose;
         self.asked = None;
         match answer.file {
-            Some(file) => out.push(purpose.request(file.path().to_owned())),
+            Some(file) => out.push(purpose.request(file.path())),
             None if answer.after < SHORTEST_CHOICE => self.type_path(purpose, NO_DIALOG),
             None => {}
         }
@@ -260,6 +287,16 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
             field.request_focus();
         }
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let path = PathBuf::from(typed.text.trim());
+        let outlook = typed.purpose.outlook(&path);
+        match &outlook {
+            Ok(text) => ui.weak(text),
+            Err(reason) => ui.colored_label(Palette::of(ui.visuals()).warning, reason),
+        };
+        let why_not = match outlook {
+            Ok(_) if path.as_os_str().is_empty() => Some("There is no path yet.".to_owned()),
+            outlook => outlook.err(),
+        };
         ui.add_space(4.0);
         ui.horizontal(|ui| {
             let verb = match typed.purpose {
@@ -267,11 +304,14 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
                 Purpose::Session | Purpose::Picture | Purpose::Changes | Purpose::Plot => "Save",
                 Purpose::Film => "Record",
             };
-            let filled = !typed.text.trim().is_empty();
-            let done = ui.add_enabled(filled, egui::Button::new(verb)).clicked();
+            let possible = why_not.is_none();
+            let done = ui
+                .add_enabled(possible, egui::Button::new(verb))
+                .on_disabled_hover_text(why_not.unwrap_or_default())
+                .clicked();
             let left = ui.button("Cancel").clicked();
-            match (done || (entered && filled), left) {
-                (true, _) => Some(Answer::Path(PathBuf::from(typed.text.trim()))),
+            match (done || (entered && possible), left) {
+                (true, _) => Some(Answer::Path(path)),
                 (false, true) => Some(Answer::Nothing),
                 (false, false) => None,
             }
