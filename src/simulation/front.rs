@@ -131,6 +131,8 @@ pub enum Status {
 pub struct Simulation {
     id: u64,
     scene: Arc<Scene>,
+    /// The scene as it was opened, before what acts from the next start on was changed.
+    original: Arc<Scene>,
     advice: TimeStepAdvice,
     means: Means,
     driver: Option<Driver>,
@@ -253,6 +255,7 @@ impl Simulation {
         };
         let mut simulation = Self {
             id: next_number(),
+            original: scene.clone(),
             scene,
             speed,
             means,
@@ -298,6 +301,17 @@ impl Simulation {
     /// What was asked for.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// The scene as it was opened: another than [`Simulation::scene`] where what acts from the next start on was changed.
+    pub fn original(&self) -> &Arc<Scene> {
+        &self.original
+    }
+
+    /// The same, of a scene that was made of the `original`.
+    #[must_use]
+    pub fn made_of(self, original: Arc<Scene>) -> Self {
+        Self { original, ..self }
     }
 
     /// The newest state; none while the run is prepared.

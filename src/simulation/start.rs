@@ -182,6 +182,15 @@ impl StartParameter {
         }
     }
 
+    /// Whether somebody gave `scene` another value of it than the `original` has; a time step that follows from the rest is
+    /// nobody's.
+    pub fn differs(&self, scene: &Scene, original: &Scene) -> bool {
+        match self {
+            Self::TimeStep => scene.time_step != original.time_step,
+            _ => self.read(scene) != self.read(original),
+        }
+    }
+
     /// Takes it from `original`.
     ///
     /// # Errors

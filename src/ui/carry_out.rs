@@ -1,6 +1,6 @@
 //! What panels ask for, fulfilled: the only place that changes the run, opens scenes and writes pictures for them.
 
-use super::{Compare, Desk, OpenWith, Purpose, Recorder, Request, Requests};
+use super::{Desk, OpenWith, Purpose, Recorder, Request, Requests};
 use crate::scene::Scene;
 use crate::simulation::{
     Claim, Command, Half, Options, Provenance, SavedFile, ScriptedCommand, Session, SessionError,
@@ -16,6 +16,7 @@ use bevy_egui::egui::Rect;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A session that is being read.
 #[derive(Resource, Default)]
@@ -55,7 +56,7 @@ pub fn fulfil_requests(
                     simulation.send(command);
                 }
             }
-            Request::Compare => desk.show_panel(Compare::TITLE),
+            Request::Compare(parameter) => desk.compare(parameter.as_ref()),
             Request::StartTwin(parameter, value) => {
                 let started = simulation.map(|simulation| simulation.start_twin(&parameter, value));
                 if let Some(Err(reason)) = started {
@@ -90,8 +91,10 @@ pub fn fulfil_requests(
             Request::ChoosePicture => desk.path_dialog.ask(Purpose::Picture),
             Request::Open(name) => opener.open(name, &mut desk),
             Request::Start(scene) => {
-                let script = simulation.map_or_else(Vec::new, |simulation| present(simulation));
-                opener.start(*scene, script);
+                let simulation = simulation.as_deref();
+                let script = simulation.map_or_else(Vec::new, present);
+                let original = simulation.map(|simulation| simulation.original().clone());
+                opener.start(*scene, script, original);
                 desk.scene_changed();
             }
             Request::Save => match (simulation, desk.session.clone()) {
@@ -140,9 +143,14 @@ pub fn fulfil_requests(
     }
 }
 
-/// What to do for `request`; nothing yet where it leaves `unsaved` work and a person must be asked first.
+/// What to do for `request`; nothing yet where it leaves `unsaved` work and a person must be asked first. What cannot be
+/// opened leaves nothing, and is told at once.
 fn without_loss(request: Request, unsaved: bool, desk: &mut Desk) -> Option<Request> {
     match request {
+        Request::Open(name) if unsaved && let Some(error) = no_scene(&name) => {
+            desk.show_open_error(error);
+            None
+        }
         Request::Open(_) | Request::Start(_) | Request::Quit if unsaved => {
             desk.ask_to_save(request);
             None
@@ -154,6 +162,12 @@ fn without_loss(request: Request, unsaved: bool, desk: &mut Desk) -> Option<Requ
         }
         request => Some(request),
     }
+}
+
+/// Why there is no scene called `name`, where that is no session either.
+fn no_scene(name: &str) -> Option<String> {
+    let scene = (!Session::is_at(Path::new(name))).then(|| Scene::open(name))?;
+    scene.err().map(|error| error.to_string())
 }
 
 /// What gives a run the present values of the live parameters at its start.
@@ -219,20 +233,24 @@ impl Opener<'_, '_> {
         match Scene::open(&name) {
             Ok(scene) => {
                 // A script belongs to the scene it was given with.
-                self.start(scene, Vec::new());
+                self.start(scene, Vec::new(), None);
                 desk.scene_opened(&name);
             }
             Err(error) => desk.show_open_error(error.to_string()),
         }
     }
 
-    /// Starts a run of `scene` with `script`.
-    fn start(&mut self, scene: Scene, script: Vec<ScriptedCommand>) {
+    /// Starts a run of `scene`, which came of the `original`, with `script`.
+    fn start(&mut self, scene: Scene, script: Vec<ScriptedCommand>, original: Option<Arc<Scene>>) {
         let options = Options {
             script,
             ..self.options.0.clone()
         };
-        self.show(Simulation::open(scene, options));
+        let simulation = Simulation::open(scene, options);
+        self.show(match original {
+            Some(original) => simulation.made_of(original),
+            None => simulation,
+        });
     }
 
     /// Shows `simulation` as a scene is shown at first.
@@ -299,8 +317,10 @@ fn save_changes(simulation: &Simulation, path: &Path) -> io::Result<()> {
 }
 
 /// What to tell a person about a file that was to be written.
-fn said(what: &str, path: &Path, written: Result<(), impl Display>) -> String {
-    let shown = path.display();
+pub(crate) fn said(what: &str, path: &Path, written: Result<(), impl Display>) -> String {
+    // In full: a person should find it again.
+    let whole = std::path::absolute(path).unwrap_or(path.to_owned());
+    let shown = whole.display();
     match written {
         Ok(()) => format!("Saved {shown}"),
         Err(reason) => format!("{what} cannot be written to {shown}: {reason}"),

@@ -19,6 +19,8 @@ pub const OF_ONE_RUN: &str = "This belongs to one run, and two stand side by sid
 pub struct Compare {
     /// The parameter that was chosen, and its other value [SI unit].
     chosen: Option<(Parameter, f64)>,
+    /// The parameter that is to be chosen next.
+    wanted: Option<Parameter>,
 }
 
 impl Compare {
@@ -39,6 +41,10 @@ pub fn half_title(simulation: &Simulation, half: Half) -> String {
 impl Panel for Compare {
     fn title(&self) -> &'static str {
         Self::TITLE
+    }
+
+    fn take_up(&mut self, parameter: &Parameter) {
+        self.wanted = Some(parameter.clone());
     }
 
     fn ui(
@@ -63,12 +69,12 @@ impl Compare {
         ui.weak("The same scene twice, side by side and in step, with one value changed.");
         let list = ordered(simulation);
         let of = |parameter: &Parameter| list.iter().find(|info| info.parameter == *parameter);
+        let chosen_anew =
+            |info: &&ParameterInfo| (info.parameter.clone(), telling(info, simulation));
+        let wanted = self.wanted.take().as_ref().and_then(of).map(chosen_anew);
         let chosen = self.chosen.take().filter(|(own, _)| of(own).is_some());
-        let first = || {
-            let info = list.first()?;
-            Some((info.parameter.clone(), telling(info, simulation)))
-        };
-        let Some((mut parameter, mut other)) = chosen.or_else(first) else {
+        let first = || list.first().map(chosen_anew);
+        let Some((mut parameter, mut other)) = wanted.or(chosen).or_else(first) else {
             return;
         };
         if parameter_ui(ui, &list, &mut parameter)
@@ -155,9 +161,8 @@ fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: f64) -> Option<f64> 
         landmarks: &named_values(&info.parameter),
         caption: None,
     };
-    value_ui(ui, &row, other, |ui| {
-        ui.label(info.description);
-    })
+    let explain = |ui: &mut egui::Ui| drop(ui.label(info.description));
+    value_ui(ui, &row, other, |_| (), explain)
 }
 
 /// Values of `parameter` that have a name.

@@ -27,7 +27,7 @@ use super::transport::Transport;
 use super::velocity::Velocity;
 use super::{Panel, Request, Sheet, sheets, shortcuts};
 use crate::scene::built_in;
-use crate::simulation::{Command, Simulation, Status};
+use crate::simulation::{Command, Parameter, Simulation, Status};
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
 use bevy_egui::egui::{
@@ -39,9 +39,9 @@ use std::time::{Duration, Instant};
 
 /// How long a notice stays.
 const NOTICE_TIME: Duration = Duration::from_secs(6);
-/// A window narrower than this shows no controls, one narrower than the other no plots: the picture comes first.
-const ROOM_FOR_CONTROLS: f32 = 700.0;
-const ROOM_FOR_MEASURES: f32 = 1000.0;
+/// A window narrower than this has one side only, one narrower than the other none: the picture comes first.
+const ROOM_FOR_BOTH: f32 = 1000.0;
+const ROOM_FOR_ONE: f32 = 680.0;
 
 /// All that surrounds the picture.
 #[derive(Resource)]
@@ -81,6 +81,8 @@ struct Section {
     open_at_first: bool,
     /// Whether somebody asked to see it.
     is_wanted: bool,
+    /// How far it was open in the last frame, 0 … 1.
+    openness: f32,
 }
 
 /// The register of panels on the left, from top to bottom, and whether each is open at first.
@@ -115,6 +117,7 @@ fn section(panel: impl Panel, open_at_first: bool) -> Section {
         panel: Box::new(panel),
         open_at_first,
         is_wanted: false,
+        openness: 1.0,
     }
 }
 
@@ -189,6 +192,16 @@ impl Desk {
                 .find(|section| section.panel.title() == title);
             if let Some(section) = wanted {
                 (section.is_wanted, *shown) = (true, true);
+            }
+        }
+    }
+
+    /// Opens the panel where two values are compared: of `parameter`, where one is given.
+    pub fn compare(&mut self, parameter: Option<&Parameter>) {
+        self.show_panel(Compare::TITLE);
+        if let Some(parameter) = parameter {
+            for section in self.left.iter_mut().chain(&mut self.right) {
+                section.panel.take_up(parameter);
             }
         }
     }
@@ -321,7 +334,7 @@ impl Desk {
     ) {
         let width = root.available_width();
         let size = |share: f32, least: f32, most: f32| (share * width).clamp(least, most);
-        if width >= ROOM_FOR_CONTROLS {
+        if width >= ROOM_FOR_ONE {
             egui::Panel::left("controls")
                 .default_size(size(0.235, 290.0, 380.0))
                 .size_range(240.0..=520.0)
@@ -329,7 +342,7 @@ impl Desk {
                     sections_ui(ui, &mut self.left, simulation, view, out);
                 });
         }
-        if width >= ROOM_FOR_MEASURES {
+        if width >= ROOM_FOR_BOTH || (width >= ROOM_FOR_ONE && !self.shown.left) {
             egui::Panel::right("measures")
                 .default_size(size(0.285, 350.0, 560.0))
                 .size_range(280.0..=900.0)
@@ -360,15 +373,30 @@ impl Desk {
         let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
             return;
         };
-        egui::Area::new(Id::new("notice"))
+        // Each text is laid out by itself, however long the last one was.
+        egui::Area::new(Id::new("notice").with(text))
             .anchor(Align2::CENTER_TOP, [0.0, 44.0])
             .interactable(false)
             .show(ctx, |ui| {
                 egui::Frame::popup(ui.style())
                     .inner_margin(10)
-                    .show(ui, |ui| ui.label(text));
+                    .show(ui, |ui| {
+                        ui.set_max_width(0.6 * ui.ctx().content_rect().width());
+                        ui.label(text);
+                    });
             });
         ctx.request_repaint_after(NOTICE_TIME);
+    }
+}
+
+/// Why a side that is wanted is not there, if one is not.
+pub fn why_not_both(width: f32) -> Option<&'static str> {
+    if width >= ROOM_FOR_BOTH {
+        None
+    } else if width >= ROOM_FOR_ONE {
+        Some("The window has room for one of them. Without the controls, the plots are shown.")
+    } else {
+        Some("The window is too narrow for them.")
     }
 }
 
@@ -437,11 +465,40 @@ fn sections_ui(
                 .open(summoned.then_some(true))
                 .show_unindented(ui, |ui| section.panel.ui(ui, described, view, out));
             if is_wanted {
-                shown.header_response.scroll_to_me(Some(egui::Align::Min));
                 shown.header_response.request_focus();
             }
+            if shown.openness > section.openness || is_wanted {
+                show_whole(ui, &shown);
+            }
+            section.openness = shown.openness;
         }
+        follow_focus(ui);
     });
+}
+
+/// Scrolls as far as it takes to see all of a panel that opens, or its upper part where it is higher than the window.
+fn show_whole<R>(ui: &egui::Ui, panel: &egui::CollapsingResponse<R>) {
+    let header = panel.header_response.rect;
+    let body = panel
+        .body_response
+        .as_ref()
+        .map_or(header, |body| body.rect);
+    let whole = header.union(body);
+    let is_higher = whole.height() > ui.clip_rect().height();
+    ui.scroll_to_rect(whole, is_higher.then_some(egui::Align::Min));
+}
+
+/// Scrolls the area that `ui` fills to the control in it that the keyboard's focus has just come to.
+pub fn follow_focus(ui: &egui::Ui) {
+    let focused = ui.memory(egui::Memory::focused);
+    let gained = focused.and_then(|id| ui.ctx().read_response(id));
+    let is_within = |control: &egui::Response| {
+        let is_here = ui.min_rect().intersects(control.rect);
+        control.gained_focus() && control.layer_id == ui.layer_id() && is_here
+    };
+    if let Some(control) = gained.filter(is_within) {
+        ui.scroll_to_rect(control.rect.expand(4.0), None);
+    }
 }
 
 /// A ring round the control that the keyboard works.

@@ -3,6 +3,7 @@
 //!
 //! In: what is remembered. Out: a request to open one. The pictures are the program's own, made by `assets/gallery/make`.
 
+use super::desk::follow_focus;
 use super::memory::Memory;
 use super::{Request, number};
 use crate::scene::{BuiltIn, Scene, built_in};
@@ -81,8 +82,11 @@ impl Gallery {
             ScrollArea::vertical()
                 .max_height(0.72 * room.y)
                 .show(ui, |ui| {
+                    // Room for the scroll bar.
+                    ui.set_width(ui.available_width() - 10.0);
                     chosen = recent_ui(ui, memory);
                     chosen = self.cards_ui(ui, memory).or(chosen.take());
+                    follow_focus(ui);
                 });
             ui.add_space(4.0);
             let mut closed = false;

@@ -1,12 +1,16 @@
 //! The menu bar.
 
 use super::compare::OF_ONE_RUN;
+use super::desk::why_not_both;
 use super::shortcuts::SHORTCUTS;
 use super::{Request, Sheet};
 use crate::scene::built_in;
 use crate::simulation::{Command, Half, Simulation};
 use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
 use bevy_egui::egui;
+
+/// Width of the menu of the view, whose longest entry it holds, in points.
+const VIEW_WIDTH: f32 = 250.0;
 
 /// Which of the side panels are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +102,7 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
     }
     ui.separator();
     let why_not = simulation.is_none().then_some("There is no run to compare");
-    let compare = Request::Compare;
+    let compare = Request::Compare(None);
     item_unless_ui(ui, "Compare two values…", compare, why_not, out);
     let why_not = twin.is_none().then_some("There is one run only");
     for half in Half::ALL {
@@ -108,6 +112,7 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
 }
 
 fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &mut Vec<Request>) {
+    ui.set_width(VIEW_WIDTH);
     item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
     item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
     for side in Side::ALL {
@@ -141,6 +146,12 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
     ui.separator();
     ui.checkbox(&mut shown.left, "Controls on the left");
     ui.checkbox(&mut shown.right, "Plots and results on the right");
+    if let Some(reason) = why_not_both(ui.ctx().content_rect().width()) {
+        ui.weak(reason);
+    }
+    ui.separator();
+    ui.weak("Text and controls");
+    egui::gui_zoom::zoom_menu_buttons(ui);
 }
 
 /// An entry that asks for `request`, with its shortcut.

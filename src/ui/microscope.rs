@@ -4,7 +4,8 @@
 //! In: the state shown, which grain is selected. Out: which grain and which of its partners is selected, in the view's
 //! settings. Terms come from the solver's own law code ([`force_terms`]).
 
-use super::plots::{round_marks, tick};
+use super::field::{Field, slip_ui};
+use super::plots::fitting_plot;
 use super::table::{Row, table_ui};
 use super::theme::{Palette, dash};
 use super::{Panel, Request, number};
@@ -14,7 +15,7 @@ use crate::solver::{ForceTerms, NormalLaw, force_terms};
 use crate::view::{ViewSettings, trail_colour};
 use crate::world::{Contact, Partner, World};
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
-use egui_plot::{HoverPosition, Line, LineStyle, Plot, PlotUi, Points, VLine};
+use egui_plot::{HoverPosition, Line, LineStyle, PlotUi, Points, VLine};
 use glam::DVec3;
 
 const MILLIMETRES: f64 = 1e3;
@@ -98,24 +99,37 @@ impl Panel for Microscope {
 /// Which grain it is.
 fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
     let count = world.grains.len();
-    ui.horizontal(|ui| {
+    let typed = ui.horizontal(|ui| {
         let Some(grain) = &mut view.selected else {
             ui.label("Click a grain in the picture, or");
             if ui.button("choose by number").clicked() {
                 view.selected = Some(0);
             }
-            return;
+            return None;
         };
-        let label = ui.label("Grain");
-        let field = egui::DragValue::new(grain).range(0..=count - 1).speed(0.2);
-        ui.add(field).labelled_by(label.id);
+        ui.label("Grain");
+        let field = Field {
+            label: "Grain",
+            range: 0.0..=(count - 1) as f64,
+            unit: "",
+            decimals: 0..=0,
+            speed: 0.2,
+            size: None,
+        };
+        let mut chosen = *grain as f64;
+        let response = field.ui(ui, &mut chosen);
+        *grain = chosen as usize;
         ui.weak(format!("of {count}, counted from 0"));
         let close = ui.button("×").on_hover_text("Look at no grain");
         close.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Look at no grain"));
         if close.clicked() {
             view.selected = None;
         }
+        Some(response)
     });
+    if let Some(field) = typed.inner {
+        slip_ui(ui, &field);
+    }
     trails_ui(ui, view);
 }
 
@@ -317,15 +331,7 @@ impl Microscope {
         ui.label(RichText::new(caption(first, moves)).small().weak());
         let dots: Vec<[f64; 2]> = terms.iter().map(dot).collect();
         let way = self.way.clone();
-        let response = Plot::new("force over gap")
-            .height((0.25 * ui.ctx().content_rect().height()).clamp(140.0, 320.0))
-            .show_crosshair(false)
-            .allow_scroll(false)
-            .grid_color(palette.grid)
-            .x_grid_spacer(|input| round_marks(input, 10.0, 0.0))
-            .y_grid_spacer(|input| round_marks(input, 3.5, 0.0))
-            .x_axis_formatter(|mark, _| tick(mark.value, false))
-            .y_axis_formatter(|mark, _| tick(mark.value, false))
+        let response = fitting_plot(ui, "force over gap")
             .label_formatter(|hover| Some(hover_text(hover)))
             .legend(egui_plot::Legend::default().position(egui_plot::Corner::RightTop))
             .show(ui, |plot| {

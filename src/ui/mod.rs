@@ -22,6 +22,7 @@
 //! | `averages` | averages over a run that goes on |
 //! | `sheets`, `path_dialog` | windows over the rest |
 //! | `theme` | every colour, size and font |
+//! | `field` | a number to type, and what is said of wrong text |
 //! | `number`, `symbol`, `table`, `decimate` | numbers and symbols in text, tables, fewer points for the same picture |
 
 mod about_scene;
@@ -38,6 +39,7 @@ mod desk;
 mod detail;
 mod energy;
 mod explorer;
+mod field;
 mod gallery;
 mod keyboard;
 mod memory;
@@ -65,6 +67,7 @@ mod velocity;
 
 pub use about_scene::AboutScene;
 pub use badge::{Check, Level, checks};
+pub(crate) use carry_out::said;
 pub use collapse_plots::CollapsePlots;
 pub use column_beside_paper::ColumnBesidePaper;
 pub use compare::Compare;
@@ -87,12 +90,13 @@ pub use sheets::{open_error_ui, sheet_ui, unsaved_ui};
 pub use transport::{Transport, status_ui};
 pub use velocity::Velocity;
 
-use crate::simulation::{Half, Options, Simulation};
+use crate::simulation::{Half, Options, Parameter, Simulation};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use crate::world::{Shape, World};
+use bevy::asset::AssetEventSystems;
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
-use bevy_egui::{EguiContexts, EguiPreUpdateSet, EguiPrimaryContextPass, egui};
+use bevy_egui::{EguiContexts, EguiPostUpdateSet, EguiPreUpdateSet, EguiPrimaryContextPass, egui};
 
 /// A part of the window: one file, one struct, one function.
 pub trait Panel: Send + Sync + 'static {
@@ -113,6 +117,9 @@ pub trait Panel: Send + Sync + 'static {
     fn describes_one_run(&self) -> bool {
         false
     }
+
+    /// Lets it be about `parameter`, where it is about one.
+    fn take_up(&mut self, _parameter: &Parameter) {}
 
     /// Draws it; what is asked for goes into `out`.
     fn ui(
@@ -162,6 +169,11 @@ impl Plugin for UiPlugin {
                 keyboard::tell_modifiers
                     .after(EguiPreUpdateSet::ProcessInput)
                     .before(EguiPreUpdateSet::BeginPass),
+            )
+            // Else letters that were not drawn before are missing for a frame.
+            .configure_sets(
+                PostUpdate,
+                EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
             );
     }
 }
@@ -225,7 +237,9 @@ fn draw_panels(
         desk.ui(&mut root, simulation, &mut view, &mut requests.0);
         recording_ui(&mut root, &recorder, &mut requests.0);
     }
-    let captions = captions(simulation);
+    // A film runs at its own speed, however long its pictures take.
+    let is_filmed = recorder.state != FilmState::Idle;
+    let captions = captions(simulation, is_filmed);
     viewport_ui(&mut root, &captions, &mut view, &mut camera);
     if !desk.is_hidden {
         desk.over_picture_ui(&root, simulation);
@@ -233,9 +247,12 @@ fn draw_panels(
     Ok(())
 }
 
-/// What stands in the picture: once, or in each of its halves.
-fn captions(simulation: Option<&Simulation>) -> Vec<Caption<'_>> {
-    let factor = simulation.map_or(0.0, Simulation::real_time_factor);
+/// What stands in the picture: once, or in each of its halves; how fast it goes, only where it is not filmed.
+fn captions(simulation: Option<&Simulation>, is_filmed: bool) -> Vec<Caption<'_>> {
+    let factor = match simulation {
+        Some(simulation) if !is_filmed => simulation.real_time_factor(),
+        _ => 0.0,
+    };
     let is_pair = |simulation: &&Simulation| {
         (simulation.twin()).is_some_and(|twin| twin.run().world().is_some())
     };

@@ -8,7 +8,7 @@ use super::{Panel, Request, number, symbol};
 use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer};
 use crate::simulation::{Command, Half, Parameter, ParameterInfo, Simulation};
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, RichText};
+use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 
 /// The panel of parameters.
 #[derive(Default)]
@@ -125,26 +125,33 @@ impl Parameters {
     ) {
         let is_away = |info: &&ParameterInfo| simulation.value(&info.parameter) != info.default;
         let away = || simulation.parameters().iter().filter(is_away);
+        let of_start = self.start.changed(simulation);
         let button = ui
-            .add_enabled(away().count() > 0, egui::Button::new("Reset all"))
-            .on_hover_text("Every parameter back to the scene's value")
-            .on_disabled_hover_text("Every parameter has the scene's value");
+            .add_enabled(
+                away().count() + of_start > 0,
+                egui::Button::new("Reset all"),
+            )
+            .on_hover_text("Every value back to the scene's; some of them act at the next start")
+            .on_disabled_hover_text("Every value is the scene's");
         if button.clicked() {
             out.extend(away().map(|info| Request::Command(set(info, info.default))));
+            self.start.reset(simulation);
         }
         if detail == Detail::Lab {
-            self.start.ui(ui, simulation, out);
-            return;
+            self.start.rows_ui(ui, simulation);
+        } else {
+            let live = away().filter(|info| !is_basic(info, simulation.scene()));
+            unseen_ui(ui, live.count() + of_start);
         }
-        let unseen = away()
-            .filter(|info| !is_basic(info, simulation.scene()))
-            .count();
-        if unseen > 0 {
-            let text = format!("{unseen} more changed: show them in Lab");
-            if ui.button(text).clicked() {
-                Detail::Lab.choose(ui.ctx());
-            }
-        }
+        self.start.footer_ui(ui, out);
+    }
+}
+
+/// Says how many values are others than the scene's and not shown, and shows them.
+fn unseen_ui(ui: &mut egui::Ui, unseen: usize) {
+    let text = format!("{unseen} more changed: show them in Lab");
+    if unseen > 0 && ui.button(text).clicked() {
+        Detail::Lab.choose(ui.ctx());
     }
 }
 
@@ -175,8 +182,12 @@ fn group_ui(
             .twin()
             .filter(|twin| *twin.parameter() == info.parameter);
         if twin.is_none() {
-            let wanted = row_ui(ui, info, simulation.value(&info.parameter), detail, scene);
+            let (value, mut compared) = (simulation.value(&info.parameter), false);
+            let wanted = row_ui(ui, info, value, detail, scene, |ui| {
+                compared = compare_ui(ui, info, simulation);
+            });
             out.extend(wanted.map(|value| Request::Command(set(info, value))));
+            out.extend(compared.then(|| Request::Compare(Some(info.parameter.clone()))));
             continue;
         }
         for half in Half::ALL {
@@ -186,7 +197,7 @@ fn group_ui(
             };
             ui.weak(number::capitalised(half.label()));
             let value = simulation.half(half).value(&info.parameter);
-            let wanted = ui.push_id(half, |ui| row_ui(ui, &named, value, detail, scene));
+            let wanted = ui.push_id(half, |ui| row_ui(ui, &named, value, detail, scene, |_| ()));
             out.extend(wanted.inner.map(|value| match half {
                 Half::Left => Request::Command(set(info, value)),
                 Half::Right => Request::TwinValue(value),
@@ -195,17 +206,30 @@ fn group_ui(
     }
 }
 
-/// The row of one parameter: what is wanted instead of `value`, if anything.
+/// The button that leads to two values of a parameter side by side; whether it was pressed.
+fn compare_ui(ui: &mut egui::Ui, info: &ParameterInfo, simulation: &Simulation) -> bool {
+    let enabled = simulation.twin().is_none();
+    let button = ui
+        .add_enabled(enabled, egui::Button::new("⇄").frame(false))
+        .on_hover_text("Compare two values of it side by side…")
+        .on_disabled_hover_text("Two values are compared already: end that comparison first");
+    let name = format!("Compare {}…", info.label);
+    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, enabled, &name));
+    button.clicked()
+}
+
+/// The row of one parameter, with what is drawn `beside` its field: what is wanted instead of `value`, if anything.
 fn row_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
     value: f64,
     detail: Detail,
     scene: &Scene,
+    beside: impl FnOnce(&mut egui::Ui),
 ) -> Option<f64> {
     let wanted = match info.parameter {
-        Parameter::BridgeLaw => bridge_law_ui(ui, info, value),
-        _ => parameter_ui(ui, info, value, detail, scene),
+        Parameter::BridgeLaw => bridge_law_ui(ui, info, value, beside),
+        _ => parameter_ui(ui, info, value, detail, scene, beside),
     };
     match wanted? {
         Command::Set { value, .. } => Some(value),
@@ -286,7 +310,12 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
 }
 
 /// The choice between the two bridge laws; the command that a change asks for.
-fn bridge_law_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<Command> {
+fn bridge_law_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    beside: impl FnOnce(&mut egui::Ui),
+) -> Option<Command> {
     let mut chosen = value;
     ui.horizontal(|ui| {
         ui.label("Bridges").on_hover_text(info.description);
@@ -294,17 +323,20 @@ fn bridge_law_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64) -> Option<
             ui.selectable_value(&mut chosen, law, name)
                 .on_hover_text(info.description);
         }
+        beside(ui);
     });
     (chosen != value).then(|| set(info, chosen))
 }
 
-/// The row of one parameter of `scene` whose present value is `value` (SI); the command that a change asks for.
+/// The row of one parameter of `scene` whose present value is `value` (SI), with what is drawn `beside` its field; the
+/// command that a change asks for.
 pub fn parameter_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
     value: f64,
     detail: Detail,
     scene: &Scene,
+    beside: impl FnOnce(&mut egui::Ui),
 ) -> Option<Command> {
     let name = short_name(info);
     let mut row = Value {
@@ -324,7 +356,7 @@ pub fn parameter_ui(
         Detail::Basics => row.landmarks = landmarks(&info.parameter),
         Detail::Lab => row.caption = Some(format!("{extent} · acts at once")),
     }
-    let wanted = value_ui(ui, &row, value, |ui| {
+    let wanted = value_ui(ui, &row, value, beside, |ui| {
         ui.label(info.description);
         ui.label(symbol::text(ui, info.parameter.equation(scene)));
         ui.weak(&extent);

@@ -2,6 +2,7 @@
 //!
 //! In: the view's settings. Out: the same settings changed, and requests to the camera.
 
+use super::field::{Field, slip_ui};
 use super::{Panel, Request};
 use crate::simulation::Simulation;
 use crate::view::{
@@ -127,36 +128,45 @@ fn range_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
 /// The shares of the grains that stay below the two ends of the map.
 fn percentiles_ui(ui: &mut egui::Ui, view: &mut ViewSettings, low: f64, high: f64) {
     let (mut low, mut high) = (100.0 * low, 100.0 * high);
-    let (least, most) = (0.0..=high, low..=100.0);
-    ui.horizontal(|ui| {
-        for (name, value, range) in [("from", &mut low, least), ("to", &mut high, most)] {
-            let label = ui.label(name);
-            let field = egui::DragValue::new(value)
-                .range(range)
-                .speed(0.5)
-                .suffix(" %");
-            ui.add(field).labelled_by(label.id);
-        }
-        ui.weak("of the grains");
-    });
+    ends_ui(ui, [&mut low, &mut high], 0.0..=100.0, "%", 0.5);
+    ui.weak("of the grains");
     view.range = ColourRange::Percentiles(0.01 * low, 0.01 * high);
 }
 
 fn fixed_ui(ui: &mut egui::Ui, view: &mut ViewSettings, mut low: f64, mut high: f64) {
+    let speed = 0.005 * (high - low).abs().max(1e-6);
     let unit = view.colour_by.unit();
-    let (least, most) = (0.0..=high, low..=f64::INFINITY);
-    ui.horizontal(|ui| {
-        let speed = 0.005 * (high - low).abs().max(1e-6);
-        for (name, value, range) in [("from", &mut low, least), ("to", &mut high, most)] {
-            let label = ui.label(name);
-            let field = egui::DragValue::new(value)
-                .range(range)
-                .speed(speed)
-                .suffix(format!(" {unit}"));
-            ui.add(field).labelled_by(label.id);
-        }
-    });
+    ends_ui(ui, [&mut low, &mut high], 0.0..=f64::INFINITY, unit, speed);
     view.range = ColourRange::Fixed(low, high);
+}
+
+/// The two ends of a range within `limits`, neither beyond the other.
+fn ends_ui(
+    ui: &mut egui::Ui,
+    [low, high]: [&mut f64; 2],
+    limits: RangeInclusive<f64>,
+    unit: &str,
+    speed: f64,
+) {
+    let (below, above) = (*limits.start()..=*high, *low..=*limits.end());
+    let typed = ui.horizontal(|ui| {
+        [("from", low, below), ("to", high, above)].map(|(label, value, range)| {
+            let field = Field {
+                label,
+                range,
+                unit,
+                // A tenth of what a point of a drag changes.
+                decimals: 0..=(1.0 - speed.log10()).ceil().clamp(0.0, 12.0) as usize,
+                speed,
+                size: None,
+            };
+            ui.label(label);
+            field.ui(ui, value)
+        })
+    });
+    for response in &typed.inner {
+        slip_ui(ui, response);
+    }
 }
 
 /// The colour map as a bar.

@@ -12,8 +12,8 @@ use std::path::PathBuf;
 pub enum Request {
     /// A change of the run.
     Command(Command),
-    /// Show the panel where two values are compared.
-    Compare,
+    /// Show the panel where two values are compared: of this parameter, where one is given.
+    Compare(Option<Parameter>),
     /// Begin a run beside the present one, with another value of a parameter.
     StartTwin(Parameter, f64),
     /// Another value for the run beside the first.

@@ -1,6 +1,7 @@
 //! Measured numbers of the latest sample, averages over the run, and the energy ledger.
 
 use super::averages::Averages;
+use super::field::{Field, slip_ui};
 use super::table::{Row, table_ui};
 use super::{Panel, Request, is_column, number};
 use crate::measure::{Measure, Sample, Summary};
@@ -125,17 +126,20 @@ impl Panel for Results {
 
 impl Results {
     fn averages_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
-        ui.horizontal(|ui| {
-            let label = ui.label(RichText::new("Averages from").strong());
-            let field = egui::DragValue::new(&mut self.from)
-                .range(0.0..=f64::INFINITY)
-                .speed(0.1)
-                .max_decimals(1)
-                .suffix(" s");
-            ui.add(field).labelled_by(label.id).on_hover_text(
-                "Only samples from this time on count. The paper leaves out the first 20 s.",
-            );
+        let field = Field {
+            label: "Averages from",
+            range: 0.0..=f64::INFINITY,
+            unit: "s",
+            decimals: 0..=1,
+            speed: 0.1,
+            size: None,
+        };
+        let typed = ui.horizontal(|ui| {
+            ui.label(RichText::new(field.label).strong());
+            field.ui(ui, &mut self.from)
         });
+        let hint = "Only samples from this time on count. The paper leaves out the first 20 s.";
+        slip_ui(ui, &typed.inner.on_hover_text(hint));
         summary_ui(ui, self.averages.over(simulation, self.from), &AVERAGES);
     }
 }

@@ -1,6 +1,6 @@
 //! Sheets over the window: the shortcuts, what the program is, a file that could not be opened, work that is in no file.
 
-use super::shortcuts::{MOUSE, SHORTCUTS};
+use super::shortcuts::{GESTURES, SHORTCUTS};
 use super::theme::Palette;
 use super::{Request, Sheet};
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
@@ -92,7 +92,7 @@ fn shortcuts_ui(ui: &mut egui::Ui) {
                 ui.label(shortcut.name);
                 ui.end_row();
             }
-            for (gesture, name) in MOUSE {
+            for (gesture, name) in GESTURES {
                 ui.monospace(gesture);
                 ui.label(name);
                 ui.end_row();

@@ -85,7 +85,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         keys: &[ctrl(Key::T)],
         name: "Compare two values side by side",
-        action: Action::Ask(Request::Compare),
+        action: Action::Ask(Request::Compare(None)),
     },
     // Before the plain key, which would take it.
     Shortcut {
@@ -221,8 +221,12 @@ pub const SHORTCUTS: &[Shortcut] = &[
     },
 ];
 
-/// What the mouse does over the picture.
-pub const MOUSE: [(&str, &str); 6] = [
+/// What egui's own keys and the mouse over the picture do.
+pub const GESTURES: [(&str, &str); 7] = [
+    (
+        "Ctrl + +, −, 0",
+        "Text and controls larger, smaller, as at first",
+    ),
     ("Click a grain", "Put it under the microscope"),
     ("Shift + click a grain", "Draw its trail, or no longer"),
     ("Drag", "Orbit"),

@@ -1,6 +1,6 @@
 //! What acts from the next start on: sizes, materials, time step, seed; and the button that starts with it.
 //!
-//! In: the simulation's scene. Out: a request to start afresh with a changed scene.
+//! In: the simulation's scene, and that scene as it was opened. Out: a request to start afresh with a changed scene.
 
 use super::theme::Palette;
 use super::value::{Value, value_ui};
@@ -21,12 +21,26 @@ pub struct StartValues {
 }
 
 impl StartValues {
-    /// Draws a row for each.
-    pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-        let scene = simulation.scene();
+    /// How many of them are others than in the scene as it was opened.
+    pub fn changed(&mut self, simulation: &Simulation) -> usize {
         if self.list.is_empty() {
-            self.list = start_parameters(scene);
+            self.list = start_parameters(simulation.original());
         }
+        let scene = self.draft.as_ref().unwrap_or(simulation.scene());
+        let changed = |info: &&StartInfo| info.parameter.differs(scene, simulation.original());
+        self.list.iter().filter(changed).count()
+    }
+
+    /// Brings back all that the scene had as it was opened; in the run they are from the next start on.
+    pub fn reset(&mut self, simulation: &Simulation) {
+        let original = Some((**simulation.original()).clone());
+        self.draft = original.filter(|original| original != simulation.scene());
+        self.refusal = None;
+    }
+
+    /// Draws a row for each.
+    pub fn rows_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+        let scene = simulation.scene();
         ui.add_space(6.0);
         ui.label(RichText::new("From the next start on").strong());
         for info in &self.list {
@@ -34,10 +48,11 @@ impl StartValues {
             let Some(value) = info.parameter.read(draft) else {
                 continue;
             };
-            if let Some(wanted) = row_ui(ui, info, value) {
+            let is_given = info.parameter.differs(draft, simulation.original());
+            if let Some(wanted) = row_ui(ui, info, value, is_given) {
                 let mut changed = draft.clone();
                 let outcome = if wanted == info.value {
-                    info.parameter.restore(scene, &mut changed)
+                    (info.parameter).restore(simulation.original(), &mut changed)
                 } else {
                     info.parameter.write(wanted, &mut changed)
                 };
@@ -47,10 +62,10 @@ impl StartValues {
                 }
             }
         }
-        self.footer_ui(ui, out);
     }
 
-    fn footer_ui(&mut self, ui: &mut egui::Ui, out: &mut Vec<Request>) {
+    /// Draws what became of the last change, and the button that starts with all of them.
+    pub fn footer_ui(&mut self, ui: &mut egui::Ui, out: &mut Vec<Request>) {
         let palette = Palette::of(ui.visuals());
         if let Some(refusal) = &self.refusal {
             ui.colored_label(palette.warning, format!("Left as it was: {refusal}"));
@@ -79,14 +94,15 @@ impl StartValues {
     }
 }
 
-fn row_ui(ui: &mut egui::Ui, info: &StartInfo, value: f64) -> Option<f64> {
+/// The row of a start value, which somebody gave the scene or which it had; what is wanted instead, if anything.
+fn row_ui(ui: &mut egui::Ui, info: &StartInfo, value: f64, is_given: bool) -> Option<f64> {
     let name = number::capitalised(&info.label);
     let mut row = Value {
         label: &info.label,
         name: &name,
         symbol: info.symbol,
         range: info.range.clone(),
-        default: info.value,
+        default: if is_given { info.value } else { value },
         display: info.display,
         is_logarithmic: *info.range.start() > 0.0 && info.range.end() / info.range.start() > 20.0,
         is_whole: info.is_whole,
@@ -95,9 +111,15 @@ fn row_ui(ui: &mut egui::Ui, info: &StartInfo, value: f64) -> Option<f64> {
     };
     let extent = row.extent();
     row.caption = Some(format!("{extent} · acts at the next start"));
-    value_ui(ui, &row, value, |ui| {
-        ui.label(info.description);
-        ui.weak(&extent);
-        ui.weak("It acts when the run is started with it.");
-    })
+    value_ui(
+        ui,
+        &row,
+        value,
+        |_| (),
+        |ui| {
+            ui.label(info.description);
+            ui.weak(&extent);
+            ui.weak("It acts when the run is started with it.");
+        },
+    )
 }

@@ -1,5 +1,6 @@
 //! A number to type, to drag, to step with the arrow keys, to set to a named value and to take back: one row of a panel.
 
+use super::field::{self, Field};
 use super::{number, symbol};
 use crate::simulation::DisplayUnit;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
@@ -43,12 +44,13 @@ pub struct Landmark {
     pub value: f64,
 }
 
-/// Draws the row of a number whose present value is `value`; what is wanted instead, if anything. `explain` says under the
-/// pointer what it is.
+/// Draws the row of a number whose present value is `value`, with what is drawn `beside` its field; what is wanted
+/// instead, if anything. `explain` says under the pointer what it is.
 pub fn value_ui(
     ui: &mut egui::Ui,
     row: &Value,
     value: f64,
+    beside: impl FnOnce(&mut egui::Ui),
     explain: impl Fn(&mut egui::Ui),
 ) -> Option<f64> {
     let wanted = ui.push_id(row.label, |ui| {
@@ -62,6 +64,7 @@ pub fn value_ui(
                 if reset_ui(ui, row, value != row.default) {
                     wanted = Some(row.default);
                 }
+                beside(ui);
                 field_ui(ui, row, &mut shown)
             },
         );
@@ -75,11 +78,16 @@ pub fn value_ui(
             };
         }
         let explained = |response: egui::Response| response.on_hover_ui(&explain);
-        let edited = explained(slider).changed() | explained(field).changed();
+        let is_slid = explained(slider).changed();
+        let edited = is_slid | explained(field.clone()).changed();
         explained(name);
         if let Some(landmark) = landmarks_ui(ui, row, value) {
             wanted = Some(landmark);
         }
+        if is_slid || wanted.is_some() {
+            field::forget(ui, &field);
+        }
+        field::slip_ui(ui, &field);
         if let Some(caption) = &row.caption {
             let text = RichText::new(caption).small().weak();
             ui.add(egui::Label::new(text).truncate());
@@ -95,20 +103,15 @@ fn field_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response {
     let range = row.shown_range();
     let width = range.end() - range.start();
     let decimals = if row.is_whole { 0 } else { decimals(width) };
-    let field = egui::DragValue::new(shown)
-        .range(range)
-        .clamp_existing_to_range(false)
-        .speed(width / 400.0)
-        .max_decimals(decimals)
-        .min_decimals(decimals.min(2))
-        .suffix(row.suffix())
-        .update_while_editing(false);
-    let response = ui.add_sized([NUMBER_WIDTH, 22.0], field);
-    response.widget_info(|| WidgetInfo {
-        label: Some(row.label.to_owned()),
-        ..WidgetInfo::drag_value(true, *shown)
-    });
-    response
+    let field = Field {
+        label: row.label,
+        range,
+        unit: row.display.name,
+        decimals: decimals.min(2)..=decimals,
+        speed: width / 400.0,
+        size: Some(egui::vec2(NUMBER_WIDTH, 22.0)),
+    };
+    field.ui(ui, shown)
 }
 
 fn slider_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response {
@@ -170,14 +173,9 @@ fn landmarks_ui(ui: &mut egui::Ui, row: &Value, value: f64) -> Option<f64> {
 impl Value<'_> {
     /// Its range and its default in words: `0 to 1, 0.4 in the scene`.
     pub fn extent(&self) -> String {
-        let shown = |value: f64| number::trimmed(value * self.display.factor);
-        format!(
-            "{} to {}{}, {} in the scene",
-            shown(*self.range.start()),
-            shown(*self.range.end()),
-            self.suffix(),
-            shown(self.default)
-        )
+        let default = number::trimmed(self.default * self.display.factor);
+        let range = field::between(&self.shown_range(), self.display.name);
+        format!("{range}, {default} in the scene")
     }
 
     fn shown_range(&self) -> RangeInclusive<f64> {
@@ -193,11 +191,7 @@ impl Value<'_> {
     }
 
     fn suffix(&self) -> String {
-        if self.display.name.is_empty() {
-            String::new()
-        } else {
-            format!(" {}", self.display.name)
-        }
+        field::with_space(self.display.name)
     }
 
     /// `shown`, or the named value that a slider at it stays at.

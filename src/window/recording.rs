@@ -5,7 +5,7 @@
 
 use super::picture::{Canvas, screenshot};
 use crate::simulation::{Provenance, Simulation};
-use crate::ui::{Desk, FilmOrder, FilmState, Recorder};
+use crate::ui::{Desk, FilmOrder, FilmState, Recorder, said};
 use crate::view::{FILM_RATE, Film, FilmKind, ViewSettings};
 use bevy::math::URect;
 use bevy::prelude::*;
@@ -101,11 +101,7 @@ fn record(
     recorder.state = film.state();
     if film.stage == Stage::Ending && film.film.has_ended() {
         let outcome = film.film.outcome();
-        let path = film.path.display().to_string();
-        say(match outcome {
-            Ok(()) => format!("Saved {path}"),
-            Err(reason) => format!("There is no film {path}: {reason}"),
-        });
+        say(said("The film", &film.path, outcome));
         *running = None;
         recorder.state = FilmState::Idle;
     }

@@ -12,12 +12,14 @@ use grainfall::simulation::{
 };
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{
-    Curves, Desk, Detail, Memory, Plots, Request, open_error_ui, parameter_ui, status_ui, theme,
+    Curves, Desk, Detail, Memory, Plots, Purpose, Request, open_error_ui, parameter_ui, status_ui,
+    theme,
 };
 use grainfall::view::{
     CameraRequest, Caption, ColourBy, ColourRange, Cut, OrbitCamera, Side, ViewSettings,
     viewport_ui,
 };
+use std::path::Path;
 use std::time::Duration;
 
 /// A simulation of three grains, which needs no settling, at time zero.
@@ -37,28 +39,25 @@ fn three_grains() -> Simulation {
         ]),
     )"#;
     let scene = Scene::parse("three grains", text).expect("the scene is valid");
-    let options = Options {
+    Simulation::open(scene, standing())
+}
+
+/// How a scene is opened that stands still and is moved by the test.
+pub fn standing() -> Options {
+    Options {
         driver: DriverKind::Inline,
         threads: 1,
         autoplay: false,
         beds: BedStore::none(),
         ..Options::window()
-    };
-    Simulation::open(scene, options)
+    }
 }
 
 /// Three grains with a liquid between them, prepared.
 fn wet() -> Simulation {
     let mut scene = three_grains().scene().clone();
     scene.liquid = Some(LIQUID_CASES[3].liquid());
-    let options = Options {
-        driver: DriverKind::Inline,
-        threads: 1,
-        autoplay: false,
-        beds: BedStore::none(),
-        ..Options::window()
-    };
-    ready(Simulation::open(scene, options))
+    ready(Simulation::open(scene, standing()))
 }
 
 /// The three grains, prepared.
@@ -289,10 +288,56 @@ fn a_drum_speed_typed_in_rpm_is_set_in_radians_per_second() {
 }
 
 #[test]
-fn a_value_out_of_range_is_brought_into_it() {
+fn a_value_out_of_range_is_brought_into_it_and_said_to_be() {
     let mut harness = Window::of(prepared());
     type_number(&mut harness, "friction glass – glass", "7");
     assert_eq!(commands(&harness.state().asked), [set(friction(), 1.0)]);
+    harness.get_by_label("7 is out of range, so 1 was taken. Expected: 0 to 1.");
+}
+
+#[test]
+fn what_is_no_number_is_answered_and_changes_nothing() {
+    let mut harness = Window::of(prepared());
+    type_number(&mut harness, "drum speed", "fast");
+    assert_eq!(harness.state().asked, []);
+    let speed = "“fast” is not a number, so nothing was changed. Expected: −10 to 10 rpm.";
+    harness.get_by_label(speed);
+    // Another field is another matter; the same one is free of it once it is put right.
+    type_number(&mut harness, "friction glass – glass", "0,25");
+    assert_eq!(commands(&harness.state().asked), [set(friction(), 0.25)]);
+    harness.get_by_label(speed);
+    type_number(&mut harness, "drum speed", "3 rpm");
+    assert_eq!(harness.state().asked.len(), 2);
+    assert!(harness.query_by_label(speed).is_none());
+}
+
+#[test]
+fn a_field_that_is_only_passed_through_changes_nothing() {
+    let mut simulation = prepared();
+    simulation.send(set(friction(), 1.0 / 3.0));
+    let mut harness = Window::of(simulation);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "friction glass – glass")
+        .click();
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().asked, []);
+}
+
+#[test]
+fn each_parameter_leads_to_its_comparison() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Compare drum speed…").click();
+    harness.run_steps(2);
+    let request = Request::Compare(Some(Parameter::DrumSpeed));
+    assert_eq!(harness.state().asked, [request]);
+    harness
+        .state_mut()
+        .desk
+        .compare(Some(&Parameter::DrumSpeed));
+    harness.run_steps(8);
+    harness.get_by_label("Left: 2 rpm, the present value");
 }
 
 #[test]
@@ -356,6 +401,37 @@ fn reset_all_sets_what_was_changed_and_nothing_else() {
 }
 
 #[test]
+fn reset_all_brings_back_what_acts_at_the_next_start_too() {
+    let original = prepared().scene().clone();
+    let mut denser = original.clone();
+    denser.materials[0].density = 5000.0;
+    let opened = Simulation::open(denser, standing()).made_of(original.clone().into());
+    let mut harness = Window::of(ready(opened));
+    // Basics do not show the density: they say that something is another than in the scene.
+    harness.get_by_label_contains("1 more changed");
+    harness.get_by_label("Reset all").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("not yet in the run");
+    press(&mut harness, "Start with these");
+    assert_eq!(harness.state().asked, [Request::Start(Box::new(original))]);
+}
+
+#[test]
+fn reset_all_forgets_what_is_not_yet_in_the_run() {
+    let mut harness = in_the_lab(prepared());
+    let reset = |harness: &Harness<'_, Window>| {
+        let button = harness.get_by_label("Reset all");
+        !button.accesskit_node().is_disabled()
+    };
+    assert!(!reset(&harness));
+    type_number(&mut harness, "density glass", "5000");
+    assert!(reset(&harness));
+    press(&mut harness, "Reset all");
+    assert_eq!(harness.state().asked, []);
+    assert!(harness.query_by_label("Start with these").is_none());
+}
+
+#[test]
 fn a_parameter_is_shown_in_the_unit_people_think_in() {
     let info = ParameterInfo {
         parameter: Parameter::Share("red".into()),
@@ -373,7 +449,7 @@ fn a_parameter_is_shown_in_the_unit_people_think_in() {
     let scene = Scene::open("two-frictions-drum").unwrap();
     let mut harness = Harness::new_ui_state(
         move |ui, asked: &mut Vec<Command>| {
-            asked.extend(parameter_ui(ui, &info, 0.3, Detail::Lab, &scene));
+            asked.extend(parameter_ui(ui, &info, 0.3, Detail::Lab, &scene, |_| ()));
         },
         Vec::new(),
     );
@@ -755,7 +831,7 @@ fn sessions_are_saved_by_key_and_by_menu() {
 #[test]
 fn a_path_can_be_typed_where_the_system_has_no_dialog() {
     let mut harness = Window::of(prepared());
-    let purpose = grainfall::ui::Purpose::Open;
+    let purpose = Purpose::Open;
     harness
         .state_mut()
         .desk
@@ -772,6 +848,91 @@ fn a_path_can_be_typed_where_the_system_has_no_dialog() {
         [Request::Open("scenes/mine.ron".into())]
     );
     assert!(harness.query_by_label("There is no dialog here.").is_none());
+}
+
+#[test]
+fn a_panel_that_opens_scrolls_into_view_and_its_plot_is_exported_with_title_and_axes() {
+    let mut simulation = prepared();
+    simulation.send(Command::Step(2000));
+    let mut harness = Window::of(ready(simulation));
+    harness.set_size(egui::vec2(1280.0, 640.0));
+    harness.run_steps(4);
+    harness.get_by_label("Any quantity").click();
+    harness.run_steps(60);
+    let export = harness.get_by_label("Export…");
+    assert!(export.rect().bottom() < 640.0, "{:?}", export.rect());
+    export.click();
+    harness.run_steps(2);
+    let [Request::ExportPlot(export)] = &harness.state().asked[..] else {
+        panic!("{:?}", harness.state().asked);
+    };
+    let title = harness.get_by_label("Kinetic energy E_kin [J] over Time t [s]");
+    assert!(export.rect.contains_rect(title.rect()));
+    let curve = harness.get_by_label_contains("Kinetic energy E_kin [J] over Time t [s], now");
+    let around = curve.rect().expand2(egui::vec2(20.0, 10.0));
+    assert!(export.rect.left() < around.left() && export.rect.bottom() > around.bottom());
+}
+
+#[test]
+fn a_narrow_window_shows_the_side_that_is_wanted_and_says_why_not_both() {
+    let mut harness = Window::of(prepared());
+    harness.set_size(egui::vec2(800.0, 700.0));
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Last 20 s").is_none());
+    harness.get_by_label("View").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("room for one of them");
+    harness.get_by_label("Controls on the left").click();
+    harness.run_steps(10);
+    harness.get_by_label("Last 20 s");
+}
+
+#[test]
+fn a_control_that_the_focus_comes_to_scrolls_into_view() {
+    let mut harness = Window::of(prepared());
+    harness.set_size(egui::vec2(1280.0, 500.0));
+    harness.run_steps(4);
+    let field = |harness: &Harness<'_, Window>| {
+        let field = harness.get_by_role_and_label(Role::SpinButton, "Averages from");
+        field.focus();
+        field.rect()
+    };
+    assert!(field(&harness).top() > 500.0);
+    harness.run_steps(60);
+    assert!(field(&harness).bottom() < 500.0);
+}
+
+#[test]
+fn it_is_said_where_a_file_goes_and_what_it_replaces() {
+    let folder = tempfile::tempdir().unwrap();
+    let taken = folder.path().join("taken.grainfall");
+    std::fs::write(&taken, "").unwrap();
+    let mut harness = Window::of(prepared());
+    let dialog = &mut harness.state_mut().desk.path_dialog;
+    dialog.type_path(Purpose::Session, "There is no dialog here.");
+    harness.run_steps(3);
+    let mut write = |path: &Path| {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.event(egui::Event::Text(path.display().to_string()));
+        harness.run_steps(3);
+        let labels = ["Goes to", "Replaces", "There is a folder"];
+        let said = labels.map(|words| harness.query_by_label_contains(words).is_some());
+        (
+            said,
+            harness.get_by_label("Save").accesskit_node().is_disabled(),
+        )
+    };
+    assert_eq!(
+        write(&folder.path().join("free")),
+        ([true, false, false], false)
+    );
+    assert_eq!(
+        write(&folder.path().join("taken")),
+        ([false, true, false], false)
+    );
+    std::fs::remove_file(&taken).unwrap();
+    std::fs::create_dir(&taken).unwrap();
+    assert_eq!(write(&taken), ([false, false, true], true));
 }
 
 #[test]

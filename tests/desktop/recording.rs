@@ -1,43 +1,18 @@
 //! Claims about films: every picture of one stands at its simulated time, and a film is whole or not there.
 
-use crate::view::studio;
+use crate::panels::standing;
+use crate::view::{laboratory, studio};
 use bevy::math::UVec2;
 use bevy::prelude::*;
-use grainfall::scene::Scene;
-use grainfall::simulation::{
-    BedStore, Command, DriverKind, Options, Simulation, SimulationPlugin, Status,
-};
+use grainfall::simulation::{Command, Simulation};
 use grainfall::ui::{FilmOrder, FilmState, Recorder};
-use grainfall::view::{FILM_RATE, ViewPlugin};
+use grainfall::view::FILM_RATE;
 use grainfall::window::RecordingPlugin;
-use grainfall::window::picture::{CanvasPlugin, make_ready, offscreen_plugins};
 use std::path::Path;
 
-/// A laboratory without panels that draws a grain that falls.
-fn laboratory() -> App {
-    let options = Options {
-        driver: DriverKind::Inline,
-        threads: 1,
-        autoplay: false,
-        beds: BedStore::none(),
-        ..Options::window()
-    };
-    let mut app = App::new();
-    app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
-        .add_plugins((
-            CanvasPlugin(UVec2::new(160, 120)),
-            SimulationPlugin,
-            ViewPlugin,
-            RecordingPlugin,
-        ));
-    let scene = Scene::open("bouncing-grain").unwrap();
-    app.insert_resource(Simulation::open(scene, options));
-    make_ready(&mut app);
-    until(&mut app, |app| {
-        let status = app.world().resource::<Simulation>().status().clone();
-        !matches!(status, Status::Preparing { .. })
-    });
-    app
+/// A laboratory with a recorder.
+fn studio_with_recorder() -> App {
+    laboratory(UVec2::new(160, 120), standing(), RecordingPlugin)
 }
 
 /// Updates until `done`.
@@ -83,7 +58,7 @@ fn film_has_a_picture_for_every_frame_of_simulated_time() {
     };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film");
-    let mut app = laboratory();
+    let mut app = studio_with_recorder();
     let begun = app.world().resource::<Simulation>().world().unwrap().time();
     record(&mut app, &path, 4);
     let FilmState::Recording { pictures, time } = state(&app) else {
@@ -124,7 +99,7 @@ fn cancelled_film_leaves_nothing_and_lets_the_run_go() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let mut app = laboratory();
+    let mut app = studio_with_recorder();
     record(&mut app, &folder.path().join("film.gif"), 2);
     order(&mut app, FilmOrder::Cancel);
     until(&mut app, |app| state(app) == FilmState::Idle);

@@ -1,11 +1,11 @@
 //! Claims about saving, leaving and opening in the app as a whole: requests go in as panels make them, and nothing is drawn.
 
-use crate::panels::{friction, prepared, set};
+use crate::panels::{friction, prepared, set, standing};
 use bevy::MinimalPlugins;
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
 use grainfall::scene::Scene;
-use grainfall::simulation::{BedStore, Command, Options, Simulation, SimulationPlugin, Status};
+use grainfall::simulation::{Command, DriverKind, Options, Simulation, SimulationPlugin, Status};
 use grainfall::ui::{Desk, DeskPlugin, Request, Requests};
 use grainfall::world::StateHash;
 use std::path::Path;
@@ -13,10 +13,8 @@ use std::path::Path;
 /// The app of three grains at time zero, with everything but pictures.
 fn app() -> App {
     let options = Options {
-        threads: 1,
-        autoplay: false,
-        beds: BedStore::none(),
-        ..Options::window()
+        driver: DriverKind::Thread,
+        ..standing()
     };
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, SimulationPlugin))
@@ -165,7 +163,21 @@ fn start_with_another_scene_takes_the_present_values_along() {
     ask(&mut app, Request::Leave(Box::new(start)));
     update_until(&mut app, |s| s.world().is_some());
     assert_eq!(simulation(&app).scene().materials[0].density, 5000.0);
+    assert_eq!(simulation(&app).original().materials[0].density, 2500.0);
     assert_eq!(simulation(&app).value(&friction()), 0.2);
+}
+
+#[test]
+fn what_cannot_be_opened_is_told_before_anybody_is_asked_to_save() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.ron");
+    std::fs::write(&path, "(title: 3)").unwrap();
+    let mut app = app();
+    work(&mut app);
+    ask(&mut app, Request::Open(path.display().to_string()));
+    let reason = app.world().resource::<Desk>().open_error();
+    assert!(reason.is_some_and(|reason| reason.contains("bad.ron")));
+    assert!(simulation(&app).is_unsaved());
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and without a GPU.
 
-use crate::panels::{Window, commands, friction, prepared, ready, sample, set};
+use crate::panels::{Window, commands, friction, prepared, ready, sample, set, standing};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use grainfall::measure::{Avalanche, Measure, Sample, Series};
 use grainfall::scene::TimeStep;
-use grainfall::simulation::{BedStore, Command, DriverKind, Options, Record, Simulation, Status};
+use grainfall::simulation::{Command, Record, Simulation, Status};
 use grainfall::ui::{Curves, Level, Plots, Request, checks};
 use std::sync::Arc;
 use std::time::Duration;
@@ -36,6 +36,46 @@ fn changed() -> Simulation {
     }
     assert_eq!(simulation.past().end.step, 2000);
     simulation
+}
+
+#[test]
+fn the_way_back_to_the_newest_state_stays_in_its_bar_however_large_the_text() {
+    let mut simulation = changed();
+    carried_out(&mut simulation, Command::Seek(500));
+    let mut harness = Window::of(simulation);
+    harness.ctx.all_styles_mut(|style| {
+        for size in [egui::TextStyle::Body, egui::TextStyle::Button] {
+            style
+                .text_styles
+                .insert(size, egui::FontId::proportional(24.0));
+        }
+    });
+    harness.run_steps(6);
+    let button = harness.get_by_label("To the newest").rect();
+    let beyond = harness.get_by_label("Last 20 s").rect();
+    assert!(button.right() < beyond.left(), "{button:?} {beyond:?}");
+}
+
+#[test]
+fn the_numbers_beside_a_plot_are_those_of_the_moment_shown() {
+    let mut series = Series::default();
+    series.push(sample(0.0, 0.5, 1e-6));
+    series.push(sample(0.02, 0.3, 1e-8));
+    let mut plots = Plots::default();
+    let mut harness = Harness::new_ui(move |ui| {
+        let curves = Curves {
+            series: &series,
+            twin: None,
+            avalanches: &[],
+            changes: &[],
+            kept: &[],
+            shown: Some(0.01),
+        };
+        plots.curves_ui(ui, &curves);
+    });
+    harness.run_steps(3);
+    harness.get_by_label("28.65");
+    assert!(harness.query_by_label("17.19").is_none());
 }
 
 /// What was asked for last.
@@ -228,14 +268,7 @@ fn the_badge_names_a_time_step_beyond_its_limit_and_a_remedy() {
         (2.5, Level::Bad),
     ] {
         scene.time_step = TimeStep::Given(factor * limit);
-        let options = Options {
-            driver: DriverKind::Inline,
-            threads: 1,
-            autoplay: false,
-            beds: BedStore::none(),
-            ..Options::window()
-        };
-        let simulation = ready(Simulation::open(scene.clone(), options));
+        let simulation = ready(Simulation::open(scene.clone(), standing()));
         let step = checks(&simulation)
             .into_iter()
             .find(|check| check.name == "time step");

@@ -1,8 +1,8 @@
 //! Two runs side by side: the panel by its accessible labels, and both halves of the picture in the app as a whole.
 
-use crate::panels::{Window, friction, prepared, sample, set, type_number};
+use crate::panels::{Window, friction, prepared, sample, set, standing, type_number};
 use crate::timeline::carried_out;
-use crate::view::{Photograph, SIZE, photographed, studio};
+use crate::view::{Photograph, SIZE, laboratory, photographed, studio};
 use bevy::math::{Vec2, Vec3};
 use bevy::prelude::*;
 use bevy_egui::egui::accesskit::Role;
@@ -10,13 +10,9 @@ use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::measure::{GrainQuantity, Series};
-use grainfall::scene::Scene;
-use grainfall::simulation::{
-    BedStore, Command, DriverKind, Half, Options, Parameter, Simulation, SimulationPlugin, Status,
-};
+use grainfall::simulation::{Command, DriverKind, Half, Options, Parameter, Simulation, Status};
 use grainfall::ui::{Curves, Desk, DeskPlugin, Plots, Request, Requests};
-use grainfall::view::{ColourBy, OrbitCamera, ViewPlugin, ViewSettings};
-use grainfall::window::picture::{CanvasPlugin, make_ready, offscreen_plugins};
+use grainfall::view::{ColourBy, OrbitCamera, ViewSettings};
 use std::time::Duration;
 
 /// Three grains that fell, twice: with a friction of 0.4 on the left and of 0.9 on the right.
@@ -70,7 +66,7 @@ fn two_values_are_chosen_by_name_or_number_and_started() {
 fn a_key_leads_to_the_panel() {
     let mut harness = Window::of(prepared());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::T);
-    assert_eq!(asked(&mut harness), [Request::Compare]);
+    assert_eq!(asked(&mut harness), [Request::Compare(None)]);
     harness.state_mut().show_panel("Compare two values");
     harness.run_steps(8);
     harness.get_by_label("Start side by side");
@@ -110,6 +106,8 @@ fn what_belongs_to_one_run_cannot_be_pressed() {
     assert!(simulation.past().undo.is_some());
     let mut harness = Window::of(simulation);
     assert!(harness.get_by_label("Undo").accesskit_node().is_disabled());
+    let compare = harness.get_by_label("Compare drum speed…");
+    assert!(compare.accesskit_node().is_disabled());
     harness.get_by_label("Play").click();
     assert_eq!(asked(&mut harness), [Request::Command(Command::Play)]);
 }
@@ -150,27 +148,46 @@ fn both_curves_are_on_each_plot_and_the_newest_of_both_beside_its_name() {
     assert!(dashes.count() > 20, "the right one is dashed");
 }
 
-/// The app of a grain that falls, drawn without a window; requests go in as panels make them.
-fn laboratory() -> App {
+#[test]
+fn titles_of_plots_are_whole_in_a_narrow_panel() {
+    let title_width = |room: f32| {
+        let [left, right] = [(); 2].map(|()| {
+            let mut series = Series::default();
+            series.push(sample(0.0, 0.5, 1e-6));
+            series
+        });
+        let mut plots = Plots::default();
+        let mut harness = Harness::builder()
+            .with_size([room, 700.0])
+            .build_ui(move |ui| {
+                let curves = Curves {
+                    series: &left,
+                    twin: Some(&right),
+                    avalanches: &[],
+                    changes: &[],
+                    kept: &[],
+                    shown: None,
+                };
+                plots.curves_ui(ui, &curves);
+            });
+        harness.run_steps(3);
+        let title = harness.get_by_label("Granular temperature Tg [m²/s²]");
+        title.rect().width()
+    };
+    assert_eq!(title_width(280.0), title_width(900.0));
+}
+
+/// A laboratory that looks at its grain from the front; requests go in as panels make them.
+fn falling_from_the_front() -> App {
     let options = Options {
         driver: DriverKind::Thread,
         threads: 2,
-        autoplay: false,
-        beds: BedStore::none(),
-        ..Options::window()
+        ..standing()
     };
-    let mut app = App::new();
-    app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
-        .add_plugins((
-            CanvasPlugin(SIZE),
-            SimulationPlugin,
-            ViewPlugin,
-            DeskPlugin {
-                options: options.clone(),
-            },
-        ));
-    let scene = Scene::open("bouncing-grain").unwrap();
-    app.insert_resource(Simulation::open(scene, options));
+    let desk = DeskPlugin {
+        options: options.clone(),
+    };
+    let mut app = laboratory(SIZE, options, desk);
     let mut camera = OrbitCamera::default();
     (camera.yaw, camera.pitch, camera.height) = (0.0, 0.0, 0.1);
     (camera.focus, camera.fits) = (Vec3::new(0.0, 0.04, 0.0), false);
@@ -178,10 +195,6 @@ fn laboratory() -> App {
     app.world_mut()
         .resource_mut::<ViewSettings>()
         .show_container = false;
-    make_ready(&mut app);
-    while *simulation(&app).status() != Status::Paused {
-        app.update();
-    }
     app
 }
 
@@ -218,7 +231,7 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     let Some(_studio) = studio(name) else {
         return;
     };
-    let mut app = laboratory();
+    let mut app = falling_from_the_front();
     app.world_mut().resource_mut::<ViewSettings>().colour_by =
         ColourBy::Quantity(GrainQuantity::Speed);
     let has_twin = |s: &Simulation| s.twin().is_some_and(|twin| twin.run().world().is_some());

@@ -3,12 +3,18 @@
 //! They need a Vulkan driver, a software one will do. Where there is none they say that they did not run, or fail if
 //! `GRAINFALL_REQUIRE_VULKAN` is set.
 
+use crate::panels::standing;
+use bevy::app::Plugins;
+use bevy::ecs::message::Messages;
 use bevy::math::{UVec2, Vec2, Vec3};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
+use bevy_egui::{EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
 use glam::DVec3;
 use grainfall::measure::GrainQuantity;
-use grainfall::scene::ContactLaw;
+use grainfall::scene::{ContactLaw, Scene};
+use grainfall::simulation::{Options, Simulation, SimulationPlugin, Status};
+use grainfall::ui::UiPlugin;
 use grainfall::view::{
     Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, Shown,
     Side, ViewPlugin, ViewSettings, save_png, species_colour,
@@ -99,6 +105,58 @@ pub fn photograph(
         .show(Some(Arc::new(world)));
     make_ready(&mut app);
     photographed(&mut app, name)
+}
+
+/// A laboratory without panels that draws a grain that falls, on a canvas of this `size`, with these `plugins` more.
+pub fn laboratory<M>(size: UVec2, options: Options, plugins: impl Plugins<M>) -> App {
+    let mut app = App::new();
+    app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
+        .add_plugins((CanvasPlugin(size), SimulationPlugin, ViewPlugin))
+        .add_plugins(plugins);
+    let scene = Scene::open("bouncing-grain").unwrap();
+    app.insert_resource(Simulation::open(scene, options));
+    make_ready(&mut app);
+    while *app.world().resource::<Simulation>().status() != Status::Paused {
+        app.update();
+    }
+    app
+}
+
+/// Words over the picture.
+#[derive(Resource)]
+struct Words(&'static str);
+
+fn write_words(words: Res<Words>, mut contexts: EguiContexts) -> Result {
+    let area = egui::Area::new(egui::Id::new("words"));
+    area.show(contexts.ctx_mut()?, |ui| ui.label(words.0));
+    Ok(())
+}
+
+/// Once a letter's picture reached the renderer a frame after the letter: numbers on the plots had holes.
+#[test]
+fn a_letter_is_there_in_the_frame_that_first_shows_it() {
+    let name = "a_letter_is_there_in_the_frame_that_first_shows_it";
+    let Some(_studio) = studio(name) else {
+        return;
+    };
+    let options = standing();
+    let mut app = laboratory(
+        SIZE,
+        options.clone(),
+        (EguiPlugin::default(), UiPlugin { options }),
+    );
+    app.insert_resource(Words("known"))
+        .add_systems(EguiPrimaryContextPass, write_words);
+    let mut changed_images = |words: &'static str| {
+        app.insert_resource(Words(words)).update();
+        let messages = app.world().resource::<Messages<AssetEvent<Image>>>();
+        messages.iter_current_update_messages().count()
+    };
+    for _ in 0..2 * WARM_UP {
+        changed_images("known");
+    }
+    assert_eq!(changed_images("known"), 0);
+    assert!(changed_images("ßþĦ") > 0);
 }
 
 /// The picture that `app` shows now.
