@@ -81,6 +81,7 @@ impl Gallery {
             ui.heading("Scenes");
             ScrollArea::vertical()
                 .max_height(0.72 * room.y)
+                .min_scrolled_height(0.72 * room.y)
                 .show(ui, |ui| {
                     // Room for the scroll bar.
                     ui.set_width(ui.available_width() - 10.0);

@@ -147,7 +147,8 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
     ui.checkbox(&mut shown.left, "Controls on the left");
     ui.checkbox(&mut shown.right, "Plots and results on the right");
     if let Some(reason) = why_not_both(ui.ctx().content_rect().width()) {
-        ui.weak(reason);
+        // Menus spread their text over the whole width.
+        ui.vertical(|ui| ui.weak(reason));
     }
     ui.separator();
     ui.weak("Text and controls");

@@ -496,6 +496,9 @@ fn the_gallery_says_what_to_look_for_and_how_fast_scenes_run_here() {
     harness.state_mut().desk.remember(memory);
     harness.state_mut().desk.show_scenes();
     harness.run_steps(6);
+    // It is as high as the window lets it be.
+    let gallery_end = harness.get_by_label("Close").rect().bottom();
+    assert!(gallery_end > 0.8 * 1400.0, "{gallery_end}");
     let small = Scene::open("small-drum").unwrap();
     harness.get_by_label(&small.look_for);
     harness.get_by_label_contains("100 grains · 12 times real time here");
