@@ -289,6 +289,7 @@ fn or(label: String, otherwise: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::case::CaseEnding;
+    use super::super::plots::plots;
     use super::super::{Case, Variation};
     use super::*;
     use crate::measure::{FlowProfile, Sample, Series, Summary, SummaryEntry};
@@ -440,6 +441,19 @@ mod tests {
         assert_eq!(names(front), ["mu11=0.1", "mu11=0.4"]);
         // All at one aspect ratio: no slope can be drawn.
         assert_eq!(of(&plots, "run-out-aspect.svg").lines.len(), 2);
+    }
+
+    #[test]
+    fn a_case_that_met_a_fault_is_no_point() {
+        let sweep = sweep(&["height=1cm,5cm"]);
+        let mut outcomes = [outcome(&["1cm"], 0.4), outcome(&["5cm"], 2.0)];
+        let drawn = |outcomes: &[Outcome]| {
+            let plots: Vec<Plot> = plots(&sweep, outcomes).collect();
+            of(&plots, "run-out.svg").lines[0].points.len()
+        };
+        assert_eq!(drawn(&outcomes), 2);
+        outcomes[1].ending = CaseEnding::Faulted;
+        assert_eq!(drawn(&outcomes), 1);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! (Fig. 4e). A sweep that varies no liquid has its results over what it does vary.
 
 use super::Sweep;
-use super::case::{Outcome, write};
+use super::case::{CaseEnding, Outcome, write};
 use super::chart::{Axis, Line, Plot};
 use super::column_plots::column_plots;
 use crate::headless::HeadlessError;
@@ -19,12 +19,7 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 /// # Errors
 /// When a file cannot be written.
 pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
-    let plots = if outcomes.iter().any(Outcome::is_column) {
-        column_plots(sweep, outcomes)
-    } else {
-        drum_plots(sweep, outcomes)
-    };
-    for plot in plots.iter().filter(|plot| plot.has_points()) {
+    for plot in plots(sweep, outcomes).filter(Plot::has_points) {
         let text = plot.draw().map_err(|reason| {
             HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
         })?;
@@ -33,6 +28,18 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessEr
         write(&path, |file| file.write_all(text.as_bytes()))?;
     }
     Ok(())
+}
+
+/// Every plot of these outcomes. What a case came to before it met a fault is no result: it is in no plot.
+pub(super) fn plots(sweep: &Sweep, outcomes: &[Outcome]) -> impl Iterator<Item = Plot> {
+    let is_sound = |outcome: &&Outcome| outcome.ending != CaseEnding::Faulted;
+    let sound: Vec<Outcome> = outcomes.iter().filter(is_sound).cloned().collect();
+    let plots = if sound.iter().any(Outcome::is_column) {
+        column_plots(sweep, &sound)
+    } else {
+        drum_plots(sweep, &sound)
+    };
+    plots.into_iter()
 }
 
 fn drum_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {

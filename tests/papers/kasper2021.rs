@@ -1,5 +1,6 @@
 //! Kasper et al. 2021: the drum, dry and wet. What holds is asserted here; what does not stands in docs/validation.md.
 
+use super::value;
 use grainfall::measure::{Summary, summarise};
 use grainfall::scene::Scene;
 use grainfall::simulation::{BedStore, Preparation, Prepared, SMALLEST_DROP};
@@ -22,13 +23,6 @@ fn results(settings: &[(&str, &str)]) -> Summary {
     let end = run.world().clock.step_at(50.0);
     run.advance_to(end).unwrap();
     summarise(run.series(), 20.0, SMALLEST_DROP)
-}
-
-#[track_caller]
-fn value(summary: &Summary, name: &str) -> f64 {
-    let value = summary.value(name).unwrap_or(f64::NAN);
-    println!("{name}: {value:.4e}");
-    value
 }
 
 #[test]
