@@ -114,34 +114,42 @@ impl Line {
 impl Plot {
     /// Whether it has more to show than laws.
     pub fn has_points(&self) -> bool {
-        self.lines
-            .iter()
-            .any(|line| !line.is_law && !line.points.is_empty())
+        let results = self.lines.iter().filter(|line| !line.is_law);
+        results.flat_map(|line| self.places(line)).next().is_some()
     }
 
-    /// Its range along one axis, with a margin.
-    fn range(&self, place: impl Fn(&(f64, f64)) -> f64) -> Range<f64> {
-        let places = self.lines.iter().flat_map(|line| &line.points).map(place);
+    /// Where the points of `line` are on the axes; those that have no place, as zero on a logarithmic axis, are left out.
+    fn places<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let points = line.points.iter();
+        let places = points.map(|(x, y)| (self.x.place(*x), self.y.place(*y)));
+        places.filter(|(x, y)| x.is_finite() && y.is_finite())
+    }
+
+    fn all_places(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.lines.iter().flat_map(|line| self.places(line))
+    }
+
+    /// The range of all `along` one axis, with a margin; any range where there are no points.
+    fn range(&self, along: impl Fn((f64, f64)) -> f64) -> Range<f64> {
+        let places = self.all_places().map(along);
         let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
             (low.min(p), high.max(p))
         });
+        if low > high {
+            return 0.0..1.0;
+        }
         let margin = (0.05 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
         low - margin..high + margin
     }
 
     /// The corner with the fewest points, for the legend.
     fn emptiest_corner(&self) -> SeriesLabelPosition {
-        let (x, y) = (
-            self.range(|(x, _)| self.x.place(*x)),
-            self.range(|(_, y)| self.y.place(*y)),
-        );
-        let across = |point: &(f64, f64)| (self.x.place(point.0) - x.start) / (x.end - x.start);
-        let upright = |point: &(f64, f64)| (self.y.place(point.1) - y.start) / (y.end - y.start);
+        let (x, y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
+        let across = |place: &(f64, f64)| (place.0 - x.start) / (x.end - x.start);
+        let upright = |place: &(f64, f64)| (place.1 - y.start) / (y.end - y.start);
         let within = |right: bool, upper: bool| {
-            let points = self.lines.iter().flat_map(|line| &line.points);
-            let inside =
-                |p: &&(f64, f64)| (across(p) > 0.5) == right && (upright(p) > 0.6) == upper;
-            points.filter(inside).count()
+            let inside = |p: &(f64, f64)| (across(p) > 0.5) == right && (upright(p) > 0.6) == upper;
+            self.all_places().filter(inside).count()
         };
         let corners = [
             (within(true, true), SeriesLabelPosition::UpperRight),
@@ -162,8 +170,7 @@ impl Plot {
         {
             let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
             area.fill(&WHITE)?;
-            let x = self.range(|(x, _)| self.x.place(*x));
-            let y = self.range(|(_, y)| self.y.place(*y));
+            let (x, y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
             let mut chart = ChartBuilder::on(&area)
                 .caption(&self.title, ("sans-serif", 20))
                 .margin(14)
@@ -182,8 +189,7 @@ impl Plot {
                 .draw()?;
             for (index, line) in self.lines.iter().enumerate() {
                 let colour = colour(index, line.is_law);
-                let place = |(x, y): &(f64, f64)| (self.x.place(*x), self.y.place(*y));
-                let points: Vec<(f64, f64)> = line.points.iter().map(place).collect();
+                let points: Vec<(f64, f64)> = self.places(line).collect();
                 let curve = LineSeries::new(points.clone(), colour.stroke_width(2));
                 let drawn = chart.draw_series(curve)?;
                 if !line.name.is_empty() {
@@ -220,4 +226,33 @@ fn colour(index: usize, is_law: bool) -> RGBColor {
     let palette = colorous::TABLEAU10;
     let colorous::Color { r, g, b } = palette[index % palette.len()];
     RGBColor(r, g, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(points: &[(f64, f64)]) -> Plot {
+        Plot {
+            file: "any.svg".into(),
+            title: "Any".into(),
+            x: Axis::linear("t"),
+            y: Axis::logarithmic("Tg"),
+            lines: vec![Line::results("a", points.iter().copied())],
+        }
+    }
+
+    #[test]
+    fn zero_has_no_place_on_a_logarithmic_axis() {
+        let some = plot(&[(0.0, 0.0), (1.0, 1e-9), (2.0, 1e-7)]);
+        assert_eq!(some.all_places().count(), 2);
+        assert!(some.has_points());
+        let none = plot(&[(0.0, 0.0), (1.0, -1.0)]);
+        assert!(!none.has_points());
+        // Axes without an end would be divided for ever.
+        for plot in [some, none] {
+            let text = plot.draw().unwrap();
+            assert!(text.starts_with("<svg") && !text.contains("NaN"));
+        }
+    }
 }
