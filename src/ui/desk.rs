@@ -443,6 +443,7 @@ fn sections_ui(
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         // Room for the scroll bar, so that it never lies over a number.
         ui.set_width(ui.available_width() - 6.0);
+        let mut opening = None;
         for section in sections {
             if !section.panel.concerns(simulation) {
                 continue;
@@ -468,24 +469,29 @@ fn sections_ui(
                 shown.header_response.request_focus();
             }
             if shown.openness > section.openness || is_wanted {
-                show_whole(ui, &shown);
+                opening = Some(whole(&shown));
             }
             section.openness = shown.openness;
         }
-        follow_focus(ui);
+        // The last wish to scroll counts: a panel that opens has its title focused too.
+        match opening {
+            Some(panel) => show_whole(ui, panel),
+            None => follow_focus(ui),
+        }
     });
 }
 
+/// The place of a panel's title and of as much of it as is open.
+fn whole<R>(panel: &egui::CollapsingResponse<R>) -> egui::Rect {
+    let title = panel.header_response.rect;
+    let body = panel.body_response.as_ref();
+    body.map_or(title, |body| title.union(body.rect))
+}
+
 /// Scrolls as far as it takes to see all of a panel that opens, or its upper part where it is higher than the window.
-fn show_whole<R>(ui: &egui::Ui, panel: &egui::CollapsingResponse<R>) {
-    let header = panel.header_response.rect;
-    let body = panel
-        .body_response
-        .as_ref()
-        .map_or(header, |body| body.rect);
-    let whole = header.union(body);
-    let is_higher = whole.height() > ui.clip_rect().height();
-    ui.scroll_to_rect(whole, is_higher.then_some(egui::Align::Min));
+fn show_whole(ui: &egui::Ui, panel: egui::Rect) {
+    let is_higher = panel.height() > ui.clip_rect().height();
+    ui.scroll_to_rect(panel, is_higher.then_some(egui::Align::Min));
 }
 
 /// Scrolls the area that `ui` fills to the control in it that the keyboard's focus has just come to.
