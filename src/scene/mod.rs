@@ -26,7 +26,7 @@ pub use liquid::{
     PairAngle, Rupture, SceneLiquid, SmallestGap,
 };
 pub use mixture::{SizeClass, size_classes, species_counts};
-pub use packing::{PackingError, StoredCells};
+pub use packing::{HeldCells, PackingError, StoredCells};
 pub use set::seconds;
 pub use shape::{SceneBody, SceneShape};
 
@@ -305,6 +305,14 @@ impl Scene {
         let path = path.as_ref();
         let name = path.display().to_string();
         Self::parse(&name, &read(path, &name)?)
+    }
+
+    /// The grains that come from a file in place of being cut.
+    pub fn stored_cells(&self) -> Option<&StoredCells> {
+        match &self.grains {
+            SceneGrains::Voronoi(cells) => cells.packing.as_ref(),
+            _ => None,
+        }
     }
 
     /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name or path.

@@ -1,12 +1,14 @@
 //! Voronoi cells kept in a file, so that several scenes can have the very same grains without cutting them anew.
 //!
 //! In: the grains that [`crate::world::Packing`] made, or the bytes of a file. Out: the file's bytes, or the grains. A file
-//! that is damaged, of another version or holds absurd grains is refused.
+//! that is damaged, of another version or holds absurd grains is refused. A scene that was kept names file and checksum; where
+//! the file is gone, the same grains are taken from [`HeldCells`].
 
 use crate::geometry::Rounded;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 /// Raised whenever the file's layout changes.
 const FORMAT: u32 = 1;
@@ -58,19 +60,18 @@ impl StoredCells {
         if identity != [&MAGIC[..], &FORMAT.to_le_bytes()[..]].concat() {
             return Err(PackingError::Other);
         }
-        let found = blake3::hash(contents);
-        if checksum != found.as_bytes() {
+        if checksum != blake3::hash(contents).as_bytes() {
             return Err(PackingError::Damaged);
         }
         let grains: Vec<Rounded> =
             postcard::from_bytes(contents).map_err(|_| PackingError::Damaged)?;
-        if grains.is_empty() || !grains.iter().all(Rounded::is_sound) {
+        if !are_sound(&grains) {
             return Err(PackingError::Damaged);
         }
         Ok(Self {
             reference: Reference {
                 file: path.to_owned(),
-                checksum: found.to_hex()[..32].to_owned(),
+                checksum: named(contents),
             },
             grains: grains.into(),
         })
@@ -99,6 +100,53 @@ impl StoredCells {
     }
 }
 
+/// Whether a scene can be made of `grains`.
+fn are_sound(grains: &[Rounded]) -> bool {
+    !grains.is_empty() && grains.iter().all(Rounded::is_sound)
+}
+
+/// The checksum of a file's `contents`, as scenes name it.
+fn named(contents: &[u8]) -> String {
+    blake3::hash(contents).to_hex()[..32].to_owned()
+}
+
+/// Grains at hand by their checksum, for as long as they are held.
+static HELD: Mutex<BTreeMap<String, Weak<[Rounded]>>> = Mutex::new(BTreeMap::new());
+
+fn held() -> MutexGuard<'static, BTreeMap<String, Weak<[Rounded]>>> {
+    HELD.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Grains that came with a scene: while this lives, the scene can be made though the file that it names is gone.
+pub struct HeldCells {
+    checksum: String,
+    grains: Arc<[Rounded]>,
+}
+
+impl HeldCells {
+    /// Holds `grains`; none where no scene can be made of them.
+    pub fn hold(grains: Vec<Rounded>) -> Option<Self> {
+        if !are_sound(&grains) {
+            return None;
+        }
+        let checksum = named(&postcard::to_stdvec(&grains).ok()?);
+        let grains: Arc<[Rounded]> = grains.into();
+        held().insert(checksum.clone(), Arc::downgrade(&grains));
+        Some(Self { checksum, grains })
+    }
+}
+
+impl Drop for HeldCells {
+    fn drop(&mut self) {
+        // The same grains may have come with another scene since.
+        let own = Arc::downgrade(&self.grains);
+        let mut held = held();
+        if (held.get(&self.checksum)).is_some_and(|grains| grains.ptr_eq(&own)) {
+            held.remove(&self.checksum);
+        }
+    }
+}
+
 /// Why the grains of a scene that was kept are not there any more.
 #[derive(Debug, thiserror::Error)]
 #[error("its grains are in {}, which {reason}", .file.display())]
@@ -116,11 +164,15 @@ impl TryFrom<Reference> for StoredCells {
             file: std::path::absolute(&reference.file).unwrap_or(reference.file.clone()),
             reason,
         };
-        let stored = Self::read(&reference.file).map_err(lost)?;
-        if stored.reference.checksum == reference.checksum {
-            Ok(stored)
-        } else {
-            Err(lost(PackingError::Changed))
+        let reason = match Self::read(&reference.file) {
+            Ok(stored) if stored.reference.checksum == reference.checksum => return Ok(stored),
+            Ok(_) => PackingError::Changed,
+            Err(error) => error,
+        };
+        let at_hand = held().get(&reference.checksum).and_then(Weak::upgrade);
+        match at_hand {
+            Some(grains) => Ok(Self { reference, grains }),
+            None => Err(lost(reason)),
         }
     }
 }

@@ -12,6 +12,7 @@ use super::{
     StampedCommand, Status,
 };
 use crate::measure::{FlowHistory, Sample};
+use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::World;
 use std::path::PathBuf;
@@ -22,18 +23,41 @@ use std::time::{Duration, Instant};
 pub enum Order {
     /// Carry this out.
     Command(Command),
+    /// Carry this change of a pair of runs out; answered as a command is.
+    Change(PairChange),
     /// A tick of this much wall-clock time has passed.
     Tick(Duration),
     /// Go no further than this step for now.
     Hold(Option<u64>),
-    /// Write the whole session to this file, with a run beside it where there is one.
-    Save(PathBuf, Option<Box<Beside>>),
+    /// Write the whole session to a file.
+    Save(SaveOrder),
     /// Start afresh at time zero with these values; answered as a command is.
     Restart(Vec<(Parameter, f64)>),
     /// Keep this run beside the present one, or go on with it.
     Adopt(Box<Beside>, Half),
     /// Work on so many threads from now on.
     Threads(usize),
+}
+
+/// A session that is to be written.
+pub struct SaveOrder {
+    /// To this file.
+    pub path: PathBuf,
+    /// The scene as it was opened, before what acts from the next start on was changed.
+    pub original: Arc<Scene>,
+    /// A run that goes on beside this one, to be kept as one that was left.
+    pub beside: Option<Box<Beside>>,
+}
+
+/// A change of two runs side by side, or of one of them.
+#[derive(Clone)]
+pub struct PairChange {
+    /// The change.
+    pub command: Command,
+    /// Whether it is part of the change before it.
+    pub joins: bool,
+    /// Whether it changes this run; one of the other run alone is noted in this one, so that an undo is of both.
+    pub is_here: bool,
 }
 
 /// A run of the same scene from the same bed that another engine computed.
@@ -72,7 +96,7 @@ pub struct Update {
     pub commands: Vec<StampedCommand>,
     /// What lies behind and ahead of the state.
     pub past: Option<Past>,
-    /// How many [`Order::Command`]s were answered since the engine was made.
+    /// How many orders that are answered, as [`Order::Command`] is, were taken up since the engine was made.
     pub answered: u64,
     /// What the engine does.
     pub status: Option<Status>,
@@ -118,6 +142,18 @@ const LEAST_STEPS: u64 = 50;
 /// Commands that come sooner after each other belong to one change: a drag, or a button that sets several parameters.
 const ONE_CHANGE: Duration = Duration::from_millis(400);
 
+/// When a parameter was last set, to tell which commands belong to one change.
+#[derive(Default)]
+pub struct Drag(Option<Instant>);
+
+impl Drag {
+    /// Whether a command that sets a parameter now is part of the change before it.
+    pub fn joins(&mut self) -> bool {
+        let last = self.0.replace(Instant::now());
+        last.is_some_and(|last| last.elapsed() < ONE_CHANGE)
+    }
+}
+
 /// A preparation that becomes a run, and the player's state.
 pub struct Engine {
     stage: Stage,
@@ -134,8 +170,7 @@ pub struct Engine {
     memory: usize,
     /// Orders that come before the run stands, or while it is on the way to another moment.
     waiting: Vec<Order>,
-    /// When a parameter was last set.
-    changed: Option<Instant>,
+    drag: Drag,
     fault: Option<Fault>,
     news: Update,
     told: Told,
@@ -209,7 +244,7 @@ impl Engine {
             script: Vec::new(),
             memory: 0,
             waiting: Vec::new(),
-            changed: None,
+            drag: Drag::default(),
             fault: None,
             news: Update::default(),
             told: Told::default(),
@@ -224,7 +259,8 @@ impl Engine {
             Order::Hold(step) => self.hold = step.unwrap_or(u64::MAX),
             order if self.must_wait(&order) => self.waiting.push(order),
             Order::Command(command) => self.carry_out(command),
-            Order::Save(path, beside) => self.save(path, beside),
+            Order::Change(change) => self.change_in_pair(change),
+            Order::Save(order) => self.save(order),
             Order::Restart(values) => self.restart(&values),
             Order::Adopt(beside, shown) => self.adopt(*beside, shown),
             Order::Threads(threads) => {
@@ -334,6 +370,7 @@ impl Engine {
                 let acts_on_the_moment = matches!(
                     order,
                     Order::Save(..)
+                        | Order::Change(_)
                         | Order::Command(Command::Play | Command::Step(_) | Command::Set { .. })
                 );
                 timeline.destination().is_some() && acts_on_the_moment
@@ -386,13 +423,18 @@ impl Engine {
         }
     }
 
-    /// Writes the whole session to `path`, on the way from one piece of work to the next; a run that goes on `beside` is
-    /// in it as one that was kept.
-    fn save(&mut self, path: PathBuf, beside: Option<Box<Beside>>) {
+    /// Writes the whole session, on the way from one piece of work to the next.
+    fn save(&mut self, order: SaveOrder) {
+        let SaveOrder {
+            path,
+            original,
+            beside,
+        } = order;
         let outcome = match &mut self.stage {
             Stage::Ready(timeline) => {
                 let beside = beside.map(|beside| timeline.adopt(beside.record, beside.end));
-                let session = Session::of(&timeline.run().scene().title, timeline);
+                let title = &timeline.run().scene().title;
+                let session = Session::of(title, timeline).of_original(&original);
                 if beside.is_some() {
                     timeline.forget(timeline.kept().len() - 1);
                 }
@@ -451,9 +493,7 @@ impl Engine {
                 self.play(mode);
             }
             Command::Set { .. } => {
-                let joins = (self.changed).is_some_and(|changed| changed.elapsed() < ONE_CHANGE);
-                self.changed = Some(Instant::now());
-                let refused = timeline.change(command, joins).err();
+                let refused = timeline.change(command, self.drag.joins()).err();
                 self.tell(refused);
             }
             Command::Seek(step) => self.travel(|timeline| timeline.seek(step)),
@@ -461,6 +501,19 @@ impl Engine {
             Command::Redo => self.travel(Timeline::redo),
             Command::Return(index) => self.travel(|timeline| timeline.take_up(index)),
             Command::Forget(index) => timeline.forget(index),
+        }
+    }
+
+    fn change_in_pair(&mut self, change: PairChange) {
+        self.news.answered += 1;
+        if let Stage::Ready(timeline) = &mut self.stage {
+            if change.is_here {
+                let refused = timeline.change(change.command, change.joins).err();
+                self.tell(refused);
+            } else {
+                // What is refused here is refused there too, and told by that run.
+                let _ = timeline.note_beside(&change.command, change.joins);
+            }
         }
     }
 
@@ -475,7 +528,7 @@ impl Engine {
         if let Stage::Ready(timeline) = &mut self.stage {
             set_out(timeline);
         }
-        self.changed = None;
+        self.drag = Drag::default();
         self.play(Mode::Paused);
     }
 

@@ -5,13 +5,13 @@
 
 use super::bed::BedStore;
 use super::driver::Driver;
-use super::engine::{Beside, Engine, Order, SavedFile, Update};
+use super::engine::{Beside, Engine, Order, PairChange, SaveOrder, SavedFile, Update};
 use super::history::{History, Record};
 use super::parameter::ParameterInfo;
 use super::preparation::Preparation;
 use super::provenance::Provenance;
 use super::session::Session;
-use super::timeline::{Past, Timeline};
+use super::timeline::{Changed, Past, Timeline};
 use super::twin::Twin;
 use super::{Command, Half, Parameter, Run, ScriptedCommand, Snapshot, StampedCommand, check};
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
@@ -232,6 +232,7 @@ impl Simulation {
     /// Opens `session` at the moment that was shown. What `options` say of beds and scripts means nothing for it.
     pub fn resume(session: Session, options: Options) -> Self {
         let scene = Arc::new(session.claim().scene.clone());
+        let original = session.original().clone();
         let (speed, means) = (options.speed, Means::of(&options));
         let make = move || {
             let timeline = session.into_timeline(options.threads, options.memory);
@@ -239,7 +240,7 @@ impl Simulation {
         };
         let driver = driven(options.driver, make);
         let advice = advise(&scene);
-        Self::with(scene, advice, speed, means, driver)
+        Self::with(scene, advice, speed, means, driver).made_of(original.into())
     }
 
     fn with(
@@ -360,6 +361,12 @@ impl Simulation {
         &self.past
     }
 
+    /// What an undo would take back, and a redo bring back; of two runs side by side, what was changed since they began.
+    pub fn turns(&self) -> [Option<&Changed>; 2] {
+        let past = self.half(Half::Right).past();
+        [past.undo.as_ref(), past.redo.as_ref()]
+    }
+
     /// The step that is shown, or the one that was asked for and is still on its way.
     pub fn step(&self) -> u64 {
         let shown = || self.world.as_ref().map_or(0, |world| world.clock.step);
@@ -433,6 +440,12 @@ impl Simulation {
         self.order(Order::Command(command));
     }
 
+    /// Asks this run's own engine for a `change` of a pair.
+    pub(super) fn ask_change(&mut self, change: PairChange) {
+        self.sent += 1;
+        self.order(Order::Change(change));
+    }
+
     /// Writes the whole session to `path`, off this thread where there is another; what becomes of it is told by
     /// [`Simulation::take_saved`]. A twin is in it as a run that was kept.
     pub fn save(&mut self, path: PathBuf) {
@@ -448,7 +461,11 @@ impl Simulation {
     /// Lets the engine write the session to `path`, with the run `beside` it.
     pub(super) fn write(&mut self, path: PathBuf, beside: Option<Box<Beside>>) {
         self.saved.pending.push(self.sent);
-        self.order(Order::Save(path, beside));
+        self.order(Order::Save(SaveOrder {
+            path,
+            original: self.original.clone(),
+            beside,
+        }));
     }
 
     /// Begins a twin: both runs start afresh at time zero, with the present values of all parameters but `parameter`,

@@ -191,6 +191,11 @@ impl Record {
         self.end.step <= other.end.step && other.history.passes(&self.end_place())
     }
 
+    /// Whether it stands at its start and nothing was changed.
+    pub fn is_fresh(&self) -> bool {
+        self.end.step == 0 && self.history.commands.is_empty()
+    }
+
     /// Whether the run went on after its last change.
     pub fn went_on(&self) -> bool {
         let last = self.history.commands.last().map_or(0, |last| last.step);

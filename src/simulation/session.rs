@@ -2,13 +2,17 @@
 //!
 //! In: a timeline. Out: a file, and from it the same timeline. Its first line names program, layout, version and the
 //! checksum of the rest; its second line is the [`Claim`] of the moment shown, as JSON that people and
-//! `grainfall verify` read; then come states and samples. A file of another version is refused: another version may
+//! `grainfall verify` read; then come states and samples, and the grains that the scene takes from a file. A file of another version is refused: another version may
 //! compute other bits.
 
 use super::archive::Archive;
 use super::claim::{Claim, VERSION};
 use super::timeline::Timeline;
 use crate::files::write_whole;
+use crate::geometry::Rounded;
+use crate::scene::{HeldCells, Scene, StoredCells};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -16,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// What the first line begins with.
 const MARK: &str = "grainfall session";
 /// Raised whenever what follows the second line is laid out otherwise.
-const LAYOUT: &str = "1";
+const LAYOUT: &str = "2";
 
 /// Extension of a session's file.
 pub const SESSION_EXTENSION: &str = "grainfall";
@@ -26,6 +30,18 @@ pub const SESSION_EXTENSION: &str = "grainfall";
 pub struct Session {
     claim: Claim,
     archive: Archive,
+    /// The scene as it was opened, where what acts from the next start on was changed since.
+    original: Option<Scene>,
+}
+
+/// What follows the second line of a file.
+#[derive(Serialize, Deserialize)]
+struct Rest<A, C> {
+    archive: A,
+    /// The grains that the scene takes from a file of its own.
+    cells: Option<C>,
+    /// The scene as it was opened, as JSON, where it is another.
+    original: Option<String>,
 }
 
 /// Why a file cannot be opened as a session, and what to do.
@@ -68,6 +84,17 @@ impl Session {
         Self {
             claim: Claim::of(name, run.scene(), commands, run.world()),
             archive: timeline.archive(),
+            original: None,
+        }
+    }
+
+    /// The same of a scene that was made of the `original` by changing what acts from a start on.
+    #[must_use]
+    pub fn of_original(self, original: &Scene) -> Self {
+        let is_other = *original != self.claim.scene;
+        Self {
+            original: is_other.then(|| original.clone()),
+            ..self
         }
     }
 
@@ -98,7 +125,16 @@ impl Session {
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let mut body = serde_json::to_vec(&self.claim)?;
         body.push(b'\n');
-        let body = postcard::to_extend(&self.archive, body).map_err(io::Error::other)?;
+        let rest = Rest {
+            archive: &self.archive,
+            cells: self.claim.scene.stored_cells().map(StoredCells::grains),
+            original: self
+                .original
+                .as_ref()
+                .map(serde_json::to_string)
+                .transpose()?,
+        };
+        let body = postcard::to_extend(&rest, body).map_err(io::Error::other)?;
         write_whole(path, |file| {
             let checksum = blake3::hash(&body).to_hex();
             writeln!(file, "{MARK} {LAYOUT} {VERSION} {checksum}")?;
@@ -109,6 +145,11 @@ impl Session {
     /// What it states: scene, changes, the moment shown and its state.
     pub fn claim(&self) -> &Claim {
         &self.claim
+    }
+
+    /// The scene as it was opened, before what acts from the next start on was changed.
+    pub fn original(&self) -> &Scene {
+        self.original.as_ref().unwrap_or(&self.claim.scene)
     }
 
     /// What it states, without the rest.
@@ -129,7 +170,12 @@ impl Session {
             return Err(Reason::Damaged("its first line is not whole"));
         };
         if (layout, version) != (LAYOUT, VERSION) {
-            return Err(Reason::Version(version.to_owned()));
+            let build = if version == VERSION {
+                " of another build"
+            } else {
+                ""
+            };
+            return Err(Reason::Version(format!("{version}{build}")));
         }
         if checksum != blake3::hash(body).to_hex().as_str() {
             return Err(Reason::Damaged(
@@ -138,19 +184,31 @@ impl Session {
         }
         let foreign = "its contents are those of another build of this version";
         let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
-        // By way of a value: an error then speaks of what is wrong, not of a place in this long line.
-        let claim: Claim = serde_json::from_str(second)
-            .and_then(serde_json::from_value::<Claim>)
-            .map_err(|error| Reason::Scene(error.to_string()))?;
-        let archive: Archive = postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
+        let rest: Rest<Archive, Vec<Rounded>> =
+            postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
+        let _held = rest.cells.and_then(HeldCells::hold);
+        let claim: Claim = of_json(second)?;
+        let original = rest.original.as_deref().map(of_json::<Scene>).transpose()?;
+        let archive = rest.archive;
         let hash = archive.shown().map(|world| world.hash().to_string());
         if !archive.is_whole() || !claim.is_genuine() || hash != claim.state_hash {
             return Err(Reason::Damaged(
                 "the state in it has another hash than it states",
             ));
         }
-        Ok(Self { claim, archive })
+        Ok(Self {
+            claim,
+            archive,
+            original,
+        })
     }
+}
+
+/// What the JSON `text` holds. By way of a value: an error then speaks of what is wrong, not of a place in a long line.
+fn of_json<T: DeserializeOwned>(text: &str) -> Result<T, Reason> {
+    serde_json::from_str(text)
+        .and_then(serde_json::from_value)
+        .map_err(|error| Reason::Scene(error.to_string()))
 }
 
 /// The text up to the first line's end, and what follows it.

@@ -335,6 +335,31 @@ impl Timeline {
         let Command::Set { parameter, .. } = &command else {
             return Ok(());
         };
+        let joins = self.begin_change(parameter, joins);
+        self.run.apply(command)?;
+        self.record.follow(&self.run, joins);
+        Ok(())
+    }
+
+    /// Notes that `command` was carried out in the run beside this one and not here: an undo takes it back in both, and
+    /// where it was made in the past both go on from there.
+    ///
+    /// # Errors
+    /// As [`Timeline::change`].
+    pub(super) fn note_beside(
+        &mut self,
+        command: &Command,
+        joins: bool,
+    ) -> Result<(), CommandError> {
+        self.run.check(command)?;
+        if let Command::Set { parameter, .. } = command {
+            self.begin_change(parameter, joins);
+        }
+        Ok(())
+    }
+
+    /// Makes a change of `parameter` one that can be taken back; whether it is part of the one before it.
+    fn begin_change(&mut self, parameter: &Parameter, joins: bool) -> bool {
         self.stop();
         let what = Changed::Parameter(parameter.clone());
         let moment = Moment::of(&self.run);
@@ -355,9 +380,7 @@ impl Timeline {
             };
             self.turn(Turn { what, destination });
         }
-        self.run.apply(command)?;
-        self.record.follow(&self.run, joins);
-        Ok(())
+        joins
     }
 
     /// Starts afresh at time zero with the present values, keeping the run that is left.
@@ -377,11 +400,14 @@ impl Timeline {
         start(&mut self.run);
         let number = self.next_number();
         let left = self.switch(Record::of(&self.run, number));
-        let destination = Destination::Other { record: left, step };
-        self.turn(Turn {
-            what: Changed::Start,
-            destination,
-        });
+        // A run that had only just begun is nothing to come back to.
+        if !left.is_fresh() {
+            let destination = Destination::Other { record: left, step };
+            self.turn(Turn {
+                what: Changed::Start,
+                destination,
+            });
+        }
     }
 
     /// Takes the last change back: goes to its moment, as if it had not been made.

@@ -3,12 +3,14 @@
 //! In: what is asked of the pair. Out: the same asked of each run at the same step. Both are sent to a common step and
 //! hold there; only when both have come is what they have become taken in, so that the two states shown are always of the
 //! same step. What changes a run is asked for there too, so that the same change has the same step in both: the two keep
-//! differing in the one parameter alone, and each goes the way, to the bit, that it would go by itself.
+//! differing in the one parameter alone, and each goes the way, to the bit, that it would go by itself. A change of that
+//! parameter in one of them is noted in the other, so that both can take back the same changes: undo and redo lead both
+//! to the same moment, and so does a branch.
 //!
 //! A run that stopped short of the common step, because it met a fault or was stopped on the way to a moment, holds; the
-//! other goes back to it. Undo, redo and taking up a kept run belong to one run and wait until the twin is ended.
+//! other goes back to it. Taking up a kept run belongs to one run and waits until the twin is ended.
 
-use super::engine::{Beside, Order};
+use super::engine::{Beside, Drag, Order, PairChange};
 use super::{Command, Parameter, Simulation, Status};
 use bevy::ecs::component::Component;
 use std::collections::VecDeque;
@@ -21,7 +23,7 @@ const SLICE: [Duration; 2] = [Duration::from_millis(60), Duration::from_millis(5
 /// Steps until the first meeting.
 const FIRST_SLICE: u64 = 50;
 /// Why some commands are refused.
-const OF_ONE_RUN: &str = "Undo, redo and kept runs belong to one run: end the twin first. To take a change back in both, go back along the timeline.";
+const OF_ONE_RUN: &str = "A kept run would take the place of one of the two: end the twin first.";
 
 /// One of two runs side by side, and of their pictures.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -63,6 +65,7 @@ pub struct Twin {
     /// Simulated time granted and not yet spent [s].
     owed: f64,
     waiting: VecDeque<Asked>,
+    drag: Drag,
     slice: Slice,
 }
 
@@ -78,8 +81,12 @@ enum Mode {
 enum Asked {
     /// Of both runs, or of the pair.
     Both(Command),
-    /// Of one of them.
-    One(Half, Command),
+    /// Of both runs or of one of them, as part of the change before it or not.
+    Change {
+        command: Command,
+        joins: bool,
+        of: Option<Half>,
+    },
     Save(PathBuf),
 }
 
@@ -128,6 +135,7 @@ impl Twin {
             hold: None,
             owed: 0.0,
             waiting: VecDeque::new(),
+            drag: Drag::default(),
             slice: Slice {
                 steps: FIRST_SLICE,
                 begun: None,
@@ -165,8 +173,9 @@ impl Twin {
     /// Ends it: what the first run must not pass, and what it was still to do.
     pub(super) fn end(self) -> (Option<u64>, impl Iterator<Item = Command>) {
         let waiting = self.waiting.into_iter().filter_map(|asked| match asked {
-            Asked::Both(command) | Asked::One(Half::Left, command) => Some(command),
-            Asked::One(Half::Right, _) | Asked::Save(_) => None,
+            Asked::Both(command) => Some(command),
+            Asked::Change { command, of, .. } => (of != Some(Half::Right)).then_some(command),
+            Asked::Save(_) => None,
         });
         (self.hold, waiting)
     }
@@ -174,27 +183,29 @@ impl Twin {
     /// Asks for `command` of both runs, or of the `first` alone where it is about what they differ in.
     pub(super) fn send(&mut self, first: &mut Simulation, command: Command) {
         match command {
-            Command::Undo | Command::Redo | Command::Return(_) => first.warn(OF_ONE_RUN),
+            Command::Return(_) => first.warn(OF_ONE_RUN),
             Command::Speed(_) => self.owed = 0.0,
             Command::Forget(_) => first.ask(command),
             Command::Seek(_) | Command::Pause if self.can_turn(first) => {
                 // Both are on the way to one moment, and nothing is to be done there: they may as well go to another.
                 self.ask_both(first, &command);
             }
-            Command::Set { ref parameter, .. } if *parameter == self.parameter => {
-                self.wait(first, Asked::One(Half::Left, command));
+            Command::Set {
+                ref parameter,
+                value,
+            } => {
+                let of = (*parameter == self.parameter).then_some(Half::Left);
+                if of.is_none() {
+                    self.run.expect(parameter, value);
+                }
+                self.change(first, command, of);
             }
             Command::Seek(_) => {
                 let is_seek = |asked: &mut Asked| matches!(asked, Asked::Both(Command::Seek(_)));
                 self.waiting.pop_back_if(is_seek);
                 self.wait(first, Asked::Both(command));
             }
-            command => {
-                if let Command::Set { parameter, value } = &command {
-                    self.run.expect(parameter, *value);
-                }
-                self.wait(first, Asked::Both(command));
-            }
+            command => self.wait(first, Asked::Both(command)),
         }
     }
 
@@ -203,7 +214,7 @@ impl Twin {
         let parameter = self.parameter.clone();
         self.run.expect(&parameter, value);
         let command = Command::Set { parameter, value };
-        self.wait(first, Asked::One(Half::Right, command));
+        self.change(first, command, Some(Half::Right));
     }
 
     /// Lets the session be written to `path` when both are at the same step.
@@ -223,7 +234,16 @@ impl Twin {
         self.status(first)
     }
 
+    /// Asks for a change of both runs, or of one of them.
+    fn change(&mut self, first: &mut Simulation, command: Command, of: Option<Half>) {
+        let joins = self.drag.joins();
+        self.wait(first, Asked::Change { command, joins, of });
+    }
+
     fn wait(&mut self, first: &mut Simulation, asked: Asked) {
+        if !matches!(asked, Asked::Change { .. }) {
+            self.drag = Drag::default();
+        }
         self.waiting.push_back(asked);
         self.tell_waiting(first);
     }
@@ -303,6 +323,8 @@ impl Twin {
 
     /// Asks for what waited, now that both are at `step`.
     fn answer(&mut self, first: &mut Simulation, step: u64) {
+        // Whether the last change asked for, or the last one there was, lies at the end of both runs.
+        let mut at_end = !first.looks_back() && !self.run.looks_back();
         while let Some(asked) = self.waiting.pop_front() {
             match asked {
                 Asked::Both(Command::Play) => self.mode = Mode::Running,
@@ -312,11 +334,13 @@ impl Twin {
                     self.mode = Mode::Stepping { until };
                     return;
                 }
-                Asked::Both(command @ Command::Seek(_)) => {
+                Asked::Both(command @ (Command::Seek(_) | Command::Undo | Command::Redo)) => {
                     self.mode = Mode::Paused;
-                    self.ask_both(first, &command);
-                    self.order_both(first, || Order::Hold(None));
-                    return;
+                    if self.can(&command) {
+                        self.ask_both(first, &command);
+                        self.order_both(first, || Order::Hold(None));
+                        return;
+                    }
                 }
                 Asked::Both(command @ Command::Reset) => {
                     self.target = 0;
@@ -325,10 +349,30 @@ impl Twin {
                     return;
                 }
                 Asked::Both(command) => self.ask_both(first, &command),
-                Asked::One(Half::Left, command) => first.ask(command),
-                Asked::One(Half::Right, command) => self.run.ask(command),
+                Asked::Change { command, joins, of } => {
+                    let joins = joins && at_end;
+                    at_end = true;
+                    for (half, run) in Half::ALL.into_iter().zip([&mut *first, &mut self.run]) {
+                        let is_here = of.is_none_or(|of| of == half);
+                        run.ask_change(PairChange {
+                            command: command.clone(),
+                            joins,
+                            is_here,
+                        });
+                    }
+                }
                 Asked::Save(path) => first.write(path, Some(Box::new(self.beside()))),
             }
+        }
+    }
+
+    /// Whether both can go where `command` leads: what was changed before the pair began is the first one's alone.
+    fn can(&self, command: &Command) -> bool {
+        let past = self.run.past();
+        match command {
+            Command::Undo => past.undo.is_some(),
+            Command::Redo => past.redo.is_some(),
+            _ => true,
         }
     }
 

@@ -6,7 +6,7 @@ use super::compare::OF_ONE_RUN;
 use super::plots::sample_ui;
 use super::theme::{Palette, dash};
 use super::{Panel, Request, number};
-use crate::simulation::{Command, Parameter, Record, Simulation};
+use crate::simulation::{Command, Half, Parameter, Record, Simulation};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, ScrollArea};
 use std::collections::BTreeMap;
@@ -18,8 +18,8 @@ const LIST_HEIGHT: f32 = 170.0;
 #[derive(Default)]
 pub struct Changes {
     rows: Vec<Row>,
-    /// The revision of the commands that the rows were made of.
-    revision: u64,
+    /// The revision of the commands of both runs that the rows were made of.
+    revision: [u64; 2],
 }
 
 /// One change in words.
@@ -41,8 +41,9 @@ impl Panel for Changes {
         _view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        if self.revision != simulation.revision() {
-            self.revision = simulation.revision();
+        let revision = Half::ALL.map(|half| simulation.half(half).revision());
+        if self.revision != revision {
+            self.revision = revision;
             self.rows = rows(simulation);
         }
         if self.rows.is_empty() {
@@ -93,8 +94,22 @@ impl Changes {
     }
 }
 
-/// The changes of the present run in words.
+/// The changes of the present run in words; of two side by side also those of what they differ in on the right.
 fn rows(simulation: &Simulation) -> Vec<Row> {
+    let mut rows = rows_of(simulation, |_| true);
+    if let Some(twin) = simulation.twin() {
+        let own = rows_of(twin.run(), |parameter| parameter == twin.parameter());
+        rows.extend(own.into_iter().map(|row| Row {
+            text: format!("{}: {}", Half::Right.label(), row.text),
+            ..row
+        }));
+        rows.sort_by_key(|row| row.step);
+    }
+    rows
+}
+
+/// The changes of one run in words, as far as they are about parameters that are `listed`.
+fn rows_of(simulation: &Simulation, listed: impl Fn(&Parameter) -> bool) -> Vec<Row> {
     let commands = simulation.commands();
     let changes = &simulation.past().changes;
     let ends = changes.iter().skip(1).copied().chain([commands.len()]);
@@ -106,19 +121,22 @@ fn rows(simulation: &Simulation) -> Vec<Row> {
         };
         let mut set: BTreeMap<&Parameter, (Option<f64>, f64)> = BTreeMap::new();
         for stamped in change {
-            if let Command::Set { parameter, value } = &stamped.command {
+            if let Command::Set { parameter, value } = &stamped.command
+                && listed(parameter)
+            {
                 let before = values.insert(parameter, *value);
                 set.entry(parameter).or_insert((before, *value)).1 = *value;
             }
         }
-        let texts = set
+        let texts: Vec<String> = set
             .into_iter()
-            .map(|(parameter, (from, to))| in_words(parameter, from, to, simulation));
-        if let Some(stamped) = change.first() {
+            .map(|(parameter, (from, to))| in_words(parameter, from, to, simulation))
+            .collect();
+        if let Some(stamped) = change.first().filter(|_| !texts.is_empty()) {
             rows.push(Row {
                 step: stamped.step,
                 time: stamped.time,
-                text: texts.collect::<Vec<_>>().join(", "),
+                text: texts.join(", "),
             });
         }
     }

@@ -11,8 +11,8 @@ use crate::simulation::{Half, Parameter, ParameterInfo, Simulation, Twin};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 
-/// Why undo, redo and kept runs have to wait.
-pub const OF_ONE_RUN: &str = "This belongs to one run, and two stand side by side: end the comparison first. To take a change back in both, go back along the timeline.";
+/// Why kept runs have to wait.
+pub const OF_ONE_RUN: &str = "Two runs stand side by side, and it would take the place of one of them: end the comparison first";
 
 /// The panel.
 #[derive(Debug, Default, PartialEq)]

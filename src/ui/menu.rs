@@ -1,9 +1,8 @@
 //! The menu bar.
 
-use super::compare::OF_ONE_RUN;
 use super::desk::why_not_both;
 use super::shortcuts::SHORTCUTS;
-use super::{Request, Sheet};
+use super::{Request, Sheet, number, scrub};
 use crate::scene::built_in;
 use crate::simulation::{Command, Half, Simulation};
 use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
@@ -79,26 +78,13 @@ fn file_ui(
 }
 
 fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Request>) {
-    let past = simulation.map(Simulation::past);
     let twin = simulation.and_then(Simulation::twin);
-    let turns = [
-        (
-            "Undo",
-            Command::Undo,
-            past.is_some_and(|past| past.undo.is_some()),
-        ),
-        (
-            "Redo",
-            Command::Redo,
-            past.is_some_and(|past| past.redo.is_some()),
-        ),
-    ];
-    for (name, command, enabled) in turns {
-        let why_not = match twin {
-            Some(_) => Some(OF_ONE_RUN),
-            None => (!enabled).then_some("There is nothing to take back"),
-        };
-        item_unless_ui(ui, name, Request::Command(command), why_not, out);
+    let [undo, redo] = simulation.map_or([None; 2], Simulation::turns);
+    let turns = [("Undo", Command::Undo, undo), ("Redo", Command::Redo, redo)];
+    for (name, command, what) in turns {
+        let nothing = simulation.map_or("There is no run", scrub::nothing);
+        let why_not = what.is_none().then(|| number::capitalised(nothing));
+        item_unless_ui(ui, name, Request::Command(command), why_not.as_deref(), out);
     }
     ui.separator();
     let why_not = simulation.is_none().then_some("There is no run to compare");

@@ -3,7 +3,6 @@
 //! In: the simulation. Out: requests to show a moment, to undo and to redo. Changes are marked above the line, avalanches
 //! below it.
 
-use super::compare::OF_ONE_RUN;
 use super::theme::Palette;
 use super::transport::allows;
 use super::{Request, changes, number};
@@ -27,28 +26,16 @@ pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Req
 
 /// Undo and redo.
 fn turns_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let past = simulation.past();
+    let [undo, redo] = simulation.turns();
     let turns = [
-        ("⟲", "Undo", "Undo (Ctrl+Z)", &past.undo, Command::Undo),
-        (
-            "⟳",
-            "Redo",
-            "Redo (Ctrl+Shift+Z)",
-            &past.redo,
-            Command::Redo,
-        ),
+        ("⟲", "Undo", "Undo (Ctrl+Z)", undo, Command::Undo),
+        ("⟳", "Redo", "Redo (Ctrl+Shift+Z)", redo, Command::Redo),
     ];
     for (face, name, title, what, command) in turns {
-        let alone = simulation.twin().is_none();
-        let enabled = what.is_some() && alone && allows(simulation.status(), &command);
+        let enabled = what.is_some() && allows(simulation.status(), &command);
         let button = egui::Button::new(RichText::new(face).size(17.0)).min_size(vec2(32.0, 26.0));
         let mut response = ui.add_enabled(enabled, button);
-        let why_not = if alone {
-            "there is nothing to take back"
-        } else {
-            OF_ONE_RUN
-        };
-        response = response.on_disabled_hover_text(format!("{title}: {why_not}"));
+        response = response.on_disabled_hover_text(format!("{title}: {}", nothing(simulation)));
         if let Some(what) = what {
             let about = changed_name(what, simulation);
             let effect = match command {
@@ -61,6 +48,14 @@ fn turns_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) 
         if response.clicked() {
             out.push(Request::Command(command));
         }
+    }
+}
+
+/// Why there is no undo or redo.
+pub fn nothing(simulation: &Simulation) -> &'static str {
+    match simulation.twin() {
+        Some(_) => "there is nothing to take back since the comparison began",
+        None => "there is nothing to take back",
     }
 }
 

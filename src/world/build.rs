@@ -34,11 +34,8 @@ pub fn build(scene: &Scene, time_step: f64) -> World {
 
 /// The grains that come from a file.
 fn stored_cells(scene: &Scene) -> Vec<Rounded> {
-    let SceneGrains::Voronoi(cells) = &scene.grains else {
-        return Vec::new();
-    };
-    let stored = cells.packing.as_ref();
-    stored.map_or(Vec::new(), |packing| packing.grains().to_vec())
+    let stored = scene.stored_cells();
+    stored.map_or(Vec::new(), |cells| cells.grains().to_vec())
 }
 
 /// As [`build`], with the grains `cells` that a [`Packing`] of the scene made where its grains are Voronoi cells.

@@ -1,11 +1,14 @@
 //! Claims about sessions in files: they reopen to the same bits, and a file that cannot is refused in words.
 
-use crate::run::{bits, set};
+use crate::run::{bits, prepared, set};
 use crate::timeline::{Lab, arrive, change, column_lab, go_on, hash, wet_lab};
 use grainfall::headless::Verdict;
+use grainfall::scene::{Scene, StoredCells};
 use grainfall::simulation::{
-    Claim, Command, DriverKind, Options, Parameter, Session, Simulation, Status, Timeline, VERSION,
+    BedStore, Claim, Command, DriverKind, Options, Parameter, Session, Simulation, Status,
+    Timeline, VERSION,
 };
+use grainfall::world::Packing;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -134,8 +137,8 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
         bytes.extend_from_slice(whole.strip_prefix(from.as_bytes()).unwrap());
         bytes
     };
-    let other = format!("grainfall session 1 {VERSION}");
-    let cases: [(Vec<u8>, [&str; 2]); 7] = [
+    let other = format!("grainfall session 2 {VERSION}");
+    let cases: [(Vec<u8>, [&str; 2]); 8] = [
         (
             whole[..whole.len() - 1].to_vec(),
             ["damaged", "Open another copy"],
@@ -144,7 +147,11 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
         (edited(whole.len() / 2), ["checksum", "--commands"]),
         (edited(whole.len() - 1), ["checksum", "--commands"]),
         (
-            renamed(&other, "grainfall session 1 0.0.7"),
+            renamed(&other, &format!("grainfall session 1 {VERSION}")),
+            ["of another build", "--commands"],
+        ),
+        (
+            renamed(&other, "grainfall session 2 0.0.7"),
             ["saved by Grainfall 0.0.7", "Open it with Grainfall 0.0.7"],
         ),
         (
@@ -172,6 +179,39 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
     assert!(error.contains("cannot be read"), "{error}");
 }
 
+#[test]
+fn session_holds_the_grains_that_its_scene_takes_from_a_file() {
+    let (folder, path) = place();
+    let cells = folder.path().join("cells.pack");
+    let cut = Packing::new(&Scene::open("small-column").unwrap()).unwrap();
+    fs::write(&cells, StoredCells::encode(&cut.finish())).unwrap();
+    let scene = r#"(
+        title: "From a file", materials: {"stone": (friction: 0.3), "floor": ()},
+        container: Column(radius_mm: 20, height_mm: 25, material: "floor"),
+        grains: Voronoi(packing: "cells.pack", species: [(material: "stone")]),
+    )"#;
+    let file = folder.path().join("scene.ron");
+    fs::write(&file, scene).unwrap();
+    let scene = Scene::load(&file).unwrap();
+    let (run, _) = prepared(&scene, 1, BedStore::none());
+    let mut timeline = Timeline::new(run, PLENTY);
+    timeline.advance_to(20).unwrap();
+    Session::of("from a file", &timeline).write(&path).unwrap();
+
+    fs::remove_file(&cells).unwrap();
+    let session = Session::read(&path).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(session.claim().scene, scene);
+    let verdict = session.claim().verify(1, BedStore::none(), &|| false);
+    assert_eq!(verdict.unwrap(), Verdict::Same);
+    assert_eq!(hash(&session.into_timeline(1, PLENTY)), hash(&timeline));
+    // Saved again by whoever has the file no more.
+    Session::of("again", &reopened(&path, PLENTY))
+        .write(&path)
+        .unwrap();
+    drop((scene, timeline));
+    assert!(Session::read(&path).is_ok());
+}
+
 /// Every file of its own checksum but with another state is refused: the hash of the state decides.
 #[test]
 fn state_is_checked_by_its_hash() {
@@ -188,7 +228,7 @@ fn state_is_checked_by_its_hash() {
     let mut bytes = whole[body..].to_vec();
     bytes[at - body] ^= 1;
     let head = format!(
-        "grainfall session 1 {VERSION} {}\n",
+        "grainfall session 2 {VERSION} {}\n",
         blake3::hash(&bytes).to_hex()
     );
     fs::write(&path, [head.as_bytes(), &bytes].concat()).unwrap();
@@ -236,7 +276,10 @@ fn simulation_knows_what_no_file_holds_and_reopens_as_it_was() {
     let lab = wet_lab();
     for driver in [DriverKind::Inline, DriverKind::Thread] {
         let (_folder, path) = place();
-        let mut simulation = Simulation::open(lab.scene.clone(), options(&lab, driver));
+        let mut original = lab.scene.clone();
+        original.seed += 1;
+        let simulation = Simulation::open(lab.scene.clone(), options(&lab, driver));
+        let mut simulation = simulation.made_of(original.clone().into());
         tick_until(&mut simulation, |s| *s.status() == Status::Paused);
         assert!(!simulation.is_unsaved());
         let held = |s: &Simulation| s.has_answered() && *s.status() == Status::Paused;
@@ -258,7 +301,9 @@ fn simulation_knows_what_no_file_holds_and_reopens_as_it_was() {
         assert!(!simulation.is_unsaved());
 
         let session = Session::read(&path).unwrap();
+        assert_eq!(*session.original(), original);
         let mut same = Simulation::resume(session, options(&lab, driver));
+        assert_eq!(**same.original(), original);
         tick_until(&mut same, |s| s.world().is_some());
         assert_eq!(*same.status(), Status::Paused);
         let state = |s: &Simulation| s.world().map(|world| world.hash());

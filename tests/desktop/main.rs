@@ -1,5 +1,6 @@
 //! Claims about the window: panels by their accessible labels, pictures through any Vulkan driver.
 
+mod lesson;
 mod panels;
 mod polyhedra;
 mod recording;

@@ -103,7 +103,10 @@ fn what_belongs_to_one_run_cannot_be_pressed() {
     {
         simulation.tick(Duration::from_millis(16));
     }
-    assert!(simulation.past().undo.is_some());
+    assert!(
+        simulation.past().undo.is_some(),
+        "what the left run alone could take back"
+    );
     let mut harness = Window::of(simulation);
     assert!(harness.get_by_label("Undo").accesskit_node().is_disabled());
     let compare = harness.get_by_label("Compare drum speed…");
@@ -113,28 +116,53 @@ fn what_belongs_to_one_run_cannot_be_pressed() {
 }
 
 #[test]
-fn both_curves_are_on_each_plot_and_the_newest_of_both_beside_its_name() {
+fn changes_of_either_half_are_listed_and_taken_back_in_both() {
+    let mut simulation = pair();
+    simulation.set_twin(0.5);
+    carried_out(&mut simulation, Command::Step(500));
+    let mut harness = Window::of(simulation);
+    harness.get_by_label_contains("right: friction glass – glass 0.9 → 0.5");
+    harness.get_by_label("Undo").click();
+    assert_eq!(asked(&mut harness), [Request::Command(Command::Undo)]);
+    let simulation = &mut harness.state_mut().simulation;
+    carried_out(simulation, Command::Undo);
+    assert_eq!(simulation.half(Half::Right).value(&friction()), 0.9);
+    let ends = Half::ALL.map(|half| simulation.half(half).past().end.step);
+    assert_eq!(ends, [2000; 2]);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("0.9 → 0.5").is_none());
+    assert!(harness.get_by_label("Undo").accesskit_node().is_disabled());
+    harness.get_by_label("Redo").click();
+    assert_eq!(asked(&mut harness), [Request::Command(Command::Redo)]);
+}
+
+/// Plots of two runs with `samples` each, in a panel of this size.
+fn plots_of_two(samples: u32, size: [f32; 2]) -> Harness<'static> {
     let [mut left, mut right] = [(); 2].map(|()| Series::default());
-    for i in 0..500 {
+    for i in 0..samples {
         let time = 0.02 * f64::from(i);
         left.push(sample(time, 0.5, 1e-6));
         right.push(sample(time, 0.3, 1e-8));
     }
     let mut plots = Plots::default();
-    let mut harness = Harness::builder()
-        .with_size([500.0, 500.0])
-        .build_ui(move |ui| {
-            let curves = Curves {
-                series: &left,
-                twin: Some(&right),
-                avalanches: &[],
-                changes: &[],
-                kept: &[],
-                shown: None,
-            };
-            plots.curves_ui(ui, &curves);
-        });
+    let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
+        let curves = Curves {
+            series: &left,
+            twin: Some(&right),
+            avalanches: &[],
+            changes: &[],
+            kept: &[],
+            shown: None,
+        };
+        plots.curves_ui(ui, &curves);
+    });
     harness.run_steps(3);
+    harness
+}
+
+#[test]
+fn both_curves_are_on_each_plot_and_the_newest_of_both_beside_its_name() {
+    let harness = plots_of_two(500, [500.0, 500.0]);
     for newest in ["28.65", "17.19", "1.00·10⁻⁶", "1.00·10⁻⁸"] {
         assert!(
             harness.query_by_label_contains(newest).is_some(),
@@ -151,26 +179,7 @@ fn both_curves_are_on_each_plot_and_the_newest_of_both_beside_its_name() {
 #[test]
 fn titles_of_plots_are_whole_in_a_narrow_panel() {
     let title_width = |room: f32| {
-        let [left, right] = [(); 2].map(|()| {
-            let mut series = Series::default();
-            series.push(sample(0.0, 0.5, 1e-6));
-            series
-        });
-        let mut plots = Plots::default();
-        let mut harness = Harness::builder()
-            .with_size([room, 700.0])
-            .build_ui(move |ui| {
-                let curves = Curves {
-                    series: &left,
-                    twin: Some(&right),
-                    avalanches: &[],
-                    changes: &[],
-                    kept: &[],
-                    shown: None,
-                };
-                plots.curves_ui(ui, &curves);
-            });
-        harness.run_steps(3);
+        let harness = plots_of_two(1, [room, 700.0]);
         let title = harness.get_by_label("Granular temperature Tg [m²/s²]");
         title.rect().width()
     };
@@ -178,7 +187,7 @@ fn titles_of_plots_are_whole_in_a_narrow_panel() {
 }
 
 /// A laboratory that looks at its grain from the front; requests go in as panels make them.
-fn falling_from_the_front() -> App {
+pub fn falling_from_the_front() -> App {
     let options = Options {
         driver: DriverKind::Thread,
         threads: 2,
@@ -198,11 +207,11 @@ fn falling_from_the_front() -> App {
     app
 }
 
-fn simulation(app: &App) -> &Simulation {
+pub fn simulation(app: &App) -> &Simulation {
     app.world().resource::<Simulation>()
 }
 
-fn ask(app: &mut App, request: Request, done: impl Fn(&Simulation) -> bool) {
+pub fn ask(app: &mut App, request: Request, done: impl Fn(&Simulation) -> bool) {
     app.world_mut().resource_mut::<Requests>().ask(request);
     for _ in 0..20_000 {
         app.update();
@@ -216,7 +225,7 @@ fn ask(app: &mut App, request: Request, done: impl Fn(&Simulation) -> bool) {
 }
 
 /// Where the grain of this half lands in the whole picture.
-fn place(app: &App, photograph: &Photograph, half: Half) -> Vec2 {
+pub fn place(app: &App, photograph: &Photograph, half: Half) -> Vec2 {
     let world = simulation(app).half(half).world().unwrap();
     let centre = world.grains.position[0].as_vec3();
     let (place, _) = photograph.camera.project(centre).unwrap();
