@@ -444,7 +444,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_that_met_a_fault_is_no_point() {
+    fn a_case_that_met_a_fault_or_never_began_is_no_point() {
         let sweep = sweep(&["height=1cm,5cm"]);
         let mut outcomes = [outcome(&["1cm"], 0.4), outcome(&["5cm"], 2.0)];
         let drawn = |outcomes: &[Outcome]| {
@@ -453,6 +453,10 @@ mod tests {
         };
         assert_eq!(drawn(&outcomes), 2);
         outcomes[1].ending = CaseEnding::Faulted;
+        assert_eq!(drawn(&outcomes), 1);
+        outcomes[1].ending = CaseEnding::Interrupted;
+        assert_eq!(drawn(&outcomes), 2, "what it came to so far");
+        outcomes[1].series.truncate(1);
         assert_eq!(drawn(&outcomes), 1);
     }
 

@@ -30,9 +30,12 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessEr
     Ok(())
 }
 
-/// Every plot of these outcomes. What a case came to before it met a fault is no result: it is in no plot.
+/// Every plot of these outcomes. What a case came to before it met a fault is no result, nor is where one stood that was
+/// stopped before it began: they are in no plot.
 pub(super) fn plots(sweep: &Sweep, outcomes: &[Outcome]) -> impl Iterator<Item = Plot> {
-    let is_sound = |outcome: &&Outcome| outcome.ending != CaseEnding::Faulted;
+    let has_begun =
+        |outcome: &Outcome| outcome.series.time().last().is_some_and(|time| *time > 0.0);
+    let is_sound = |outcome: &&Outcome| outcome.ending != CaseEnding::Faulted && has_begun(outcome);
     let sound: Vec<Outcome> = outcomes.iter().filter(is_sound).cloned().collect();
     let plots = if sound.iter().any(Outcome::is_column) {
         column_plots(sweep, &sound)
