@@ -6,13 +6,11 @@ use crate::simulation::{
     Claim, Command, Half, Options, Provenance, SavedFile, ScriptedCommand, Session, SessionError,
     Simulation,
 };
-use crate::view::{CameraRequest, ViewSettings, save_part, save_png};
+use crate::view::{CameraRequest, ViewSettings, save_png};
 use bevy::ecs::system::SystemParam;
-use bevy::math::URect;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::tasks::{IoTaskPool, Task, futures::check_ready};
-use bevy_egui::egui::Rect;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -126,7 +124,7 @@ pub fn fulfil_requests(
                 desk.export = Some(export);
                 desk.path_dialog.ask(Purpose::Plot);
             }
-            Request::SavePlot(path) => save_plot(path, &mut desk, &mut opener),
+            Request::SavePlot(path) => save_plot(&path, &mut desk),
             Request::ChooseFilm => desk.path_dialog.ask(Purpose::Film),
             Request::Film(order) => opener.recorder.order = Some(order),
             Request::Show(sheet) => desk.show_sheet(sheet),
@@ -275,37 +273,13 @@ fn save_to(
     }
 }
 
-/// Writes the plot that was asked for to `path`; one as PNG is cut out of the window.
-fn save_plot(path: PathBuf, desk: &mut Desk, opener: &mut Opener) {
+/// Writes the plot that was asked for to `path`.
+fn save_plot(path: &Path, desk: &mut Desk) {
     let Some(export) = desk.export.take() else {
         return;
     };
-    if path.extension().is_some_and(|ending| ending == "png") {
-        let area = pixels(export.rect, opener.view.pixels_per_point);
-        let save = move |captured: On<ScreenshotCaptured>, mut desk: ResMut<Desk>| {
-            let saved = save_part(&captured.image, area, Some(&export.from), &path);
-            desk.notify(said("The plot", &path, saved));
-        };
-        opener
-            .commands
-            .spawn(Screenshot::primary_window())
-            .observe(save);
-    } else {
-        let written = export.write(&path);
-        desk.notify(said("The plot", &path, written));
-    }
-}
-
-/// The pixels of a rectangle in points.
-fn pixels(rect: Rect, pixels_per_point: f32) -> URect {
-    let corner = |x: f32, y: f32| {
-        let pixel = (Vec2::new(x, y) * pixels_per_point).round();
-        pixel.max(Vec2::ZERO).as_uvec2()
-    };
-    URect::from_corners(
-        corner(rect.left(), rect.top()),
-        corner(rect.right(), rect.bottom()),
-    )
+    let written = export.write(path);
+    desk.notify(said("The plot", path, written));
 }
 
 /// Writes the changes of the present run to `path`, with what leads to the state shown.

@@ -13,7 +13,7 @@ use super::detail::Detail;
 use super::energy::Energy;
 use super::explorer::{Explorer, Export};
 use super::gallery::Gallery;
-use super::memory::Memory;
+use super::memory::{Look, Memory};
 use super::menu::{Shown, menu_ui};
 use super::microscope::Microscope;
 use super::parameters::Parameters;
@@ -56,6 +56,8 @@ pub struct Desk {
     gallery: Gallery,
     shows_scenes: bool,
     memory: Memory,
+    /// Whether the window looks as it did the last time, so that another look is a person's.
+    is_dressed: bool,
     /// The built-in scene that is open, as it came.
     scene: Option<&'static str>,
     /// Choosing a file.
@@ -136,6 +138,7 @@ impl Default for Desk {
             gallery: Gallery::default(),
             shows_scenes: false,
             memory: Memory::default(),
+            is_dressed: true,
             scene: None,
             path_dialog: PathDialog::default(),
             sheet: None,
@@ -159,6 +162,7 @@ impl Desk {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
+        self.remember_look(root.ctx(), view);
         theme::show(root.ctx(), view.background);
         self.remember_ui(root.ctx(), simulation);
         out.extend(shortcuts::pressed(root.ctx(), simulation));
@@ -178,6 +182,7 @@ impl Desk {
     /// Takes `memory` up, and keeps it from now on.
     pub fn remember(&mut self, memory: Memory) {
         self.memory = memory;
+        self.is_dressed = false;
     }
 
     /// Opens the panel called `title`, on whichever side it stands.
@@ -216,6 +221,20 @@ impl Desk {
     /// Shows the scenes that come with the program.
     pub fn show_scenes(&mut self) {
         self.shows_scenes = true;
+    }
+
+    /// Lets all look as it did the last time, and notes how it looks for the next.
+    fn remember_look(&mut self, ctx: &egui::Context, view: &mut ViewSettings) {
+        if std::mem::replace(&mut self.is_dressed, true) {
+            self.memory.wear(Look {
+                scale: ctx.zoom_factor(),
+                background: view.background,
+            });
+        } else {
+            let look = self.memory.look();
+            ctx.set_zoom_factor(look.scale);
+            view.background = look.background;
+        }
     }
 
     /// Lets the panels be as they were the last time, and notes what is worth it for the next.

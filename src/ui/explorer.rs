@@ -1,7 +1,7 @@
 //! Any measured quantity over time or over another, of this run and of those kept beside it, to look at and to take home.
 //!
 //! In: the samples. Out: a plot with the numbers under the pointer, the moment that is clicked on, and the plot as a file:
-//! SVG, PNG as it stands in the window, or all samples as CSV.
+//! SVG, the same as PNG, or all samples as CSV.
 
 use super::compare::half_title;
 use super::decimate::decimate;
@@ -12,9 +12,10 @@ use crate::files::write_whole;
 use crate::measure::{Measure, Series};
 use crate::simulation::{DisplayUnit, Half, Provenance, Simulation};
 use crate::sweep::chart;
-use crate::view::ViewSettings;
-use bevy_egui::egui::{self, Rect, RichText, Stroke, WidgetInfo, WidgetType};
+use crate::view::{ViewSettings, save_drawing};
+use bevy_egui::egui::{self, RichText, Stroke, WidgetInfo, WidgetType};
 use egui_plot::{HoverPosition, Line, LineStyle, VLine};
+use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
 
@@ -84,9 +85,7 @@ pub struct Export {
     y: Shown,
     runs: Vec<Run>,
     /// Where it came from.
-    pub from: Provenance,
-    /// Where it stands in the window, in points.
-    pub rect: Rect,
+    from: Provenance,
 }
 
 /// All samples of a run [SI units].
@@ -117,14 +116,12 @@ impl Panel for Explorer {
         measure_ui(ui, "Plot", &mut self.quantity, &measures);
         over_ui(ui, &mut self.over, &measures);
         halves_ui(ui, simulation);
-        // With its title and its axes.
-        let drawn = ui.vertical(|ui| self.plot_ui(ui, simulation, out));
-        let rect = drawn.response.rect.expand(4.0);
+        self.plot_ui(ui, simulation, out);
         let export = ui.button("Export…").on_hover_text(
             "As an SVG or PNG picture, or all samples as CSV: the ending of the file's name decides",
         );
         if export.clicked() {
-            let export = self.export(simulation, rect);
+            let export = self.export(simulation);
             out.push(Request::ExportPlot(Box::new(export)));
         }
     }
@@ -252,7 +249,7 @@ impl Explorer {
         }
     }
 
-    fn export(&self, simulation: &Simulation, rect: Rect) -> Export {
+    fn export(&self, simulation: &Simulation) -> Export {
         let (x, y) = self.axes();
         let run = |name: String, series: &Series| Run {
             name,
@@ -275,13 +272,7 @@ impl Explorer {
         let from = simulation
             .provenance()
             .unwrap_or_else(|| Provenance::of_scene(simulation.scene()));
-        Export {
-            x,
-            y,
-            runs,
-            from,
-            rect,
-        }
+        Export { x, y, runs, from }
     }
 }
 
@@ -304,15 +295,22 @@ fn cursor(hover: &HoverPosition, [x, y]: [&str; 2]) -> String {
 }
 
 impl Export {
-    /// Writes it as SVG or CSV, as the ending of `path` says; a table's origin stands in a file beside it.
+    /// Writes it as SVG, PNG or CSV, as the ending of `path` says; a table's origin stands in a file beside it.
     ///
     /// # Errors
     /// Where it cannot be drawn or written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        if path.extension().is_none_or(|ending| ending != "csv") {
-            let svg = self.from.in_svg(&self.svg()?);
-            return write_whole(path, |file| file.write_all(svg.as_bytes()));
+        match path.extension().and_then(OsStr::to_str) {
+            Some("csv") => self.write_table(path),
+            Some("png") => save_drawing(&self.svg()?, &self.from, path),
+            _ => {
+                let svg = self.from.in_svg(&self.svg()?);
+                write_whole(path, |file| file.write_all(svg.as_bytes()))
+            }
         }
+    }
+
+    fn write_table(&self, path: &Path) -> io::Result<()> {
         let text = self.csv()?;
         write_whole(path, |file| file.write_all(text.as_bytes()))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -384,7 +382,6 @@ mod tests {
                 points: vec![[0.0, 0.25], [0.5, f64::NAN]],
             }],
             from: Provenance::of_scene(&crate::scene::Scene::open("small-drum").unwrap()),
-            rect: Rect::NOTHING,
         }
     }
 
@@ -406,5 +403,31 @@ mod tests {
         let mut empty = export(None);
         empty.runs[0].points.clear();
         assert!(empty.svg().is_err());
+    }
+
+    #[test]
+    fn picture_is_the_drawing_in_large_with_its_text_and_its_origin() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plot.png");
+        let mut export = export(None);
+        export.runs[0].points = vec![[0.0, 0.25], [0.5, 0.5]];
+        export.write(&path).unwrap();
+        let picture = image::open(&path).unwrap().into_rgb8();
+        assert_eq!(picture.dimensions(), (3 * 760, 3 * 520));
+        let dark = |rows: std::ops::Range<u32>| {
+            let inked = |(_, y, pixel): &(u32, u32, &image::Rgb<u8>)| {
+                rows.contains(y) && pixel.0.iter().all(|&part| part < 128)
+            };
+            picture.enumerate_pixels().filter(inked).count()
+        };
+        assert_eq!(dark(0..30), 0, "a margin");
+        assert!(dark(30..110) > 1000, "the title: {}", dark(30..110));
+        let first = colorous::TABLEAU10[0];
+        let curve = image::Rgb([first.r, first.g, first.b]);
+        assert!(picture.pixels().filter(|&pixel| *pixel == curve).count() > 2000);
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let reader = png::Decoder::new(file).read_info().unwrap();
+        let texts = &reader.info().utf8_text;
+        assert!(texts.iter().any(|text| text.keyword == "Software"));
     }
 }

@@ -1,20 +1,24 @@
-//! What the program remembers of one person from start to start: files opened, how much the controls show, how fast each
-//! scene ran on this machine.
+//! What the program remembers of one person from start to start: files opened, how much the controls show, how large and
+//! on which background, how fast each scene ran on this machine.
 //!
 //! Kept in a small JSON file of the user's. A file that is missing, damaged or cannot be written does no harm: then less is
 //! remembered.
 
 use super::Detail;
 use crate::files::write_whole;
+use crate::view::Background;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// Recent files kept.
 const RECENT: usize = 8;
 /// A speed that differs by less than this share from the one known is not news.
 const NEWS: f64 = 0.3;
+/// Sizes of text and controls that somebody can work with.
+const SCALES: RangeInclusive<f32> = 0.2..=5.0;
 
 /// What is remembered, and where.
 #[derive(Debug, Default)]
@@ -23,11 +27,31 @@ pub struct Memory {
     kept: Kept,
 }
 
+/// How everything looks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Look {
+    /// Size of text and controls over their usual one.
+    pub scale: f32,
+    /// Behind picture and panels.
+    pub background: Background,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            scale: 1.0,
+            background: Background::Dark,
+        }
+    }
+}
+
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 struct Kept {
     recent: Vec<String>,
     lab: bool,
+    look: Look,
     speeds: BTreeMap<String, f64>,
 }
 
@@ -62,6 +86,13 @@ impl Memory {
         }
     }
 
+    /// How everything looks, at a scale in [`SCALES`].
+    pub fn look(&self) -> Look {
+        let Look { scale, background } = self.kept.look;
+        let scale = if SCALES.contains(&scale) { scale } else { 1.0 };
+        Look { scale, background }
+    }
+
     /// How fast each scene ran here, in simulated seconds per second.
     pub fn speeds(&self) -> &BTreeMap<String, f64> {
         &self.kept.speeds
@@ -82,6 +113,14 @@ impl Memory {
     pub fn show(&mut self, detail: Detail) {
         if detail != self.detail() {
             self.kept.lab = detail == Detail::Lab;
+            self.write();
+        }
+    }
+
+    /// Remembers how everything looks.
+    pub fn wear(&mut self, look: Look) {
+        if look != self.look() {
+            self.kept.look = look;
             self.write();
         }
     }
@@ -122,13 +161,21 @@ mod tests {
         }
         memory.opened("scene 7");
         memory.show(Detail::Lab);
+        let look = Look {
+            scale: 1.5,
+            background: Background::Light,
+        };
+        memory.wear(look);
         memory.ran("dry-r3", 2.0);
         memory.ran("dry-r3", 2.1);
         let again = Memory::at(path.clone());
         assert_eq!(again.kept, memory.kept);
+        assert_eq!(again.look(), look);
         assert_eq!(again.recent()[..2], ["scene 7", "scene 9"]);
         assert_eq!(again.recent().len(), RECENT);
         assert_eq!(again.speeds()["dry-r3"], 2.0, "a little faster is no news");
+        fs::write(&path, "{\"look\": {\"scale\": 0.0}}").unwrap();
+        assert_eq!(Memory::at(path.clone()).look(), Look::default());
         fs::write(&path, "{\"recent\": 3").unwrap();
         assert_eq!(Memory::at(path).kept, Kept::default());
     }

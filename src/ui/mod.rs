@@ -76,7 +76,7 @@ pub use desk::Desk;
 pub use detail::Detail;
 pub use energy::Energy;
 pub use explorer::{Explorer, Export};
-pub use memory::Memory;
+pub use memory::{Look, Memory};
 pub use microscope::Microscope;
 pub use parameters::{Parameters, parameter_ui};
 pub use path_dialog::{PathDialog, Purpose};

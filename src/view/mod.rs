@@ -52,7 +52,7 @@ pub use film::{FILM_RATE, Film, FilmKind};
 pub use grains::GrainBuffer;
 use overlay::parts;
 pub use overlay::{Caption, ScaleBar, trail_colour, viewport_ui};
-pub use png::{save_part, save_png};
+pub use png::{save_drawing, save_png};
 pub use polyhedra::Meshing;
 pub use rig::WorldCamera;
 pub use settings::{

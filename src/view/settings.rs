@@ -8,6 +8,7 @@ use crate::simulation::Half;
 use crate::world::World;
 use bevy::prelude::Resource;
 use bevy_egui::egui;
+use serde::{Deserialize, Serialize};
 
 /// Everything about the picture that a person can choose, and the two things that the panels need to know of it.
 #[derive(Resource, Clone, Debug, PartialEq)]
@@ -264,7 +265,7 @@ pub enum ProjectionKind {
 }
 
 /// The background of the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Background {
     /// Dark slate, for screens.
     #[default]
