@@ -82,7 +82,7 @@ impl Axis {
 fn text(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
-        0.01..1e4 => format!("{}", (value * 1e4).round() / 1e4),
+        0.001..1e4 => format!("{}", (value * 1e5).round() / 1e5),
         _ => format!("{value:.1e}"),
     }
 }

@@ -56,8 +56,6 @@ pub struct Desk {
     gallery: Gallery,
     shows_scenes: bool,
     memory: Memory,
-    /// Whether the window looks as it did the last time, so that another look is a person's.
-    is_dressed: bool,
     /// The built-in scene that is open, as it came.
     scene: Option<&'static str>,
     /// Choosing a file.
@@ -138,7 +136,6 @@ impl Default for Desk {
             gallery: Gallery::default(),
             shows_scenes: false,
             memory: Memory::default(),
-            is_dressed: true,
             scene: None,
             path_dialog: PathDialog::default(),
             sheet: None,
@@ -182,7 +179,6 @@ impl Desk {
     /// Takes `memory` up, and keeps it from now on.
     pub fn remember(&mut self, memory: Memory) {
         self.memory = memory;
-        self.is_dressed = false;
     }
 
     /// Opens the panel called `title`, on whichever side it stands.
@@ -225,15 +221,14 @@ impl Desk {
 
     /// Lets all look as it did the last time, and notes how it looks for the next.
     fn remember_look(&mut self, ctx: &egui::Context, view: &mut ViewSettings) {
-        if std::mem::replace(&mut self.is_dressed, true) {
+        if let Some(look) = self.memory.last_look() {
+            ctx.set_zoom_factor(look.scale);
+            view.background = look.background;
+        } else {
             self.memory.wear(Look {
                 scale: ctx.zoom_factor(),
                 background: view.background,
             });
-        } else {
-            let look = self.memory.look();
-            ctx.set_zoom_factor(look.scale);
-            view.background = look.background;
         }
     }
 

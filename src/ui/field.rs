@@ -20,6 +20,8 @@ pub struct Field<'a> {
     pub unit: &'a str,
     /// Digits after the point, at least and at most.
     pub decimals: RangeInclusive<usize>,
+    /// Whether it counts something: what is typed is rounded.
+    pub is_whole: bool,
     /// How much a point of a drag changes it.
     pub speed: f64,
     /// Its size in points, where that is given.
@@ -73,8 +75,11 @@ impl Field<'_> {
     }
 
     fn rounded(&self, number: f64) -> f64 {
-        let is_whole = *self.decimals.end() == 0;
-        if is_whole { number.round() } else { number }
+        if self.is_whole {
+            number.round()
+        } else {
+            number
+        }
     }
 
     /// What is wrong with `text`, in which `number` was read.

@@ -25,6 +25,8 @@ const SCALES: RangeInclusive<f32> = 0.2..=5.0;
 pub struct Memory {
     file: Option<PathBuf>,
     kept: Kept,
+    /// Whether nobody has asked yet how everything looked the last time.
+    is_new: bool,
 }
 
 /// How everything looks.
@@ -69,6 +71,7 @@ impl Memory {
         Self {
             kept: serde_json::from_str(&text).unwrap_or_default(),
             file: Some(path),
+            is_new: true,
         }
     }
 
@@ -115,6 +118,11 @@ impl Memory {
             self.kept.lab = detail == Detail::Lab;
             self.write();
         }
+    }
+
+    /// How everything looked the last time, when it is first asked; from then on the present look counts.
+    pub fn last_look(&mut self) -> Option<Look> {
+        std::mem::take(&mut self.is_new).then(|| self.look())
     }
 
     /// Remembers how everything looks.

@@ -113,6 +113,7 @@ fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
             range: 0.0..=(count - 1) as f64,
             unit: "",
             decimals: 0..=0,
+            is_whole: true,
             speed: 0.2,
             size: None,
         };

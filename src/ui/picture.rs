@@ -157,6 +157,7 @@ fn ends_ui(
                 unit,
                 // A tenth of what a point of a drag changes.
                 decimals: 0..=(1.0 - speed.log10()).ceil().clamp(0.0, 12.0) as usize,
+                is_whole: false,
                 speed,
                 size: None,
             };

@@ -131,6 +131,7 @@ impl Results {
             range: 0.0..=f64::INFINITY,
             unit: "s",
             decimals: 0..=1,
+            is_whole: false,
             speed: 0.1,
             size: None,
         };

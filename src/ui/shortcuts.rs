@@ -1,7 +1,7 @@
 //! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from it.
 
 use super::plots::{Way, to_avalanche};
-use super::transport::{allows, play_or_pause, step_back};
+use super::transport::{allows, leap, play_or_pause, step_back};
 use super::{Request, Sheet};
 use crate::simulation::{Command, Simulation};
 use crate::view::{CameraRequest, Side};
@@ -19,6 +19,7 @@ pub struct Shortcut {
 enum Action {
     PlayOrPause,
     StepBack,
+    Leap(Way),
     ToTheNewest,
     Avalanche(Way),
     Ask(Request),
@@ -50,6 +51,17 @@ pub const SHORTCUTS: &[Shortcut] = &[
         keys: &[key(Key::Space)],
         name: "Play or pause",
         action: Action::PlayOrPause,
+    },
+    // Before the plain keys, which would take them.
+    Shortcut {
+        keys: &[shift(Key::ArrowRight)],
+        name: "A fiftieth of a second on",
+        action: Action::Leap(Way::On),
+    },
+    Shortcut {
+        keys: &[shift(Key::ArrowLeft)],
+        name: "A fiftieth of a second back",
+        action: Action::Leap(Way::Back),
     },
     Shortcut {
         keys: &[key(Key::Period), key(Key::ArrowRight)],
@@ -238,12 +250,16 @@ pub const GESTURES: [(&str, &str); 7] = [
 impl Shortcut {
     /// Its keys in words: `. or →`.
     pub fn keys(&self, ctx: &egui::Context) -> String {
-        let name = |key: &KeyboardShortcut| match key.logical_key {
-            Key::Period => ".".to_owned(),
-            Key::Comma => ",".to_owned(),
-            Key::ArrowLeft => "←".to_owned(),
-            Key::ArrowRight => "→".to_owned(),
-            _ => ctx.format_shortcut(key),
+        let name = |key: &KeyboardShortcut| {
+            let symbol = match key.logical_key {
+                Key::Period => ".",
+                Key::Comma => ",",
+                Key::ArrowLeft => "←",
+                Key::ArrowRight => "→",
+                _ => return ctx.format_shortcut(key),
+            };
+            let shift = if key.modifiers.shift { "Shift+" } else { "" };
+            format!("{shift}{symbol}")
         };
         let names: Vec<String> = self.keys.iter().map(name).collect();
         names.join(" or ")
@@ -259,7 +275,7 @@ impl Shortcut {
         use Key::{ArrowLeft, ArrowRight, End, Home, Space};
         self.keys.iter().any(|key| {
             let works = [ArrowLeft, ArrowRight, End, Home, Space].contains(&key.logical_key);
-            works && key.modifiers.is_none()
+            works && !key.modifiers.command
         })
     }
 
@@ -278,6 +294,7 @@ impl Shortcut {
             Action::Ask(request) => return Some(request.clone()),
             Action::PlayOrPause => play_or_pause(simulation?.status())?,
             Action::StepBack => step_back(simulation?)?,
+            Action::Leap(way) => leap(simulation?, *way)?,
             Action::Avalanche(way) => return to_avalanche(simulation?, *way),
             Action::ToTheNewest => Command::Seek(simulation?.past().end.step),
         };

@@ -1,10 +1,11 @@
 //! The bar under the picture: the timeline; play, pause, single step, reset, speed, simulated time; how far a bed is
 //! prepared or a moment is away; what went wrong and what to do.
 
+use super::plots::Way;
 use super::scrub::timeline_ui;
 use super::theme::Palette;
 use super::{Request, number};
-use crate::simulation::{Command, Simulation, Status};
+use crate::simulation::{Command, SAMPLE_INTERVAL, Simulation, Status};
 use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec2};
 
 /// Speeds to choose from, in simulated seconds per second.
@@ -63,6 +64,18 @@ pub fn play_or_pause(status: &Status) -> Option<Command> {
 pub fn step_back(simulation: &Simulation) -> Option<Command> {
     let before = Command::Seek(simulation.step().checked_sub(1)?);
     allows(simulation.status(), &before).then_some(before)
+}
+
+/// What shows the moment a sample's interval before or after the one shown; after the newest one, the run goes on so far.
+pub fn leap(simulation: &Simulation, way: Way) -> Option<Command> {
+    let clock = simulation.world()?.clock;
+    let steps = (SAMPLE_INTERVAL / clock.time_step).ceil().max(1.0) as u64;
+    let (step, end) = (simulation.step(), simulation.past().end.step);
+    match way {
+        Way::Back => (step > 0).then(|| Command::Seek(step.saturating_sub(steps))),
+        Way::On if step < end => Some(Command::Seek(step.saturating_add(steps).min(end))),
+        Way::On => Some(Command::Step(steps)),
+    }
 }
 
 fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {

@@ -102,12 +102,17 @@ pub fn value_ui(
 fn field_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response {
     let range = row.shown_range();
     let width = range.end() - range.start();
-    let decimals = if row.is_whole { 0 } else { decimals(width) };
+    let decimals = if row.is_whole {
+        0
+    } else {
+        decimals(width).max(significant(*shown))
+    };
     let field = Field {
         label: row.label,
         range,
         unit: row.display.name,
         decimals: decimals.min(2)..=decimals,
+        is_whole: row.is_whole,
         speed: width / 400.0,
         size: Some(egui::vec2(NUMBER_WIDTH, 22.0)),
     };
@@ -206,6 +211,14 @@ impl Value<'_> {
             .filter(|landmark| distance(landmark) < HOLD * self.span());
         let nearest = near.min_by(|a, b| distance(a).total_cmp(&distance(b)));
         nearest.map_or(shown, |landmark| landmark.value * self.display.factor)
+    }
+}
+
+/// Digits after the point that show three of `value` in all: a range of powers of ten has small values too.
+fn significant(value: f64) -> usize {
+    match value.abs() {
+        0.0 => 0,
+        size => (2.0 - size.log10().floor()).clamp(0.0, 6.0) as usize,
     }
 }
 

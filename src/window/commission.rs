@@ -4,7 +4,7 @@
 
 use super::picture::{Canvas, WARM_UP, screenshot};
 use super::{Comparison, PictureJob, WindowError};
-use crate::simulation::{Half, Provenance, Simulation, Status};
+use crate::simulation::{Command, Half, Provenance, Simulation, Status};
 use crate::view::{GrainBuffer, Meshing, save_png};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
@@ -107,12 +107,16 @@ pub(super) fn carry_out(
                 .into_iter()
                 .all(|half| has_come(simulation.half(half)));
             if reached {
+                // How fast it came here, on the way to a picture, is nothing to show.
+                simulation.send(Command::Pause);
                 Stage::Drawing(WARM_UP)
             } else {
                 Stage::Running(step)
             }
         }
-        Stage::Drawing(_) if !(meshing.is_whole() && grains.is_whole()) => Stage::Drawing(WARM_UP),
+        Stage::Drawing(_) if !(holds(&simulation) && meshing.is_whole() && grains.is_whole()) => {
+            Stage::Drawing(WARM_UP)
+        }
         Stage::Drawing(0) => {
             let from = simulation.provenance();
             take(&commission, from, canvas.as_deref(), &mut commands);
@@ -127,6 +131,10 @@ pub(super) fn carry_out(
     for mut camera in &mut cameras {
         camera.is_active = !rests;
     }
+}
+
+fn holds(simulation: &Simulation) -> bool {
+    simulation.has_answered() && *simulation.status() == Status::Paused
 }
 
 /// Takes the picture, writes it and ends the app.

@@ -1,5 +1,6 @@
 //! Panels by their accessible labels, without Bevy's app and without a GPU: what a click or a typed value asks for.
 
+use crate::timeline::carried_out;
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -254,6 +255,19 @@ fn a_viscosity_typed_in_millipascal_seconds_is_set_in_pascal_seconds() {
     type_number(&mut harness, "viscosity", "250");
     let asked = commands(&harness.state().asked);
     assert_eq!(asked, [set(Parameter::Viscosity, 0.25)]);
+}
+
+#[test]
+fn a_small_value_of_a_wide_range_keeps_its_digits() {
+    let mut simulation = wet();
+    carried_out(&mut simulation, set(Parameter::Viscosity, 1.01e-3));
+    let mut harness = Window::of(simulation);
+    let viscosity = harness.get_by_role_and_label(Role::SpinButton, "viscosity");
+    let value = viscosity.accesskit_node().value();
+    assert_eq!(value.as_deref(), Some("1.01 mPa s"));
+    type_number(&mut harness, "viscosity", "1.55");
+    let asked = commands(&harness.state().asked);
+    assert_eq!(asked, [set(Parameter::Viscosity, 1.55e-3)]);
 }
 
 #[test]

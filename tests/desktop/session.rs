@@ -90,10 +90,20 @@ fn saved_session_is_dropped_on_another_and_is_as_it_was() {
     ask(&mut app, Request::Open("bouncing-grain".into()));
     update_until(&mut app, |s| s.world().is_some());
     assert_ne!(hash(&app), state);
-    app.world_mut().write_message(FileDragAndDrop::DroppedFile {
-        window: Entity::PLACEHOLDER,
-        path_buf: path.clone(),
-    });
+    let window = Entity::PLACEHOLDER;
+    let path_buf = path.clone();
+    let hovers = |app: &mut App, message| {
+        app.world_mut().write_message(message);
+        app.update();
+        app.world().resource::<Desk>().file_hovers
+    };
+    let hovered = FileDragAndDrop::HoveredFile { window, path_buf };
+    assert!(hovers(&mut app, hovered));
+    let away = FileDragAndDrop::HoveredFileCanceled { window };
+    assert!(!hovers(&mut app, away));
+    let path_buf = path.clone();
+    let dropped = FileDragAndDrop::DroppedFile { window, path_buf };
+    assert!(!hovers(&mut app, dropped));
     update_until(&mut app, |s| s.step() == step && s.world().is_some());
     assert_eq!(hash(&app), state);
     assert_eq!(simulation(&app).past().kept.len(), 1);

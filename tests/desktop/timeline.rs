@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use grainfall::measure::{Avalanche, Measure, Sample, Series};
 use grainfall::scene::TimeStep;
-use grainfall::simulation::{Command, Record, Simulation, Status};
+use grainfall::simulation::{Command, Record, SAMPLE_INTERVAL, Simulation, Status};
 use grainfall::ui::{Curves, Level, Plots, Request, checks};
 use std::sync::Arc;
 use std::time::Duration;
@@ -121,6 +121,38 @@ fn an_earlier_moment_is_said_to_be_one_and_the_newest_is_one_click_away() {
     carried_out(&mut harness.state_mut().simulation, Command::Seek(2000));
     harness.run_steps(2);
     assert!(harness.query_by_label("To the newest").is_none());
+}
+
+#[test]
+fn keys_scrub_and_at_the_newest_moment_go_on() {
+    let mut simulation = changed();
+    let clock = simulation.world().unwrap().clock;
+    let sample = (SAMPLE_INTERVAL / clock.time_step).ceil() as u64;
+    assert!(sample < 2000, "{sample}");
+    carried_out(&mut simulation, Command::Seek(1));
+    let mut harness = Window::of(simulation);
+    let mut press = |key| {
+        harness.key_press_modifiers(Modifiers::SHIFT, key);
+        asked(&mut harness)
+    };
+    assert_eq!(press(Key::ArrowRight), [Command::Seek(1 + sample)]);
+    assert_eq!(press(Key::ArrowLeft), [Command::Seek(0)]);
+    carried_out(&mut harness.state_mut().simulation, Command::Seek(2000));
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowRight);
+    assert_eq!(asked(&mut harness), [Command::Step(sample)]);
+
+    // The line itself, once it has the focus, a pixel of it at a time.
+    let line = harness.get_by_role_and_label(Role::Slider, "Moment shown");
+    let width = line.rect().width();
+    line.focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowLeft);
+    let moments = asked(&mut harness);
+    let [Command::Seek(step)] = moments[..] else {
+        panic!("{moments:?}");
+    };
+    let pixel = (2000.0 / width).ceil() as u64;
+    assert!((1..=2 * pixel).contains(&(2000 - step)), "{step}");
 }
 
 #[test]
