@@ -8,6 +8,8 @@ use grainfall::files::write_whole;
 #[cfg(feature = "desktop")]
 use grainfall::headless::compared_value;
 use grainfall::headless::{self, HeadlessError, Job, Verdict, apply_setting, read_commands};
+#[cfg(feature = "desktop")]
+use grainfall::scene::seconds;
 use grainfall::scene::{Scene, StoredCells, built_in};
 use grainfall::simulation::{BedStore, Claim, Options, ScriptedCommand, Session, make_bed};
 use grainfall::sweep::{self, Sweep, Variation};
@@ -50,13 +52,8 @@ struct PictureArguments {
     /// Take a picture of the window and end
     #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
     screenshot: Option<PathBuf>,
-    /// Simulated time at which the picture is taken, in seconds
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        default_value_t = 0.0,
-        requires = "screenshot"
-    )]
+    /// Simulated time at which the picture is taken: 13s, 500ms
+    #[arg(long, value_name = "TIME", default_value = "0s", requires = "screenshot", value_parser = moment)]
     at: f64,
     /// Take the picture without a display
     #[arg(long, requires = "screenshot")]
@@ -67,6 +64,14 @@ struct PictureArguments {
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "screenshot", value_parser = size)]
     size: (u32, u32),
+}
+
+/// `13s`.
+#[cfg(feature = "desktop")]
+fn moment(text: &str) -> Result<f64, String> {
+    seconds(text)
+        .filter(|time| *time >= 0.0)
+        .ok_or_else(|| "expected a time such as `13s`, `500ms` or `2min`".to_owned())
 }
 
 /// `1280x720`.
