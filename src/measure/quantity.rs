@@ -130,20 +130,22 @@ impl Measure {
         Self::SecondPairs,
     ];
 
-    /// Whether it has a meaning in `world`: the surface of a bed has none where a column collapses, its front none elsewhere,
-    /// and a column without liquid has no bridges.
+    /// Whether it has a meaning in `world`: only a drum or a box holds a bed that has a surface, only a drum is turned, only
+    /// a column has a front, and without liquid there are no bridges but where it can be poured in.
     pub fn concerns(self, world: &World) -> bool {
-        let is_column = matches!(world.container.shape, Shape::Column { .. });
+        let shape = &world.container.shape;
+        let is_column = matches!(shape, Shape::Column { .. });
+        let has_bed = matches!(shape, Shape::Drum { .. } | Shape::Box { .. });
         match self {
             Self::SurfaceAngle
             | Self::GranularTemperature
             | Self::CorotatingTemperature
             | Self::PackingFraction
             | Self::SurfaceRoughness
-            | Self::SurfaceCurvature
-            | Self::DrumTorque => !is_column,
+            | Self::SurfaceCurvature => has_bed,
+            Self::DrumTorque => matches!(shape, Shape::Drum { .. }),
             Self::Bridges | Self::Ruptures | Self::ViscousLoss | Self::CapillaryLoss => {
-                !is_column || world.liquid.is_some()
+                has_bed || world.liquid.is_some()
             }
             Self::FrontRadius
             | Self::FrontRadius99

@@ -1,6 +1,6 @@
 //! What panels ask for, fulfilled: the only place that changes the run, opens scenes and writes pictures for them.
 
-use super::{Desk, OpenWith, Purpose, Recorder, Request, Requests};
+use super::{Desk, OpenWith, Purpose, Recorder, Request, Requests, first_speed};
 use crate::scene::Scene;
 use crate::simulation::{
     Claim, Command, Half, Options, Provenance, SavedFile, ScriptedCommand, Session, SessionError,
@@ -89,10 +89,7 @@ pub fn fulfil_requests(
             Request::ChoosePicture => desk.path_dialog.ask(Purpose::Picture),
             Request::Open(name) => opener.open(name, &mut desk),
             Request::Start(scene) => {
-                let simulation = simulation.as_deref();
-                let script = simulation.map_or_else(Vec::new, present);
-                let original = simulation.map(|simulation| simulation.original().clone());
-                opener.start(*scene, script, original);
+                opener.start_again(*scene, simulation.as_deref());
                 desk.scene_changed();
             }
             Request::Save => match (simulation, desk.session.clone()) {
@@ -209,7 +206,10 @@ pub fn finish_opening(mut desk: ResMut<Desk>, mut opener: Opener) {
     opener.opening.0 = None;
     match read {
         Ok(session) => {
-            let options = opener.options.0.clone();
+            let options = Options {
+                speed: first_speed(session.claim().scene.duration),
+                ..opener.options.0.clone()
+            };
             opener.show(Simulation::resume(session, options));
             desk.session_opened(&name);
         }
@@ -231,16 +231,32 @@ impl Opener<'_, '_> {
         match Scene::open(&name) {
             Ok(scene) => {
                 // A script belongs to the scene it was given with.
-                self.start(scene, Vec::new(), None);
+                let speed = first_speed(scene.duration);
+                self.start(scene, Vec::new(), None, speed);
                 desk.scene_opened(&name);
             }
             Err(error) => desk.show_open_error(error.to_string()),
         }
     }
 
-    /// Starts a run of `scene`, which came of the `original`, with `script`.
-    fn start(&mut self, scene: Scene, script: Vec<ScriptedCommand>, original: Option<Arc<Scene>>) {
+    /// Starts a run of `scene`, which came of that of the present `simulation`, with what was changed there.
+    fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>) {
+        let script = simulation.map_or_else(Vec::new, present);
+        let original = simulation.map(|simulation| simulation.original().clone());
+        let speed = simulation.map_or(1.0, Simulation::speed);
+        self.start(scene, script, original, speed);
+    }
+
+    /// Starts a run of `scene`, which came of the `original`, with `script`, at this `speed`.
+    fn start(
+        &mut self,
+        scene: Scene,
+        script: Vec<ScriptedCommand>,
+        original: Option<Arc<Scene>>,
+        speed: f64,
+    ) {
         let options = Options {
+            speed,
             script,
             ..self.options.0.clone()
         };

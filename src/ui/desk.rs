@@ -474,9 +474,11 @@ fn sections_ui(
             let title = RichText::new(format!("{name}{of}")).strong().size(17.0);
             let is_wanted = std::mem::take(&mut section.is_wanted);
             let summoned = section.panel.summons(view) || is_wanted;
+            // In another kind of scene it is another panel, open or not.
+            let comes_first = section.panel.comes_first(described);
             let shown = CollapsingHeader::new(title)
-                .id_salt(name)
-                .default_open(section.open_at_first)
+                .id_salt((name, comes_first))
+                .default_open(section.open_at_first || comes_first)
                 .open(summoned.then_some(true))
                 .show_unindented(ui, |ui| section.panel.ui(ui, described, view, out));
             if is_wanted {

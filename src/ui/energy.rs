@@ -6,7 +6,7 @@
 use super::plots::{fitting_plot, seek, shown, shown_ui, tick};
 use super::table::{Row, table_ui};
 use super::theme::Palette;
-use super::{Panel, Request, number};
+use super::{Panel, Request, has_bed, is_column, number};
 use crate::measure::{Measure, Series};
 use crate::simulation::Simulation;
 use crate::view::ViewSettings;
@@ -77,6 +77,10 @@ fn tops_at(value: &impl Fn(Measure, usize) -> f64, i: usize) -> f64 {
 impl Panel for Energy {
     fn title(&self) -> &'static str {
         "Energy"
+    }
+
+    fn comes_first(&self, simulation: &Simulation) -> bool {
+        !has_bed(simulation) && !is_column(simulation)
     }
 
     fn describes_one_run(&self) -> bool {

@@ -7,7 +7,7 @@ use super::compare::half_title;
 use super::decimate::decimate;
 use super::plots::{fitting_plot, ghosts, halves_ui, near_start, seek, shown, shown_ui, twin_line};
 use super::theme::{Palette, dash};
-use super::{Panel, Request, number};
+use super::{Panel, Request, has_bed, is_column, number};
 use crate::files::write_whole;
 use crate::measure::{Measure, Series};
 use crate::simulation::{DisplayUnit, Half, Provenance, Simulation};
@@ -99,6 +99,10 @@ struct Run {
 impl Panel for Explorer {
     fn title(&self) -> &'static str {
         "Any quantity"
+    }
+
+    fn comes_first(&self, simulation: &Simulation) -> bool {
+        !has_bed(simulation) && !is_column(simulation)
     }
 
     fn ui(

@@ -87,9 +87,11 @@ pub use recording::{FilmOrder, FilmState, Recorder, recording_ui};
 pub use request::{Request, Sheet};
 pub use results::Results;
 pub use sheets::{open_error_ui, sheet_ui, unsaved_ui};
+pub(crate) use transport::first_speed;
 pub use transport::{Transport, status_ui};
 pub use velocity::Velocity;
 
+use crate::measure::Measure;
 use crate::simulation::{Half, Options, Parameter, Simulation};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use crate::world::{Shape, World};
@@ -106,6 +108,11 @@ pub trait Panel: Send + Sync + 'static {
     /// Whether it has anything to say of this simulation; it is left out where it has not.
     fn concerns(&self, _simulation: &Simulation) -> bool {
         true
+    }
+
+    /// Whether it is among what one looks at first in this simulation, so that it is open until a person closes it.
+    fn comes_first(&self, _simulation: &Simulation) -> bool {
+        false
     }
 
     /// Whether it should open now, though a person has not opened it.
@@ -135,6 +142,12 @@ pub trait Panel: Send + Sync + 'static {
 fn is_column(simulation: &Simulation) -> bool {
     let column = |world: &World| matches!(world.container.shape, Shape::Column { .. });
     simulation.world().is_some_and(|world| column(world))
+}
+
+/// Whether grains lie in a bed, whose surface is measured.
+fn has_bed(simulation: &Simulation) -> bool {
+    let world = simulation.world();
+    world.is_some_and(|world| Measure::SurfaceAngle.concerns(world))
 }
 
 /// Draws the panels and fulfils what they ask for. Needs Bevy's default plugins, `EguiPlugin` and the view's plugin.

@@ -7,7 +7,7 @@
 use super::compare::half_title;
 use super::decimate::decimate;
 use super::theme::{Palette, TWIN_DASH, dash};
-use super::{Panel, Request, is_column, number};
+use super::{Panel, Request, has_bed, number};
 use crate::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE, Series};
 use crate::simulation::{Command, Half, Record, Simulation};
 use crate::view::ViewSettings;
@@ -210,7 +210,7 @@ impl Panel for Plots {
     }
 
     fn concerns(&self, simulation: &Simulation) -> bool {
-        !is_column(simulation)
+        has_bed(simulation)
     }
 
     fn ui(

@@ -9,7 +9,22 @@ use crate::simulation::{Command, SAMPLE_INTERVAL, Simulation, Status};
 use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec2};
 
 /// Speeds to choose from, in simulated seconds per second.
-const SPEEDS: [f64; 8] = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, f64::INFINITY];
+const SPEEDS: [f64; 11] = [
+    0.01,
+    0.025,
+    0.05,
+    0.1,
+    0.25,
+    0.5,
+    1.0,
+    2.0,
+    5.0,
+    10.0,
+    f64::INFINITY,
+];
+
+/// What a scene shows should last so long at least [s]: an impact is seen in slow motion.
+const WATCHED: f64 = 5.0;
 
 /// Room for the clock, and as much for the speed beside it, in points.
 const ROOM_FOR_CLOCK: f32 = 140.0;
@@ -37,6 +52,13 @@ impl Transport {
         let can_undo = simulation.turns()[0].is_some();
         status_ui(ui, status, simulation.advice().time_step, can_undo, out);
     }
+}
+
+/// The speed at which a scene of this `duration` [s] is watched at first: real time, or slow motion where it is short.
+pub fn first_speed(duration: f64) -> f64 {
+    let slow = SPEEDS.into_iter().filter(|speed| *speed <= 1.0);
+    let lasting = slow.filter(|speed| duration >= WATCHED * speed);
+    lasting.fold(SPEEDS[0], f64::max)
 }
 
 /// Whether `command` means anything while the run is in `status`.
@@ -139,7 +161,7 @@ fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
     let response = egui::ComboBox::from_id_salt("speed")
         .selected_text(speed_name(speed))
         .width(74.0)
-        .height(320.0)
+        .height(420.0)
         .show_ui(ui, |ui| {
             for choice in SPEEDS {
                 if ui
@@ -270,4 +292,23 @@ fn message_ui(ui: &mut egui::Ui, title: &str, text: &str, rest: impl FnOnce(&mut
             ui.label(text);
             rest(ui);
         });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_over_at_once_is_watched_in_slow_motion() {
+        let cases = [
+            (50.0, 1.0),
+            (2.0, 0.25),
+            (0.6, 0.1),
+            (0.3, 0.05),
+            (1e-6, 0.01),
+        ];
+        for (duration, speed) in cases {
+            assert_eq!(first_speed(duration), speed, "{duration} s");
+        }
+    }
 }

@@ -42,8 +42,15 @@ pub(super) fn plugin(app: &mut App) {
         );
 }
 
-/// Points that a picture of `world` should hold: its container's, or, where that is unbounded, its grains'.
-pub fn outline(world: &World) -> Vec<Vec3> {
+/// Ways longer than this many times the size of what flies are followed no further, so that grains stay large enough to see.
+const FARTHEST: f64 = 30.0;
+
+/// How far grains may leave their straight way, over its length.
+const SWERVE: f64 = 0.25;
+
+/// Points that a picture of `world` should hold: its container's, or, where that is unbounded, those of its grains and of
+/// their way in the next `watched` seconds.
+pub fn outline(world: &World, watched: f64) -> Vec<Vec3> {
     match world.container.shape {
         Shape::Drum { radius, width } => {
             let radius = radius as f32 * (1.0 + HOOP_BREADTH);
@@ -57,7 +64,7 @@ pub fn outline(world: &World) -> Vec<Vec3> {
         }
         Shape::Box { min, max } => corners(min.as_vec3(), max.as_vec3()).to_vec(),
         Shape::Column { radius, height } => column_outline(radius, height),
-        Shape::Planes => surroundings(world).map_or_else(Vec::new, |(min, max)| {
+        Shape::Planes => surroundings(world, watched).map_or_else(Vec::new, |(min, max)| {
             corners(min.as_vec3(), max.as_vec3()).to_vec()
         }),
     }
@@ -90,11 +97,21 @@ pub(super) fn ring_distance(radius: f64) -> f64 {
     round_up(radius / 4.0)
 }
 
-/// The box round all grains with some room to move, and what they stand on.
-fn surroundings(world: &World) -> Option<(DVec3, DVec3)> {
-    let (min, max) = grain_box(world)?;
-    let largest = world.grains.radius.iter().copied().fold(0.0, f64::max);
-    let (mut low, mut high) = (min - 2.0 * largest, max + 2.0 * largest);
+/// The box round all grains and where they fly to in the `watched` seconds [s], with some room to swerve, and what they stand
+/// on.
+fn surroundings(world: &World, watched: f64) -> Option<(DVec3, DVec3)> {
+    let (mut min, mut max) = grain_box(world)?;
+    let grains = &world.grains;
+    let largest = grains.radius.iter().copied().fold(0.0, f64::max);
+    let farthest = FARTHEST * (max - min).max_element();
+    let mut longest: f64 = 0.0;
+    for (position, velocity) in grains.position.iter().zip(&grains.velocity) {
+        let way = (watched * *velocity).clamp_length_max(farthest);
+        (min, max) = (min.min(position + way), max.max(position + way));
+        longest = longest.max(way.length());
+    }
+    let room = 2.0 * largest + SWERVE * longest;
+    let (mut low, mut high) = (min - room, max + room);
     let middle = (min + max) / 2.0;
     let size = (high - low).max_element();
     for wall in &world.container.walls {
@@ -285,8 +302,9 @@ impl Material for WallMaterial {
     }
 }
 
-/// What decides the meshes: the shape, for planes how many there are, and whether they are wanted twice.
-type Built = (Shape, usize, bool);
+/// What decides the meshes: the shape, for planes how many there are and how long grains fly over them [s], and whether they
+/// are wanted twice.
+type Built = (Shape, usize, f64, bool);
 
 /// Builds the pieces anew when the container is another.
 fn rebuild(
@@ -303,6 +321,7 @@ fn rebuild(
     let now = (
         world.container.shape,
         world.container.walls.len(),
+        shown.watched,
         shown.is_pair(),
     );
     if *built == Some(now) {
@@ -313,7 +332,7 @@ fn rebuild(
         commands.entity(piece).despawn();
     }
     let halves = &Half::ALL[..if shown.is_pair() { 2 } else { 1 }];
-    for (piece, paint, mesh) in build(world) {
+    for (piece, paint, mesh) in build(world, shown.watched) {
         let mesh = meshes.add(mesh);
         for half in halves.iter().copied() {
             commands.spawn((
@@ -425,12 +444,12 @@ fn look(paint: Paint, settings: &ViewSettings) -> Look {
     }
 }
 
-fn build(world: &World) -> Vec<(Piece, Paint, Mesh)> {
+fn build(world: &World, watched: f64) -> Vec<(Piece, Paint, Mesh)> {
     let mut pieces = match world.container.shape {
         Shape::Drum { radius, width } => drum(radius as f32, width as f32),
         Shape::Box { min, max } => box_panes(min.as_vec3(), max.as_vec3()),
         Shape::Column { radius, height } => column_floors(world, radius, height),
-        Shape::Planes => planes(world),
+        Shape::Planes => planes(world, watched),
     };
     pieces.extend(tubes(world));
     pieces
@@ -477,8 +496,8 @@ fn box_panes(min: Vec3, max: Vec3) -> Vec<(Piece, Paint, Mesh)> {
 }
 
 /// A fading floor for each plane.
-fn planes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
-    let (min, max) = surroundings(world).unwrap_or((DVec3::ZERO, DVec3::ONE));
+fn planes(world: &World, watched: f64) -> Vec<(Piece, Paint, Mesh)> {
+    let (min, max) = surroundings(world, watched).unwrap_or((DVec3::ZERO, DVec3::ONE));
     let cell = round_up((max - min).max_element() / 16.0);
     let paint = Paint::Floor {
         pattern: Pattern::Grid,

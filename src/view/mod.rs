@@ -127,10 +127,15 @@ impl Plugin for ViewPlugin {
     }
 }
 
+/// Part of a scene's duration in which grains in the open stay in the picture: what happens to them happens before.
+const WATCHED: f64 = 0.5;
+
 /// The world in the picture, or the two worlds in its halves.
 #[derive(Resource, Default)]
 pub struct Shown {
     halves: [Option<Arc<World>>; 2],
+    /// How long grains that fly in the open are followed [s].
+    watched: f64,
 }
 
 impl Shown {
@@ -191,6 +196,7 @@ fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<Shown>) {
         _ => false,
     };
     if !Half::ALL.into_iter().all(is_shown) {
+        shown.watched = WATCHED * simulation.scene().duration;
         shown.replace(newest.map(Option::<&Arc<World>>::cloned));
     }
 }

@@ -73,7 +73,7 @@ pub(super) fn steer(
             camera.set_home(home(shape));
             *framed = Framed {
                 of,
-                outline: container::outline(world),
+                outline: container::outline(world, shown.watched),
                 camera: None,
             };
         }

@@ -10,7 +10,7 @@ mod recording;
 
 use crate::scene::Scene;
 use crate::simulation::{Options, Parameter, Session, Simulation, SimulationPlugin};
-use crate::ui::{Desk, Memory, UiPlugin};
+use crate::ui::{Desk, Memory, UiPlugin, first_speed};
 use crate::view::{ViewPlugin, ViewSettings};
 use bevy::app::ScheduleRunnerPlugin;
 use bevy::camera::visibility::RenderLayers;
@@ -151,8 +151,12 @@ pub fn run(job: Job) -> Result<(), WindowError> {
 /// The app, not yet running.
 fn build(mut job: Job, software: bool, outcome: Outcome) -> App {
     let mut app = App::new();
-    // A person begins by looking; a picture is taken of a run that goes on.
+    // A person begins by looking; a picture is taken of a run that goes to its moment as fast as it can.
     job.options.autoplay = job.picture.is_some();
+    job.options.speed = match job.picture {
+        Some(_) => f64::INFINITY,
+        None => first_speed(job.opened.scene().duration),
+    };
     let title = title(job.opened.scene());
     match &job.picture {
         Some(picture) if picture.offscreen => app.add_plugins((

@@ -1329,6 +1329,23 @@ fn any_quantity_is_plotted_over_any_other_and_can_be_taken_home() {
 }
 
 #[test]
+fn grains_without_a_bed_are_seen_by_their_energy() {
+    let scene = Scene::open("two-grains").unwrap();
+    let mut simulation = ready(Simulation::open(scene, standing()));
+    carried_out(&mut simulation, Command::Step(2000));
+    let harness = Window::of(simulation);
+    harness.get_by_label("Kinetic energy E_kin [J] over Time t [s]");
+    harness.get_by_label_contains("Where the energy is and went");
+    assert!(harness.query_by_label("Surface angle θ [°]").is_none());
+    let bed = Window::of(prepared());
+    bed.get_by_label("Surface angle θ [°]");
+    assert!(
+        bed.query_by_label_contains("Where the energy is and went")
+            .is_none()
+    );
+}
+
+#[test]
 fn energy_stands_as_a_stack_with_its_residual() {
     let mut harness = Window::of(with_samples());
     harness.get_by_label("Energy").click();
