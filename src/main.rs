@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// An interactive laboratory for granular matter.
 ///
@@ -338,14 +339,20 @@ fn open_window(
 const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
                          `desktop`";
 
+/// Signals that follow each other sooner are one: tools such as `timeout` send theirs to a process and to its whole group.
+const ONE_SIGNAL: Duration = Duration::from_millis(500);
+
 /// Becomes true when somebody asks the program to end; a second time ends it at once.
 fn interruption() -> Result<Arc<AtomicBool>, HeadlessError> {
     let flag = Arc::new(AtomicBool::new(false));
     let shared = flag.clone();
+    let mut first = None;
     ctrlc::set_handler(move || {
-        if shared.swap(true, Ordering::Relaxed) {
+        let first: Instant = *first.get_or_insert_with(Instant::now);
+        if first.elapsed() > ONE_SIGNAL {
             std::process::exit(130);
         }
+        shared.store(true, Ordering::Relaxed);
     })
     .map_err(|error| HeadlessError::Input(format!("cannot listen to Ctrl-C: {error}")))?;
     Ok(flag)

@@ -41,5 +41,6 @@ fn outline(scene: &Scene) -> String {
         ContactLaw::HertzMindlin => "Hertz–Mindlin",
         ContactLaw::Hooke { .. } => "Hooke",
     };
-    format!("{grains} grains · {law} · seed {}", scene.seed)
+    let noun = if grains == 1 { "grain" } else { "grains" };
+    format!("{grains} {noun} · {law} · seed {}", scene.seed)
 }

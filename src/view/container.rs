@@ -46,7 +46,7 @@ pub(super) fn plugin(app: &mut App) {
 const FARTHEST: f64 = 30.0;
 
 /// How far grains may leave their straight way, over its length.
-const SWERVE: f64 = 0.25;
+const SWERVE: f64 = 0.12;
 
 /// Points that a picture of `world` should hold: its container's, or, where that is unbounded, those of its grains and of
 /// their way in the next `watched` seconds.

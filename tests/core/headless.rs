@@ -464,8 +464,10 @@ fn interrupted_run_leaves_whole_files() {
         .spawn()
         .unwrap();
     wait_for(&place.path("out/grains/grains_000003.vtp"), &mut child);
+    // Twice at once, as `timeout` does it: that is one wish.
+    let process = child.id().to_string();
     let interrupt = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args(["-INT", &process, &process])
         .status();
     assert!(interrupt.unwrap().success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
