@@ -52,7 +52,7 @@ fn steps(criterion: &mut Criterion) {
                 },
             );
             let profile = solver.take_profile();
-            let share = |stage| profile.time(stage).as_secs_f64() / profile.total.as_secs_f64();
+            let share = |stage| profile.share(stage);
             let grains = world.grains.len() as f64;
             println!(
                 "{height}, {threads} threads: {:.0} ns per grain and step; {:.0} features listed a grain, {:.3} lists made a \

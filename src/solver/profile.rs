@@ -60,8 +60,36 @@ impl Profile {
         self.stages[stage as usize]
     }
 
+    /// Part of the time that `stage` took, 0 … 1. Some stages are timed in some steps only and that is scaled up: where a step
+    /// takes no longer than to look at the clock, they come to more than the whole, and count as parts of their sum.
+    pub fn share(&self, stage: Stage) -> f64 {
+        let whole = self.total.max(self.stages.iter().sum());
+        self.time(stage).as_secs_f64() / whole.as_secs_f64().max(f64::MIN_POSITIVE)
+    }
+
     /// Wall time per grain and step [s].
     pub fn per_grain_step(&self) -> f64 {
         self.total.as_secs_f64() / (self.steps.max(1) * self.grains.max(1) as u64) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_parts_of_a_whole() {
+        let of = |total| Profile {
+            total: Duration::from_millis(total),
+            stages: [10, 20, 30, 20].map(Duration::from_millis),
+            ..Profile::default()
+        };
+        let sum = |profile: Profile| -> f64 {
+            let shares = Stage::ALL.map(|stage| profile.share(stage));
+            shares.iter().sum()
+        };
+        assert!((sum(of(160)) - 0.5).abs() < 1e-12);
+        assert!((sum(of(40)) - 1.0).abs() < 1e-12, "measured too long");
+        assert!(Profile::default().share(Stage::Contacts).abs() < 1e-12);
     }
 }

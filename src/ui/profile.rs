@@ -49,8 +49,7 @@ pub fn profile_ui(ui: &mut egui::Ui, profile: &Profile) {
     let total = profile.total.as_secs_f64().max(f64::MIN_POSITIVE);
     let palette = Palette::of(ui.visuals());
     for (stage, colour) in Stage::ALL.into_iter().zip(palette.stages) {
-        let share = profile.time(stage).as_secs_f64() / total;
-        bar_ui(ui, stage.name(), share as f32, colour);
+        bar_ui(ui, stage.name(), profile.share(stage) as f32, colour);
     }
     let rebuilt_every = match profile.rebuilds {
         0 => "none".into(),
