@@ -4,34 +4,42 @@
 //!  scenes/*.ron
 //!      │ parse, validate (the only place that knows the file's keys)
 //!      ▼
-//!   scene ──build──▶ world ◀──step── solver          the solver is the only writer of a world
-//!                      │ &World
-//!                      ▼
-//!                   measure ──▶ named numbers with units
-//!                      │
-//!               simulation   Bevy plugin: owns a Run (world + solver), steps it in FixedUpdate,
-//!                      │     takes Commands (the only road back), publishes measures
-//!         ┌────────────┴───────────────┐
-//!         ▼                            ▼
-//!     headless                  view (3D)  ui (egui panels)
-//!     MinimalPlugins            DefaultPlugins
-//!     + SimulationPlugin        + the same SimulationPlugin
+//!   physics ◀── scene ──build──▶ world ◀──step── solver     the solver is the only writer of a world
+//!                                  │ &World
+//!                                  ▼
+//!                               measure ──▶ named numbers with units
+//!                                  │
+//!                                 run     world + solver + commands + samples; branches; the record that verifies
+//!                                  │
+//!                                 lab     one or two runs, one clock, one command enum
+//!                                  │
+//!                             simulation  Bevy plugin: steps the lab in FixedUpdate
+//!                     ┌────────────┴───────────────┐
+//!                     ▼                            ▼
+//!                 headless                  view (3D)  ui (egui panels)
+//!                 MinimalPlugins            DefaultPlugins
+//!                 + SimulationPlugin        + the same SimulationPlugin
 //! ```
 //!
-//! A module names only modules above it. `geometry`, `scene`, `world`, `solver` and `measure` know nothing of Bevy; `view` and `ui`
-//! stand behind the Cargo feature `desktop`, on by default.
+//! A module names only modules above it in this table. Nothing but `simulation`, `headless` and what is drawn knows of
+//! Bevy: without features the package is a library without it; `headless` adds the program without a window, `desktop`
+//! (the default) the window.
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`files`] | files that appear whole or not at all |
 //! | [`geometry`] | convex solids: cutting, integrals, hulls |
+//! | [`lanes`] | numbers side by side: one vocabulary for every width of the processor, and its plain twin |
+//! | [`physics`] | force laws and their choices, materials and how two meet, liquids |
 //! | [`scene`] | what was asked for: scene files, defaults, validation |
 //! | [`world`] | state at one instant, in columns; snapshot, restore, hash |
-//! | [`solver`] | how the state advances: time step, neighbours, force laws, integration, faults |
+//! | [`solver`] | how the state advances: time step, neighbours, integration, faults |
 //! | [`measure`] | read-only numbers from a world |
-//! | [`simulation`] | the run (world, solver, commands, samples) and the Bevy plugin that steps it |
+//! | [`run`] | the trajectory (world, solver, commands, samples), its branches, beds, sessions, records |
+//! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
+//! | [`simulation`] | the Bevy plugin that lets a lab go on |
 //! | [`headless`] | the windowless runner and its output files |
 //! | [`sweep`] | variations of a scene side by side: cases, checkpoints, table, plots |
-//! | [`files`] | files that appear whole or not at all |
 //! | `view` | a world as pixels: grains, container, camera, colours |
 //! | `ui` | the egui panels |
 //! | `window` | the app that opens them in a window, or draws them into a picture |
@@ -45,7 +53,11 @@
 pub mod files;
 pub mod geometry;
 pub mod headless;
+pub mod lab;
+pub mod lanes;
 pub mod measure;
+pub mod physics;
+pub mod run;
 pub mod scene;
 pub mod simulation;
 pub mod solver;

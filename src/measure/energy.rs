@@ -4,8 +4,7 @@
 //! ([`crate::world::Ledger`], [`crate::world::Grains::exchanged`]), which the solver and the commands keep.
 
 use super::contacts::overlap;
-use crate::scene::{ContactLaw, FeatureRule};
-use crate::solver::law::Pairing;
+use crate::physics::{ContactLaw, FeatureRule};
 use crate::world::{Contact, FeatureContact, World};
 use serde::Serialize;
 
@@ -103,12 +102,14 @@ pub fn elastic_energy(world: &World) -> f64 {
         return feature_energy(&polyhedra.features, world.law);
     }
     let stored = |contact: &Contact| {
-        Pairing::of(world, contact.grain as usize, contact.partner).elastic_energy(
-            world.law,
-            &world.materials,
-            overlap(world, contact),
-            contact.spring.length(),
-        )
+        world
+            .pairing(contact.grain as usize, contact.partner)
+            .elastic_energy(
+                world.law,
+                &world.materials,
+                overlap(world, contact),
+                contact.spring.length(),
+            )
     };
     world
         .contacts

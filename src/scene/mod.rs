@@ -10,7 +10,6 @@ mod check;
 mod error;
 mod file;
 mod lattice;
-mod liquid;
 mod mixture;
 mod outline;
 mod packing;
@@ -18,13 +17,13 @@ mod set;
 mod shape;
 mod syntax;
 
+pub use crate::physics::{
+    BridgeLaw, BridgeVolume, CapillaryGap, ContactLaw, CoulombBound, FeatureRule, LIQUID_CASES,
+    Liquid as SceneLiquid, LiquidCase, PAPER_VOLUME, PairAngle, Rupture, SmallestGap,
+};
 pub use built_in::{BuiltIn, built_in};
 pub use error::SceneError;
 pub use lattice::Lattice;
-pub use liquid::{
-    BridgeLaw, BridgeVolume, CapillaryGap, CoulombBound, LIQUID_CASES, LiquidCase, PAPER_VOLUME,
-    PairAngle, Rupture, SceneLiquid, SmallestGap,
-};
 pub use mixture::{SizeClass, size_classes, species_counts};
 pub use packing::{HeldCells, PackingError, StoredCells};
 pub use set::seconds;
@@ -71,36 +70,6 @@ pub struct Scene {
     pub output_interval: f64,
     /// Seed of everything random.
     pub seed: u64,
-}
-
-/// How two bodies push each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum ContactLaw {
-    /// Hertz–Mindlin from the materials' elastic constants, Eqs. 5–10 of Kasper et al. 2021.
-    #[default]
-    HertzMindlin,
-    /// Linear springs, Eqs. 3.3–3.5 of Man et al. 2023.
-    Hooke {
-        /// `K_n` of a contact [N/m].
-        normal_stiffness: f64,
-        /// `K_t` of a contact [N/m].
-        tangential_stiffness: f64,
-        /// What the stiffnesses belong to where two polyhedra touch in several places.
-        #[serde(default)]
-        features: FeatureRule,
-    },
-}
-
-/// What the stiffnesses and the dashpot of two polyhedra belong to. Two features (a vertex and a face, or two edges) that
-/// are closer than the sum of their rounding radii are in contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FeatureRule {
-    /// Each pair of features is a full contact, as in the program of Man et al. 2023.
-    #[default]
-    Full,
-    /// The features of two polyhedra share one contact's stiffness and dashpot, each by its part of their overlap.
-    Shared,
 }
 
 /// How the time step is chosen.

@@ -10,7 +10,7 @@ use super::lanes::{
 };
 use super::law::{FilmConstants, Law, PairConstants, rolling_gain};
 use super::spring::stretch;
-use crate::scene::CoulombBound;
+use crate::physics::CoulombBound;
 use crate::world::{Motion, Surface};
 use glam::DVec3;
 

@@ -15,8 +15,6 @@ mod contacts;
 mod fault;
 mod grid;
 mod integrate;
-mod lanes;
-pub mod law;
 mod neighbours;
 mod order;
 mod polyhedra;
@@ -29,15 +27,16 @@ mod team;
 mod terms;
 mod time_step;
 
+pub use crate::lanes::Processor;
 pub use fault::{Fault, FaultKind};
-pub use lanes::Processor;
 pub use profile::{Profile, Stage};
 pub use terms::{ForceTerms, NormalLaw, force_terms};
 pub use time_step::{Limit, TimeStepAdvice, advise};
 
-use crate::scene::ContactLaw;
+use crate::physics::ContactLaw;
+use crate::physics::law::{HertzMindlin, Hooke, Law};
 use crate::world::World;
-use law::{HertzMindlin, Hooke, Law};
+use crate::{lanes, physics::law};
 use state::State;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

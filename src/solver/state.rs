@@ -6,9 +6,7 @@ use super::bridges::{BridgeColumns, BridgeRow, Bridges, LiquidAction, Wetting};
 use super::contacts::{Action, Body, Forces, GROUP, Pair, PairRows, Surroundings, WallBody};
 use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion, Outcome, Start};
 use super::lanes::Processor;
-use super::law::{
-    BridgeKinds, FilmConstants, Law, PairConstants, Pairing, contributions, rupture_gap,
-};
+use super::law::{BridgeKinds, FilmConstants, Law, PairConstants, contributions, rupture_gap};
 use super::neighbours::{Neighbours, PairList, Parts, grain_key, wall_key};
 use super::order::Order;
 use super::portion::Portion;
@@ -102,7 +100,7 @@ impl Kinds {
         self.films.clear();
         let liquid = world.wetting();
         for (grain, partner) in &self.examples {
-            let pairing = Pairing::of(world, *grain, *partner);
+            let pairing = world.pairing(*grain, *partner);
             let constants = pairing.constants(world.law, &world.materials, liquid.is_some());
             self.constants.push(constants);
             self.films

@@ -14,7 +14,7 @@ use super::law::{
     attraction, contributions, drag, rolling_gain,
 };
 use super::polyhedra;
-use crate::scene::{BridgeLaw, ContactLaw, CoulombBound};
+use crate::physics::{BridgeLaw, ContactLaw, CoulombBound};
 use crate::world::{Contact, Feature, Liquid, Partner, World};
 use glam::DVec3;
 
@@ -250,7 +250,7 @@ struct Side {
 
 impl Side {
     fn of(world: &World, contact: &Contact) -> Self {
-        let pairing = Pairing::of(world, contact.grain as usize, contact.partner);
+        let pairing = world.pairing(contact.grain as usize, contact.partner);
         // Walls carry no liquid, but what lies on them is as slippery.
         let wet = world.wetting().is_some();
         Self {

@@ -4,9 +4,8 @@
 //! is taken as given, with a warning where it exceeds a limit.
 
 use super::law::{LARGEST_DRAG, natural_log, smallest_viscous_gap};
-use crate::scene::{
-    ContactLaw, FeatureRule, Scene, SceneGrains, SceneLiquid, SceneMaterial, TimeStep,
-};
+use crate::physics::{ContactLaw, FeatureRule, Liquid};
+use crate::scene::{Scene, SceneGrains, SceneMaterial, TimeStep};
 use std::f64::consts::PI;
 
 /// Share of the Rayleigh time that a step may take (physics of Kasper et al. 2021 as run by its authors: at most 0.2).
@@ -258,7 +257,7 @@ fn dashpot_limit(kind: &Kind, normal_stiffness: f64, rule: FeatureRule) -> Limit
 
 /// `1.6 m/(2 · 6 c)` with the drag `c = 6π η r*²/D` of two equal grains at the smallest gap: up to that step it acts
 /// unbounded on grains with six neighbours each.
-fn lubrication_limit(kind: &Kind, liquid: &SceneLiquid) -> Limit {
+fn lubrication_limit(kind: &Kind, liquid: &Liquid) -> Limit {
     let mass = kind.mass();
     let effective = 0.5 * kind.radius;
     let gap = smallest_viscous_gap(liquid.law.viscous_gap, effective, 2.0 * kind.radius);

@@ -1,6 +1,7 @@
 //! A pair that touches or is held by a liquid bridge, and what it remembers.
 
-use super::Bridge;
+use super::{Bridge, World};
+use crate::physics::law::{Pairing, reduced};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -31,4 +32,29 @@ pub struct Contact {
     pub touching: bool,
     /// The bridge between them, if there is one. In a box: dry contacts stay small.
     pub bridge: Option<Box<Bridge>>,
+}
+
+impl World {
+    /// What `grain` and its `partner` are to each other.
+    pub fn pairing(&self, grain: usize, partner: Partner) -> Pairing {
+        let (world, grains) = (self, &self.grains);
+        let material = |i: usize| world.species[usize::from(grains.species[i].0)].material;
+        match partner {
+            Partner::Grain(j) => {
+                let j = j as usize;
+                Pairing {
+                    effective_radius: reduced(grains.radius[grain], grains.radius[j]),
+                    effective_mass: reduced(grains.mass[grain], grains.mass[j]),
+                    radii: (grains.radius[grain], grains.radius[j]),
+                    materials: (material(grain), material(j)),
+                }
+            }
+            Partner::Wall(w) => Pairing {
+                effective_radius: grains.radius[grain],
+                effective_mass: grains.mass[grain],
+                radii: (grains.radius[grain], 0.0),
+                materials: (material(grain), world.container.walls[w as usize].material),
+            },
+        }
+    }
 }

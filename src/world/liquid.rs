@@ -1,7 +1,7 @@
 //! The liquid between the grains: films on them, bridges between them.
 
 use super::{Contact, World};
-use crate::scene::SceneLiquid as Liquid;
+use crate::physics::Liquid;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -11,7 +11,6 @@ mod grains;
 mod hash;
 mod ledger;
 mod liquid;
-mod material;
 mod memory;
 mod mixture;
 mod packing;
@@ -19,7 +18,7 @@ mod polyhedra;
 mod voronoi;
 
 pub use crate::geometry::{Polyhedron, Rounded};
-pub use crate::scene::SceneLiquid as Liquid;
+pub use crate::physics::{Liquid, Material, MaterialId, Materials, PairProperties};
 pub use build::{build, build_packed};
 pub use contact::{Contact, Partner};
 pub use container::{Container, Motion, Shape, Surface, Wall};
@@ -27,13 +26,12 @@ pub use grains::{Grains, Species, SpeciesId};
 pub use hash::StateHash;
 pub use ledger::Ledger;
 pub use liquid::Bridge;
-pub use material::{Material, MaterialId, Materials, PairProperties};
 pub use mixture::{label_order, set_share};
 pub use packing::Packing;
 pub use polyhedra::{Body, Feature, FeatureContact, Polyhedra};
 pub use voronoi::{Boundary, Tessellation};
 
-use crate::scene::ContactLaw;
+use crate::physics::ContactLaw;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -26,12 +26,12 @@ pub use terms::force_terms;
 use super::contacts::WallBody;
 use super::grid::CellGrid;
 use super::lanes::{Lanes, Processor, Work, prefetch};
-use super::law::{PairConstants, Pairing};
+use super::law::PairConstants;
 use super::row::{Row, length_squared, row, sub, vector};
 use super::state::move_walls;
 use super::team::{Barrier, Shared, Team, share};
 use super::{Fault, FaultKind, Profile, Stage, Stretch};
-use crate::scene::{ContactLaw, FeatureRule};
+use crate::physics::{ContactLaw, FeatureRule};
 use crate::world::{Contact, FeatureContact, Materials, Partner, Polyhedron, SpeciesId, World};
 use bodies::{Body, Geometry, Load, Placing, Shapes};
 use listing::Listed;
@@ -326,7 +326,7 @@ impl State {
         self.known = known;
         let count = self.bodies.len();
         for (pair, terms) in self.pairs.list.iter().zip(&mut self.pairs.terms) {
-            let pairing = Pairing::of(world, pair.first as usize, partner(pair, count));
+            let pairing = world.pairing(pair.first as usize, partner(pair, count));
             let PairConstants {
                 coefficients,
                 contact,

@@ -20,7 +20,7 @@ use super::super::spring::{UNLOADED, stretch};
 use super::bodies::{Body, Geometry};
 use super::listing::{Listed, Search, Wanted, choose};
 use super::nearest::{Jobs, Nearest, group};
-use crate::scene::FeatureRule;
+use crate::physics::FeatureRule;
 use crate::world::{Feature, Surface};
 use std::ops::Range;
 

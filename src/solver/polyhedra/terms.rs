@@ -1,13 +1,13 @@
 //! The force of a contact of polyhedra, term by term: see [`super::super::terms`].
 
 use super::super::lanes::{Lanes, One, Row};
-use super::super::law::{Hooke, Law, Pairing};
+use super::super::law::{Hooke, Law};
 use super::super::row::vector;
 use super::super::terms::{ForceTerms, velocity_half_a_step_ago};
 use super::bodies::{Body, Shapes};
 use super::listing::Listed;
 use super::nearest::{Jobs, Nearest, Places};
-use crate::scene::{ContactLaw, FeatureRule};
+use crate::physics::{ContactLaw, FeatureRule};
 use crate::world::{Contact, Feature, FeatureContact, Partner, World};
 use glam::DVec3;
 
@@ -64,7 +64,7 @@ impl<'a> Meeting<'a> {
                 ((DVec3::ZERO, motion.velocity, motion.spin), 0.0)
             }
         };
-        let pairing = Pairing::of(world, first, contact.partner);
+        let pairing = world.pairing(first, contact.partner);
         let constants = pairing.constants(world.law, &world.materials, false);
         let [normal, damping, tangential, _] = constants.coefficients;
         let mut meeting = Self {

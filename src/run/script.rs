@@ -64,14 +64,14 @@ impl Script {
     }
 
     /// The script of `commands` in order of their steps.
-    pub(super) fn in_order(commands: impl Iterator<Item = (u64, Command)>) -> Self {
+    pub(crate) fn in_order(commands: impl Iterator<Item = (u64, Command)>) -> Self {
         Self {
             commands: commands.collect(),
         }
     }
 
     /// What is due after `step`.
-    pub(super) fn after(&self, step: u64) -> impl Iterator<Item = (u64, Command)> {
+    pub(crate) fn after(&self, step: u64) -> impl Iterator<Item = (u64, Command)> {
         let later = move |entry: &&(u64, Command)| entry.0 > step;
         self.commands.iter().filter(later).cloned()
     }

@@ -346,7 +346,7 @@ impl Timeline {
     ///
     /// # Errors
     /// As [`Timeline::change`].
-    pub(super) fn note_beside(
+    pub(crate) fn note_beside(
         &mut self,
         command: &Command,
         joins: bool,
@@ -389,7 +389,7 @@ impl Timeline {
     }
 
     /// Starts afresh at time zero with these `values`, keeping the run that is left.
-    pub(super) fn restart(&mut self, values: &[(Parameter, f64)]) {
+    pub(crate) fn restart(&mut self, values: &[(Parameter, f64)]) {
         self.start_afresh(|run| run.restart_with(values));
     }
 
@@ -440,7 +440,7 @@ impl Timeline {
 
     /// Keeps the run of `record`, which began from the same bed, beside the present one, with the state at its `end`
     /// where that is known.
-    pub(super) fn adopt(&mut self, mut record: Record, end: Option<Snapshot>) {
+    pub(crate) fn adopt(&mut self, mut record: Record, end: Option<Snapshot>) {
         record.number = self.next_number();
         if let Some(end) = end {
             let place = record.history.place(end.commands(), end.step());
@@ -453,7 +453,7 @@ impl Timeline {
     }
 
     /// Goes on with `threads` threads.
-    pub(super) fn use_threads(&mut self, threads: usize) {
+    pub(crate) fn use_threads(&mut self, threads: usize) {
         self.run.use_threads(threads);
     }
 

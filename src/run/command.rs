@@ -37,7 +37,7 @@ pub enum Command {
 
 impl Command {
     /// Its name where it moves along the runs instead of changing one.
-    pub(super) fn moving(&self) -> Option<&'static str> {
+    pub(crate) fn moving(&self) -> Option<&'static str> {
         match self {
             Self::Reset => Some("Reset"),
             Self::Seek(_) => Some("Seek"),

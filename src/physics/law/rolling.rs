@@ -6,7 +6,7 @@
 //! sides. So a grain on a slope below tan⁻¹ `μ_R`
 //! stands still instead of trembling.
 
-use crate::solver::lanes::Lanes;
+use crate::lanes::Lanes;
 
 /// The factor `g` in `q = −g ω` [N m s]: `cap/|ω|` for the full torque `cap` [N m], or `1/compliance` where that would
 /// overshoot. `speed` is |ω| [rad/s].

@@ -3,15 +3,12 @@
 //! In: [`Order`]s. Out: [`Update`]s. [`Engine::work`] does one short piece at a time, so that orders are answered quickly;
 //! how the pieces fall does not show in the trajectory.
 
-use super::history::Record;
-use super::preparation::{Preparation, Prepared};
-use super::session::Session;
-use super::timeline::{Past, Timeline};
-use super::{
-    Command, CommandError, Half, Parameter, ParameterInfo, Run, Script, ScriptedCommand, Snapshot,
-    StampedCommand, Status,
-};
+use super::{Half, Status};
 use crate::measure::{FlowHistory, Sample};
+use crate::run::{
+    Command, CommandError, Parameter, ParameterInfo, Past, Preparation, Prepared, Record, Run,
+    Script, ScriptedCommand, Session, Snapshot, StampedCommand, Timeline,
+};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::World;

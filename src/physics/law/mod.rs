@@ -2,7 +2,7 @@
 //!
 //! A law turns the constants of a pair ([`PairConstants`], computed once per kind of pair) and the overlap into
 //! stiffnesses and dashpots, and says how the normal force and the Coulomb bound come from them. All laws share the
-//! tangential spring, the rolling friction and the geometry in [`super::contacts`]. A wall is a partner of infinite mass
+//! tangential spring, the rolling friction and the geometry in the solver. A wall is a partner of infinite mass
 //! and radius, so no law asks whether there is one.
 
 mod bridge;
@@ -18,9 +18,39 @@ pub use hertz_mindlin::HertzMindlin;
 pub use hooke::Hooke;
 pub use rolling::rolling_gain;
 
-use super::lanes::{Lanes, One, Row};
-use crate::scene::ContactLaw;
-use crate::world::{MaterialId, Materials, Partner, World};
+use crate::lanes::{Lanes, One, Row};
+use crate::physics::{MaterialId, Materials};
+use serde::{Deserialize, Serialize};
+
+/// How two bodies push each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ContactLaw {
+    /// Hertz–Mindlin from the materials' elastic constants, Eqs. 5–10 of Kasper et al. 2021.
+    #[default]
+    HertzMindlin,
+    /// Linear springs, Eqs. 3.3–3.5 of Man et al. 2023.
+    Hooke {
+        /// `K_n` of a contact [N/m].
+        normal_stiffness: f64,
+        /// `K_t` of a contact [N/m].
+        tangential_stiffness: f64,
+        /// What the stiffnesses belong to where two polyhedra touch in several places.
+        #[serde(default)]
+        features: FeatureRule,
+    },
+}
+
+/// What the stiffnesses and the dashpot of two polyhedra belong to. Two features (a vertex and a face, or two edges) that
+/// are closer than the sum of their rounding radii are in contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FeatureRule {
+    /// Each pair of features is a full contact, as in the program of Man et al. 2023.
+    #[default]
+    Full,
+    /// The features of two polyhedra share one contact's stiffness and dashpot, each by its part of their overlap.
+    Shared,
+}
 
 /// What a pair's force depends on beside geometry and motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,29 +101,6 @@ pub struct Pairing {
 }
 
 impl Pairing {
-    /// Grain `i` and its partner.
-    pub fn of(world: &World, grain: usize, partner: Partner) -> Self {
-        let grains = &world.grains;
-        let material = |i: usize| world.species[usize::from(grains.species[i].0)].material;
-        match partner {
-            Partner::Grain(j) => {
-                let j = j as usize;
-                Self {
-                    effective_radius: reduced(grains.radius[grain], grains.radius[j]),
-                    effective_mass: reduced(grains.mass[grain], grains.mass[j]),
-                    radii: (grains.radius[grain], grains.radius[j]),
-                    materials: (material(grain), material(j)),
-                }
-            }
-            Partner::Wall(w) => Self {
-                effective_radius: grains.radius[grain],
-                effective_mass: grains.mass[grain],
-                radii: (grains.radius[grain], 0.0),
-                materials: (material(grain), world.container.walls[w as usize].material),
-            },
-        }
-    }
-
     /// Constants of the pair under the world's contact law, `wet` or dry.
     pub fn constants(&self, law: ContactLaw, materials: &Materials, wet: bool) -> PairConstants {
         let pair = materials.pair(self.materials.0, self.materials.1);
@@ -149,7 +156,7 @@ impl Pairing {
 }
 
 /// `a b / (a + b)`.
-fn reduced(a: f64, b: f64) -> f64 {
+pub fn reduced(a: f64, b: f64) -> f64 {
     a * b / (a + b)
 }
 

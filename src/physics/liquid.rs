@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// A liquid and how much of it there is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneLiquid {
+pub struct Liquid {
     /// Surface tension γ [N/m].
     pub surface_tension: f64,
     /// Contact angle α on the grains [rad].
@@ -176,8 +176,8 @@ impl LiquidCase {
     }
 
     /// As much of it as the paper has, with bridges as printed.
-    pub fn liquid(&self) -> SceneLiquid {
-        SceneLiquid {
+    pub fn liquid(&self) -> Liquid {
+        Liquid {
             surface_tension: self.surface_tension(),
             contact_angle: self.contact_angle(),
             viscosity: self.viscosity,

@@ -11,8 +11,8 @@
 //! other goes back to it. Taking up a kept run belongs to one run and waits until the twin is ended.
 
 use super::engine::{Beside, Drag, Order, PairChange};
-use super::{Command, Parameter, Simulation, Status};
-use bevy::ecs::component::Component;
+use super::{Simulation, Status};
+use crate::run::{Command, Parameter};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -26,7 +26,8 @@ const FIRST_SLICE: u64 = 50;
 const OF_ONE_RUN: &str = "A kept run would take the place of one of the two: end the twin first.";
 
 /// One of two runs side by side, and of their pictures.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "headless", derive(bevy::ecs::component::Component))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Half {
     /// The first run; all of the picture where there is one run only.
     #[default]

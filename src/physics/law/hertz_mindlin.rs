@@ -5,8 +5,8 @@
 //! the end of a contact is kept: only then does the restitution come out as e.
 
 use super::{Coefficients, Law, Pairing, natural_log};
-use crate::solver::lanes::{Lanes, Row};
-use crate::world::Materials;
+use crate::lanes::{Lanes, Row};
+use crate::physics::Materials;
 use std::f64::consts::PI;
 
 /// The law of Eqs. 5–9.

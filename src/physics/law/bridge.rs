@@ -10,9 +10,8 @@
 //! The advised time step is short enough that the bound acts on next to no pair.
 
 use super::{Pairing, natural_log};
-use crate::scene::{BridgeVolume, CapillaryGap, PairAngle, Rupture, SmallestGap};
-use crate::solver::lanes::{Lanes, One, Row};
-use crate::world::Liquid;
+use crate::lanes::{Lanes, One, Row};
+use crate::physics::{BridgeVolume, CapillaryGap, Liquid, PairAngle, Rupture, SmallestGap};
 use std::f64::consts::{LN_2, PI};
 
 /// What the forces of any bridge between two kinds of grain depend on.
@@ -306,7 +305,7 @@ mod tests {
             contact_angle: f64::to_radians(degrees),
             viscosity: 0.0,
             volume: 1.0,
-            law: crate::scene::BridgeLaw::AS_PRINTED,
+            law: crate::physics::BridgeLaw::AS_PRINTED,
         };
         let constants = BridgeConstants::of(&liquid, (1e-3, 1e-3), volume * 1e-9);
         let row = constants.row.map(|x| One::splat((), x));

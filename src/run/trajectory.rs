@@ -44,7 +44,7 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// The state `world` at the end of a run that had these `commands` and `samples` and this `flow`.
-    pub(super) fn of_end(
+    pub(crate) fn of_end(
         world: &World,
         commands: usize,
         samples: usize,
@@ -79,7 +79,7 @@ impl Snapshot {
     }
 
     /// The same with the shapes of polyhedra that `shapes_of` has.
-    pub(super) fn sharing(mut self, shapes_of: Option<&World>) -> Self {
+    pub(crate) fn sharing(mut self, shapes_of: Option<&World>) -> Self {
         let shapes = shapes_of.and_then(|world| Some(world.polyhedra.as_ref()?.shapes.clone()));
         if let Some(polyhedra) = &mut self.world.polyhedra {
             polyhedra.shapes = shapes.unwrap_or_else(|| Arc::new([]));
@@ -186,7 +186,7 @@ impl Run {
     }
 
     /// Goes on with `threads` threads, to the same bits.
-    pub(super) fn use_threads(&mut self, threads: usize) {
+    pub(crate) fn use_threads(&mut self, threads: usize) {
         self.solver = Solver::new(threads);
     }
 
@@ -208,7 +208,7 @@ impl Run {
     }
 
     /// Carries out `script`, which was checked, from here on instead of what was scheduled.
-    pub(super) fn follow(&mut self, script: Script) {
+    pub(crate) fn follow(&mut self, script: Script) {
         self.script = script;
         self.carry_out_due();
     }
@@ -330,7 +330,7 @@ impl Run {
     }
 
     /// Back to the bed with the present values.
-    pub(super) fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         let parameters = self.parameters.iter().map(|info| info.parameter.clone());
         let present = parameters.filter_map(|parameter| {
             let value = parameter.read(&self.world)?;
@@ -341,7 +341,7 @@ impl Run {
     }
 
     /// Back to the bed. Those of the `values` that differ from the bed's become commands at step zero.
-    pub(super) fn restart_with(&mut self, values: &[(Parameter, f64)]) {
+    pub(crate) fn restart_with(&mut self, values: &[(Parameter, f64)]) {
         self.restart();
         for (parameter, value) in values {
             if parameter.read(&self.world).is_some_and(|own| own != *value) {
@@ -371,7 +371,7 @@ fn sample_step(world: &World, sample: u64) -> u64 {
 }
 
 /// Refuses a command that cannot be carried out in `world`.
-pub(super) fn check(
+pub(crate) fn check(
     parameters: &[ParameterInfo],
     world: &World,
     command: &Command,

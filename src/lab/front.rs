@@ -3,22 +3,18 @@
 //! In: a scene, then [`Command`]s and ticks. Out: the newest state, the samples so far, what the run is doing. The run
 //! itself is moved by a driver, inline or on a thread of its own; which one does not show in the trajectory.
 
-use super::bed::BedStore;
+use super::Half;
 use super::driver::Driver;
 use super::engine::{Beside, Engine, Order, PairChange, SaveOrder, SavedFile, Update};
-use super::history::{History, Record};
-use super::parameter::ParameterInfo;
-use super::preparation::Preparation;
-use super::provenance::Provenance;
-use super::session::Session;
-use super::timeline::{Changed, Past, Timeline};
 use super::twin::Twin;
-use super::{Command, Half, Parameter, Run, ScriptedCommand, Snapshot, StampedCommand, check};
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
+use crate::run::{
+    BedStore, Changed, Command, History, Parameter, ParameterInfo, Past, Preparation, Provenance,
+    Record, Run, ScriptedCommand, Session, Snapshot, StampedCommand, Timeline, check,
+};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile, TimeStepAdvice, advise};
 use crate::world::World;
-use bevy::ecs::resource::Resource;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -127,7 +123,7 @@ pub enum Status {
 }
 
 /// A simulation as the outside sees it.
-#[derive(Resource)]
+#[cfg_attr(feature = "headless", derive(bevy::ecs::resource::Resource))]
 pub struct Simulation {
     id: u64,
     scene: Arc<Scene>,
@@ -343,7 +339,7 @@ impl Simulation {
         self.generation
     }
 
-    /// The samples of the present run so far, one every [`super::SAMPLE_INTERVAL`]; those after the state shown too.
+    /// The samples of the present run so far, one every [`crate::run::SAMPLE_INTERVAL`]; those after the state shown too.
     pub fn series(&self) -> &Series {
         &self.series
     }

@@ -5,7 +5,7 @@
 //! zero, the Coulomb bound uses the elastic part `K_n δ`, and there is no tangential dashpot, as in the paper's program.
 
 use super::{Coefficients, Law, Pairing, natural_log};
-use crate::solver::lanes::{Lanes, Row};
+use crate::lanes::{Lanes, Row};
 use std::f64::consts::PI;
 
 /// The law of Eqs. 3.3–3.5.

@@ -1,0 +1,49 @@
+//! A run: the trajectory of a scene, and all that is kept of it.
+//!
+//! In: a scene and commands. Out: states, samples, records that can be verified. [`Run`] knows nothing of wall-clock time,
+//! frames or threads: the same scene, seed and commands give the same bits.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `command` | everything a person can ask for |
+//! | `parameter`, `relabel` | the numbers that can change while a run goes on, and how they change a world |
+//! | `start` | the numbers that act from the next start on |
+//! | `script` | commands that are carried out by themselves: replay |
+//! | `trajectory` | the run itself: world, solver, samples, snapshots |
+//! | `timeline` | runs as something to hold: seek, branch, undo |
+//! | `history`, `keyframes` | what tells runs apart and what is known of them; states to come back to |
+//! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
+//! | `session`, `archive`, `shared` | all of that in one file |
+//! | `claim`, `provenance` | a state and what leads to it, as files state it; in a few words, for exported files |
+
+mod archive;
+mod bed;
+mod claim;
+mod command;
+mod history;
+mod keyframes;
+mod parameter;
+mod preparation;
+mod provenance;
+mod relabel;
+mod script;
+mod session;
+mod settling;
+mod shared;
+mod start;
+mod timeline;
+mod trajectory;
+
+pub use bed::BedStore;
+pub use claim::{Claim, VERSION, fingerprint};
+pub use command::{Command, Parameter, StampedCommand};
+pub use history::{History, Moment, Record};
+pub use parameter::{DisplayUnit, ParameterInfo};
+pub use preparation::{Preparation, Prepared, make_bed};
+pub use provenance::{Provenance, TABLES_METADATA};
+pub use script::{Script, ScriptError, ScriptedCommand};
+pub use session::{SESSION_EXTENSION, Session, SessionError};
+pub use start::{StartInfo, StartParameter, start_parameters};
+pub use timeline::{Changed, Past, Timeline};
+pub(crate) use trajectory::check;
+pub use trajectory::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
