@@ -7,8 +7,10 @@
 
 mod built_in;
 mod check;
+mod container;
 mod error;
 mod file;
+mod grains;
 mod lattice;
 mod mixture;
 mod outline;
@@ -22,7 +24,9 @@ pub use crate::physics::{
     Liquid as SceneLiquid, LiquidCase, PAPER_VOLUME, PairAngle, Rupture, SmallestGap,
 };
 pub use built_in::{BuiltIn, built_in};
+pub use container::{SceneContainer, ScenePlane, SceneTube};
 pub use error::SceneError;
+pub use grains::{SceneCellSpecies, SceneCells, SceneGrain, SceneGrains, SceneSpecies};
 pub use lattice::Lattice;
 pub use mixture::{SizeClass, size_classes, species_counts};
 pub use packing::{HeldCells, PackingError, StoredCells};
@@ -30,7 +34,7 @@ pub use set::seconds;
 pub use shape::{SceneBody, SceneShape};
 
 use file::SceneFile;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use ron::extensions::Extensions;
 use serde::{Deserialize, Serialize};
 use std::io::Read;
@@ -118,151 +122,6 @@ pub struct PairOverride {
     pub wet_friction: Option<f64>,
     /// Rolling friction, where it differs.
     pub rolling_friction: Option<f64>,
-}
-
-/// The walls of a scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum SceneContainer {
-    /// No walls at all.
-    Nothing,
-    /// A drum about the z axis, rim and both end plates turning as one body.
-    Drum {
-        /// Inner radius [m].
-        radius: f64,
-        /// Inner width [m].
-        width: f64,
-        /// Angular speed, positive anticlockwise seen from +z [rad/s].
-        speed: f64,
-        /// Name of its material.
-        material: String,
-    },
-    /// A closed box along the axes.
-    Box {
-        /// Lower corner [m].
-        min: DVec3,
-        /// Upper corner [m].
-        max: DVec3,
-        /// Name of its material.
-        material: String,
-    },
-    /// An unbounded floor at y = 0 for a column about the y axis.
-    Column {
-        /// Radius of the column, `R_i` [m].
-        radius: f64,
-        /// Height of the column, `H_i` [m].
-        height: f64,
-        /// Name of the floor's material.
-        material: String,
-        /// What holds the column at the start; nothing where it is let go at once.
-        tube: Option<SceneTube>,
-    },
-    /// Unbounded planes.
-    Planes(Vec<ScenePlane>),
-}
-
-/// A thin upright tube round a column, pulled up from time zero on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneTube {
-    /// Its speed upwards [m/s].
-    pub speed: f64,
-    /// Name of its material.
-    pub material: String,
-}
-
-/// An unbounded plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ScenePlane {
-    /// What people call it.
-    pub name: String,
-    /// Any point of it [m].
-    pub point: DVec3,
-    /// Normal towards the grains (made a unit vector when read).
-    pub normal: DVec3,
-    /// Velocity of its surface, along the plane as that of a belt [m/s].
-    pub velocity: DVec3,
-    /// Name of its material.
-    pub material: String,
-}
-
-/// The grains of a scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum SceneGrains {
-    /// The container is filled from below with `count` grains in all, then settled while it is at rest.
-    Fill {
-        /// Number of grains (given, or from the bulk fraction of the container's volume at a packing fraction).
-        count: usize,
-        /// Volume of all grains that a bulk fraction asks for [m³]; none where the count was given.
-        solid_volume: Option<f64>,
-        /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
-        species: Vec<SceneSpecies>,
-    },
-    /// Rounded Voronoi cells that fill the container, some of them taken away at random; nothing is settled.
-    Voronoi(SceneCells),
-    /// Each grain as listed; nothing is settled.
-    List(Vec<SceneGrain>),
-}
-
-/// Voronoi cells as grains, after Man et al. 2023: of one random point in each cell of a lattice.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneCells {
-    /// Size of a lattice cell [m].
-    pub cell: f64,
-    /// Rounding radius `R_s` of the grains [m].
-    pub rounding: f64,
-    /// Share of the cells' volume that becomes grains, `φ_i`.
-    pub solid_fraction: f64,
-    /// Part of the container's volume that the cells take, from below.
-    pub bulk_fraction: f64,
-    /// The file that the grains come from in place of being cut. The cell above is then a cube of their mean volume, the
-    /// rounding their smallest, and nothing is taken away.
-    pub packing: Option<StoredCells>,
-    /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
-    pub species: Vec<SceneCellSpecies>,
-}
-
-/// A kind of grain among Voronoi cells.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneCellSpecies {
-    /// What people call it.
-    pub name: String,
-    /// Name of its material.
-    pub material: String,
-    /// Share by number, 0 … 1.
-    pub share: f64,
-}
-
-/// A kind of grain in a filling.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneSpecies {
-    /// What people call it.
-    pub name: String,
-    /// Radius [m].
-    pub radius: f64,
-    /// Name of its material.
-    pub material: String,
-    /// Share by number, 0 … 1.
-    pub share: f64,
-}
-
-/// One grain of an explicit list.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneGrain {
-    /// Centre [m].
-    pub position: DVec3,
-    /// Velocity [m/s].
-    pub velocity: DVec3,
-    /// Angular velocity [rad/s].
-    pub spin: DVec3,
-    /// Radius [m]; of a polyhedron that of the sphere about its centroid that holds it before it is rounded.
-    pub radius: f64,
-    /// What it is.
-    pub shape: SceneShape,
-    /// Rotation from the shape's axes to those of the world, a unit quaternion.
-    pub orientation: DQuat,
-    /// Name of its material.
-    pub material: String,
-    /// Volume of the liquid film on it, where it is not its share of the scene's liquid [m³].
-    pub film: Option<f64>,
 }
 
 impl Scene {
@@ -421,56 +280,6 @@ impl Scene {
             }
             SceneGrains::Voronoi(_) | SceneGrains::List(_) => Vec::new(),
         }
-    }
-}
-
-/// Volume of the smallest of some ten thousand Voronoi cells, in lattice cells (one of 70 000 is smaller, with 0.16).
-const SMALLEST_CELL: f64 = 0.2;
-
-/// Part of a cell that a wall leaves where the cell's centroid lies inside of it, at least (Grünbaum 1960: (3/4)³).
-const SMALLEST_PART: f64 = 0.42;
-
-impl SceneContainer {
-    /// Whether it has a curved wall at the start, into which Voronoi cells are cut to fit.
-    pub fn cuts_cells(&self) -> bool {
-        matches!(self, Self::Drum { .. } | Self::Column { tube: Some(_), .. })
-    }
-}
-
-impl SceneCells {
-    /// Radius of the sphere of the volume of the smallest grains that it makes in `container` [m].
-    pub fn smallest_radius(&self, container: &SceneContainer) -> f64 {
-        let whole = SMALLEST_CELL * self.cell.powi(3);
-        shape::sphere_radius(if container.cuts_cells() {
-            SMALLEST_PART * whole
-        } else {
-            whole
-        })
-    }
-
-    /// Lattice cells that the bed takes.
-    pub fn cell_count(&self, container: &SceneContainer) -> usize {
-        let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
-        (volume / self.cell.powi(3)).round() as usize
-    }
-
-    /// Grains that the bed is made of: `π R_i² H_i` times cells per volume times `φ_i` for a column.
-    pub fn grain_count(&self, container: &SceneContainer) -> usize {
-        if let Some(packing) = &self.packing {
-            return packing.grains().len();
-        }
-        let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
-        (volume / self.cell.powi(3) * self.solid_fraction).round() as usize
-    }
-}
-
-/// Volume that Voronoi cells can fill [m³]; none of an open container.
-fn bed_volume(container: &SceneContainer) -> Option<f64> {
-    match container {
-        SceneContainer::Column { radius, height, .. } => {
-            Some(std::f64::consts::PI * radius * radius * height)
-        }
-        closed => check::volume(closed).ok(),
     }
 }
 

@@ -1,190 +1,24 @@
-//! The keys of a scene file, with their defaults and units.
+//! How a file spells the grains: a filling, Voronoi cells, or a list.
 //!
-//! In: RON. Out: a [`Scene`] whose values are not yet checked. This is the only place that knows how a file spells
-//! things; [`super::check`] is the only one that knows which values make sense.
-//!
-//! What the keys mean stands in `scenes/README.md`.
+//! In: the keys of `grains` and the container, whose volume a bulk fraction is of. Out:
+//! [`SceneGrains`]. Whether the values make sense is for [`crate::scene`]'s checks.
 
-use super::check::{check_container, fraction, volume};
-use super::error::Problem;
-use super::shape::rotation;
-use super::{
-    BridgeLaw, ContactLaw, FeatureRule, LiquidCase, PAPER_VOLUME, PairOverride, Scene,
-    SceneCellSpecies, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneLiquid,
-    SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, StoredCells, TimeStep,
+use super::{ROUNDING, either, metres, missing_length};
+use crate::scene::check::{check_container, fraction, volume};
+use crate::scene::error::Problem;
+use crate::scene::shape::rotation;
+use crate::scene::{
+    SceneCellSpecies, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneShape,
+    SceneSpecies, StoredCells,
 };
 use glam::{DQuat, DVec3};
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use std::f64::consts::PI;
-use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// A whole file.
-#[derive(Deserialize)]
-#[serde(rename = "Scene", deny_unknown_fields)]
-pub(super) struct SceneFile {
-    title: String,
-    #[serde(default)]
-    look_for: String,
-    #[serde(default)]
-    source: String,
-    materials: NamedMaterials,
-    #[serde(default)]
-    pairs: Vec<PairOverride>,
-    container: ContainerFile,
-    grains: GrainsFile,
-    #[serde(default)]
-    liquid: Option<LiquidFile>,
-    #[serde(default = "earth_gravity")]
-    gravity: DVec3,
-    law: Option<ContactLaw>,
-    #[serde(default)]
-    time_step: TimeStep,
-    #[serde(default = "paper_duration")]
-    duration: f64,
-    #[serde(default = "paper_output_interval")]
-    output_interval: f64,
-    #[serde(default = "first_seed")]
-    seed: u64,
-}
-
-fn earth_gravity() -> DVec3 {
-    DVec3::new(0.0, -9.81, 0.0)
-}
-
-fn paper_duration() -> f64 {
-    50.0
-}
-
-fn paper_output_interval() -> f64 {
-    0.1
-}
-
-fn first_seed() -> u64 {
-    1
-}
-
-/// A material. What it leaves out is the spheres' dry glass of Kasper et al. 2021, or the polyhedra of Man et al. 2023.
-#[derive(Deserialize)]
-#[serde(rename = "Material", default, deny_unknown_fields)]
-#[derive(Default)]
-struct MaterialFile {
-    youngs_modulus: Option<f64>,
-    poisson_ratio: Option<f64>,
-    density: Option<f64>,
-    restitution: Option<f64>,
-    friction: Option<f64>,
-    wet_friction: Option<f64>,
-    rolling_friction: Option<f64>,
-}
-
-/// What materials leave out.
-struct MaterialDefaults {
-    density: f64,
-    restitution: f64,
-    friction: f64,
-    rolling_friction: f64,
-}
-
-const GLASS: MaterialDefaults = MaterialDefaults {
-    density: 2500.0,
-    restitution: 0.95,
-    friction: 0.40,
-    rolling_friction: 0.01,
-};
-const POLYHEDRA: MaterialDefaults = MaterialDefaults {
-    density: 2650.0,
-    restitution: 0.1,
-    friction: 0.40,
-    rolling_friction: 0.0,
-};
-/// Springs of Man et al. 2023.
-const POLYHEDRA_LAW: ContactLaw = ContactLaw::Hooke {
-    normal_stiffness: 4000.0,
-    tangential_stiffness: 2000.0,
-    features: FeatureRule::Full,
-};
-/// Rounding of Man et al. 2023 [m].
-const ROUNDING: f64 = 1e-4;
-
-/// Materials in the order of the file, which is the order of their indices.
-struct NamedMaterials(Vec<(String, MaterialFile)>);
-
-impl<'de> Deserialize<'de> for NamedMaterials {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(InOrder)
-    }
-}
-
-struct InOrder;
-
-impl<'de> Visitor<'de> for InOrder {
-    type Value = NamedMaterials;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a map from names to materials")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-        let mut materials = Vec::new();
-        while let Some(entry) = map.next_entry()? {
-            materials.push(entry);
-        }
-        Ok(NamedMaterials(materials))
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(rename = "Container", deny_unknown_fields)]
-enum ContainerFile {
-    Nothing,
-    Drum {
-        radius: Option<f64>,
-        radius_mm: Option<f64>,
-        width: Option<f64>,
-        width_mm: Option<f64>,
-        speed: Option<f64>,
-        speed_rpm: Option<f64>,
-        material: String,
-    },
-    Box {
-        min: DVec3,
-        max: DVec3,
-        material: String,
-    },
-    Column {
-        radius: Option<f64>,
-        radius_mm: Option<f64>,
-        height: Option<f64>,
-        height_mm: Option<f64>,
-        material: String,
-        tube: Option<TubeFile>,
-    },
-    Planes(Vec<PlaneFile>),
-}
-
-#[derive(Deserialize)]
-#[serde(rename = "Tube", deny_unknown_fields)]
-struct TubeFile {
-    speed: f64,
-    material: Option<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename = "Plane", deny_unknown_fields)]
-struct PlaneFile {
-    name: Option<String>,
-    point: DVec3,
-    normal: DVec3,
-    #[serde(default)]
-    velocity: DVec3,
-    material: String,
-}
 
 #[derive(Deserialize)]
 #[serde(rename = "Grains", deny_unknown_fields)]
-enum GrainsFile {
+pub(super) enum GrainsFile {
     Fill {
         count: Option<u64>,
         bulk_fraction: Option<f64>,
@@ -273,144 +107,8 @@ enum OrientationFile {
     },
 }
 
-/// A liquid: a case of the paper's Table 1, whose values others may replace, or all of them.
-#[derive(Deserialize)]
-#[serde(rename = "Liquid", deny_unknown_fields)]
-struct LiquidFile {
-    case: Option<u8>,
-    surface_tension: Option<f64>,
-    contact_angle: Option<f64>,
-    contact_angle_deg: Option<f64>,
-    viscosity: Option<f64>,
-    viscosity_mpas: Option<f64>,
-    volume: Option<f64>,
-    volume_ml: Option<f64>,
-    #[serde(default)]
-    law: BridgeLawFile,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(rename = "BridgeLaw")]
-enum BridgeLawFile {
-    #[default]
-    AsPrinted,
-    AsCoded,
-    Choices(BridgeLaw),
-}
-
-impl SceneFile {
-    /// The scene it states; `folder` is the one it stands in. Numbers are as the file gives them, sensible or not.
-    pub fn into_scene(self, folder: &Path) -> Result<Scene, Problem> {
-        let container = self.container.into_container()?;
-        let grains = self.grains.into_grains(&container, folder)?;
-        let mut scene = Scene {
-            title: self.title,
-            look_for: self.look_for,
-            source: self.source,
-            materials: Vec::new(),
-            pairs: self.pairs,
-            container,
-            grains,
-            liquid: self.liquid.map(LiquidFile::into_liquid).transpose()?,
-            gravity: self.gravity,
-            law: ContactLaw::default(),
-            time_step: self.time_step,
-            duration: self.duration,
-            output_interval: self.output_interval,
-            seed: self.seed,
-        };
-        let (defaults, law) = if scene.is_polyhedral() {
-            (POLYHEDRA, POLYHEDRA_LAW)
-        } else {
-            (GLASS, ContactLaw::default())
-        };
-        scene.materials = self.materials.into_list(&defaults);
-        scene.law = self.law.unwrap_or(law);
-        Ok(scene)
-    }
-}
-
-impl NamedMaterials {
-    fn into_list(self, defaults: &MaterialDefaults) -> Vec<SceneMaterial> {
-        let with_name = |(name, file): (String, MaterialFile)| SceneMaterial {
-            name,
-            youngs_modulus: file.youngs_modulus.unwrap_or(63e6),
-            poisson_ratio: file.poisson_ratio.unwrap_or(0.21),
-            density: file.density.unwrap_or(defaults.density),
-            restitution: file.restitution.unwrap_or(defaults.restitution),
-            friction: file.friction.unwrap_or(defaults.friction),
-            wet_friction: file.wet_friction,
-            rolling_friction: file.rolling_friction.unwrap_or(defaults.rolling_friction),
-        };
-        self.0.into_iter().map(with_name).collect()
-    }
-}
-
-impl ContainerFile {
-    fn into_container(self) -> Result<SceneContainer, Problem> {
-        Ok(match self {
-            Self::Nothing => SceneContainer::Nothing,
-            Self::Drum {
-                radius,
-                radius_mm,
-                width,
-                width_mm,
-                speed,
-                speed_rpm,
-                material,
-            } => SceneContainer::Drum {
-                radius: either("container.radius", radius, "_mm", radius_mm.map(metres))?
-                    .unwrap_or(0.0605),
-                width: either("container.width", width, "_mm", width_mm.map(metres))?
-                    .unwrap_or(0.022),
-                speed: either("container.speed", speed, "_rpm", speed_rpm.map(per_second))?
-                    .unwrap_or(per_second(0.5)),
-                material,
-            },
-            Self::Box { min, max, material } => SceneContainer::Box { min, max, material },
-            Self::Column {
-                radius,
-                radius_mm,
-                height,
-                height_mm,
-                material,
-                tube,
-            } => SceneContainer::Column {
-                radius: either("container.radius", radius, "_mm", radius_mm.map(metres))?
-                    .unwrap_or(0.025),
-                height: either("container.height", height, "_mm", height_mm.map(metres))?
-                    .ok_or_else(|| missing_length("container", "height"))?,
-                tube: tube.map(|tube| SceneTube {
-                    speed: tube.speed,
-                    material: tube.material.unwrap_or_else(|| material.clone()),
-                }),
-                material,
-            },
-            Self::Planes(planes) => SceneContainer::Planes(
-                planes
-                    .into_iter()
-                    .enumerate()
-                    .map(|(index, plane)| plane.into_plane(index))
-                    .collect(),
-            ),
-        })
-    }
-}
-
-impl PlaneFile {
-    fn into_plane(self, index: usize) -> ScenePlane {
-        ScenePlane {
-            name: self.name.unwrap_or_else(|| format!("plane-{}", index + 1)),
-            point: self.point,
-            normal: self.normal.try_normalize().unwrap_or(self.normal),
-            velocity: self.velocity,
-            material: self.material,
-        }
-    }
-}
-
 impl GrainsFile {
-    fn into_grains(
+    pub(super) fn into_grains(
         self,
         container: &SceneContainer,
         folder: &Path,
@@ -653,92 +351,9 @@ impl OrientationFile {
     }
 }
 
-impl LiquidFile {
-    fn into_liquid(self) -> Result<SceneLiquid, Problem> {
-        let base = self.case.map(liquid_case).transpose()?;
-        let missing = |key: &str| {
-            Problem::new(
-                "liquid",
-                format!("has neither `case` nor `{key}`"),
-                "a `case` of the paper's Table 1, 1 to 7, or `viscosity`, `surface_tension` and `contact_angle`",
-            )
-        };
-        let of_case = |value: fn(&SceneLiquid) -> f64| base.as_ref().map(value);
-        let angle = self.contact_angle_deg.map(f64::to_radians);
-        let angle = either("liquid.contact_angle", self.contact_angle, "_deg", angle)?;
-        let viscosity = self.viscosity_mpas.map(|mpas| mpas / 1000.0);
-        let viscosity = either("liquid.viscosity", self.viscosity, "_mpas", viscosity)?;
-        let volume = self.volume_ml.map(|ml| ml * 1e-6);
-        let volume = either("liquid.volume", self.volume, "_ml", volume)?;
-        Ok(SceneLiquid {
-            surface_tension: self
-                .surface_tension
-                .or(of_case(|l| l.surface_tension))
-                .ok_or_else(|| missing("surface_tension"))?,
-            contact_angle: angle
-                .or(of_case(|l| l.contact_angle))
-                .ok_or_else(|| missing("contact_angle"))?,
-            viscosity: viscosity
-                .or(of_case(|l| l.viscosity))
-                .ok_or_else(|| missing("viscosity"))?,
-            volume: volume.unwrap_or(PAPER_VOLUME),
-            law: match self.law {
-                BridgeLawFile::AsPrinted => BridgeLaw::AS_PRINTED,
-                BridgeLawFile::AsCoded => BridgeLaw::AS_CODED,
-                BridgeLawFile::Choices(law) => law,
-            },
-        })
-    }
-}
-
-fn liquid_case(number: u8) -> Result<SceneLiquid, Problem> {
-    LiquidCase::of(number).map(LiquidCase::liquid).ok_or_else(|| {
-        Problem::value(
-            "liquid.case",
-            number.to_string(),
-            "a liquid of the paper's Table 1, 1 (water) to 7 (glycerol); a dry scene has no `liquid`",
-        )
-    })
-}
-
-fn metres(millimetres: f64) -> f64 {
-    millimetres / 1000.0
-}
-
-/// [rad/s]
-fn per_second(turns_per_minute: f64) -> f64 {
-    turns_per_minute * 2.0 * PI / 60.0
-}
-
-/// The value that one of two keys gives, in SI units.
-fn either(
-    path: &str,
-    si: Option<f64>,
-    suffix: &str,
-    converted: Option<f64>,
-) -> Result<Option<f64>, Problem> {
-    if si.is_some() && converted.is_some() {
-        let key = path.rsplit('.').next().unwrap_or(path);
-        return Err(Problem::new(
-            path,
-            format!("is given twice, as `{key}` and as `{key}{suffix}`"),
-            "one of the two",
-        ));
-    }
-    Ok(si.or(converted))
-}
-
 fn required_radius(holder: &str, si: Option<f64>, mm: Option<f64>) -> Result<f64, Problem> {
     either(&format!("{holder}.radius"), si, "_mm", mm.map(metres))?
         .ok_or_else(|| missing_length(holder, "radius"))
-}
-
-fn missing_length(holder: &str, key: &str) -> Problem {
-    Problem::new(
-        holder,
-        format!("has no `{key}`"),
-        format!("a length in m, or in mm as `{key}_mm`"),
-    )
 }
 
 fn given_count(
@@ -771,7 +386,7 @@ fn solid_volume(
 }
 
 /// Number of grains of these species that fill `solid_volume` [m³].
-pub(super) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
+pub(in crate::scene) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
     let grain_volume: f64 = species
         .iter()
         .map(|s| s.share * 4.0 / 3.0 * PI * s.radius.powi(3))

@@ -1,0 +1,75 @@
+//! The walls of a scene.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The walls of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SceneContainer {
+    /// No walls at all.
+    Nothing,
+    /// A drum about the z axis, rim and both end plates turning as one body.
+    Drum {
+        /// Inner radius [m].
+        radius: f64,
+        /// Inner width [m].
+        width: f64,
+        /// Angular speed, positive anticlockwise seen from +z [rad/s].
+        speed: f64,
+        /// Name of its material.
+        material: String,
+    },
+    /// A closed box along the axes.
+    Box {
+        /// Lower corner [m].
+        min: DVec3,
+        /// Upper corner [m].
+        max: DVec3,
+        /// Name of its material.
+        material: String,
+    },
+    /// An unbounded floor at y = 0 for a column about the y axis.
+    Column {
+        /// Radius of the column, `R_i` [m].
+        radius: f64,
+        /// Height of the column, `H_i` [m].
+        height: f64,
+        /// Name of the floor's material.
+        material: String,
+        /// What holds the column at the start; nothing where it is let go at once.
+        tube: Option<SceneTube>,
+    },
+    /// Unbounded planes.
+    Planes(Vec<ScenePlane>),
+}
+
+/// A thin upright tube round a column, pulled up from time zero on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneTube {
+    /// Its speed upwards [m/s].
+    pub speed: f64,
+    /// Name of its material.
+    pub material: String,
+}
+
+/// An unbounded plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScenePlane {
+    /// What people call it.
+    pub name: String,
+    /// Any point of it [m].
+    pub point: DVec3,
+    /// Normal towards the grains (made a unit vector when read).
+    pub normal: DVec3,
+    /// Velocity of its surface, along the plane as that of a belt [m/s].
+    pub velocity: DVec3,
+    /// Name of its material.
+    pub material: String,
+}
+
+impl SceneContainer {
+    /// Whether it has a curved wall at the start, into which Voronoi cells are cut to fit.
+    pub fn cuts_cells(&self) -> bool {
+        matches!(self, Self::Drum { .. } | Self::Column { tube: Some(_), .. })
+    }
+}
