@@ -1,6 +1,6 @@
 //! One number that tells whether two worlds are the same to the bit.
 
-use super::{Partner, World};
+use super::{Contact, Partner, Polyhedra, World};
 use glam::DVec3;
 use std::fmt;
 
@@ -21,7 +21,8 @@ impl fmt::Debug for StateHash {
 }
 
 impl World {
-    /// Hash of all that moves: clock, grains, contacts with their histories, polyhedra's orientations, the container's angle.
+    /// Hash of all that moves: clock, grains, contacts with their histories, the liquid, polyhedra's
+    /// orientations, the container's angle.
     pub fn hash(&self) -> StateHash {
         let mut hasher = blake3::Hasher::new();
         let mut number = |x: f64| {
@@ -30,64 +31,82 @@ impl World {
         number(self.time());
         number(self.clock.time_step);
         number(self.container.angle);
-        let grains = &self.grains;
-        for i in 0..grains.len() {
-            vectors(
-                &mut number,
-                [grains.position[i], grains.velocity[i], grains.spin[i]],
-            );
-            vectors(
-                &mut number,
-                [grains.force[i], grains.torque[i], grains.rolling_torque[i]],
-            );
-            number(grains.mass[i]);
-            number(f64::from(grains.species[i].0));
-            number(f64::from(grains.contact_count[i]));
-            grains.exchanged[i].into_iter().for_each(&mut number);
-        }
+        self.hash_grains(&mut number);
         for contact in &self.contacts {
-            number(f64::from(contact.grain));
-            match contact.partner {
-                Partner::Grain(j) => number(f64::from(j)),
-                Partner::Wall(w) => number(-1.0 - f64::from(w)),
-            }
-            vectors(&mut number, [contact.spring]);
-            if let Some(bridge) = &contact.bridge {
-                [bridge.volume, bridge.transfer]
-                    .into_iter()
-                    .for_each(&mut number);
-                [bridge.capillary, bridge.viscous]
-                    .into_iter()
-                    .for_each(&mut number);
-                vectors(&mut number, [bridge.drag]);
-            }
+            hash_contact(contact, &mut number);
         }
         if self.wetting().is_some() {
-            for i in 0..grains.len() {
-                number(grains.film[i]);
-                number(f64::from(grains.open_bridges[i]));
-                grains.liquid_loss[i].into_iter().for_each(&mut number);
-            }
-            number(self.ledger.ruptures as f64);
+            self.hash_liquid(&mut number);
         }
         if let Some(polyhedra) = &self.polyhedra {
-            for (turn, momentum) in polyhedra
-                .orientation
-                .iter()
-                .zip(&polyhedra.angular_momentum)
-            {
-                turn.to_array().into_iter().for_each(&mut number);
-                vectors(&mut number, [*momentum]);
-            }
-            for contact in &polyhedra.features {
-                [contact.overlap, contact.dashpot]
-                    .into_iter()
-                    .for_each(&mut number);
-                vectors(&mut number, [contact.spring]);
-            }
+            hash_polyhedra(polyhedra, &mut number);
         }
         StateHash(hasher.finalize())
     }
+
+    fn hash_grains(&self, number: &mut impl FnMut(f64)) {
+        let grains = &self.grains;
+        for i in 0..grains.len() {
+            let motion = [grains.position[i], grains.velocity[i], grains.spin[i]];
+            let load = [grains.force[i], grains.torque[i], grains.rolling_torque[i]];
+            vectors(number, motion);
+            vectors(number, load);
+            number(grains.mass[i]);
+            number(f64::from(grains.species[i].0));
+            number(f64::from(grains.contact_count[i]));
+            numbers(number, grains.exchanged[i]);
+        }
+    }
+
+    fn hash_liquid(&self, number: &mut impl FnMut(f64)) {
+        let grains = &self.grains;
+        for i in 0..grains.len() {
+            number(grains.film[i]);
+            number(f64::from(grains.open_bridges[i]));
+            numbers(number, grains.liquid_loss[i]);
+        }
+        number(self.ledger.ruptures as f64);
+    }
+}
+
+fn hash_contact(contact: &Contact, number: &mut impl FnMut(f64)) {
+    number(f64::from(contact.grain));
+    match contact.partner {
+        Partner::Grain(j) => number(f64::from(j)),
+        Partner::Wall(w) => number(-1.0 - f64::from(w)),
+    }
+    vectors(number, [contact.spring]);
+    if let Some(bridge) = &contact.bridge {
+        numbers(
+            number,
+            [
+                bridge.volume,
+                bridge.transfer,
+                bridge.capillary,
+                bridge.viscous,
+            ],
+        );
+        vectors(number, [bridge.drag]);
+    }
+}
+
+fn hash_polyhedra(polyhedra: &Polyhedra, number: &mut impl FnMut(f64)) {
+    let motions = polyhedra
+        .orientation
+        .iter()
+        .zip(&polyhedra.angular_momentum);
+    for (orientation, angular_momentum) in motions {
+        numbers(number, orientation.to_array());
+        vectors(number, [*angular_momentum]);
+    }
+    for contact in &polyhedra.features {
+        numbers(number, [contact.overlap, contact.dashpot]);
+        vectors(number, [contact.spring]);
+    }
+}
+
+fn numbers<const N: usize>(number: &mut impl FnMut(f64), values: [f64; N]) {
+    values.into_iter().for_each(number);
 }
 
 fn vectors<const N: usize>(number: &mut impl FnMut(f64), vectors: [DVec3; N]) {
