@@ -19,9 +19,9 @@ use glam::{DQuat, DVec3};
 use grainfall::measure::GrainQuantity;
 use grainfall::scene::Scene;
 use grainfall::simulation::{BedStore, Command, Options, Simulation, SimulationPlugin, Status};
-use grainfall::ui::{Desk, UiPlugin};
-use grainfall::view::{ColourBy, GrainBuffer, Meshing, Shown, ViewPlugin, ViewSettings};
-use grainfall::window::picture::CanvasPlugin;
+use grainfall::ui::{Dock, UiPlugin};
+use grainfall::view::{ColourBy, GrainBuffer, Meshing, ShownWorlds, ViewPlugin, ViewSettings};
+use grainfall::window::canvas::CanvasPlugin;
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
@@ -199,7 +199,7 @@ fn window(scene: Scene) -> App {
     while !is_ready(&app) {
         app.update();
     }
-    app.world_mut().resource_mut::<Desk>().show_all_panels();
+    app.world_mut().resource_mut::<Dock>().show_all_panels();
     for _ in 0..10 {
         app.update();
     }
@@ -218,7 +218,7 @@ fn step(app: &mut App) {
 }
 
 fn show(app: &mut App, world: &Arc<World>) {
-    let mut shown = app.world_mut().resource_mut::<Shown>();
+    let mut shown = app.world_mut().resource_mut::<ShownWorlds>();
     shown.show(Some(world.clone()));
 }
 

@@ -1,8 +1,8 @@
 //! How much of a scene the controls show: the few numbers that matter, or all of them.
 
-use super::value::Landmark;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::simulation::{Parameter, ParameterInfo};
+use crate::ui::widgets::value_row::Landmark;
 use bevy_egui::egui::{self, Id};
 
 /// How much the controls show.

@@ -1,14 +1,15 @@
 //! Which of Shift, Ctrl and Alt were held when a key was pressed, told key by key.
 //!
-//! In: the keys of a frame in their order. Out: the same events for egui, each with what was held at its own moment. As they
-//! come, all have what is held at the end of the frame: where a frame takes long, Ctrl and a key that are pressed and let
-//! go within one would do what the key alone does.
+//! In: the keys of a frame in their order. Out: the same events for egui, each with what was held
+//! at its own moment. As they come, all have what is held at the end of the frame: where a frame
+//! takes long, Ctrl and a key that are pressed and let go within one would do what the key alone
+//! does.
 
 use bevy::input::keyboard::{Key, KeyboardFocusLost, KeyboardInput};
 use bevy::prelude::*;
-use bevy_egui::egui::{self, Modifiers};
+use bevy_egui::egui::Modifiers;
 use bevy_egui::helpers::{bevy_to_egui_key, bevy_to_egui_physical_key};
-use bevy_egui::{EguiInput, PrimaryEguiContext};
+use bevy_egui::{EguiInput, PrimaryEguiContext, egui};
 
 /// Takes note in `held` of a key that is pressed or let go.
 fn follow(held: &mut Modifiers, input: &KeyboardInput) {
@@ -39,8 +40,8 @@ pub fn tell_modifiers(
     correct(inputs.read(), &mut held, events);
 }
 
-/// Gives each key among the `events`, which came of `inputs`, what was held then; a letter that Ctrl was held for is no
-/// text.
+/// Gives each key among the `events`, which came of `inputs`, what was held then; a letter that
+/// Ctrl was held for is no text.
 fn correct<'a>(
     inputs: impl Iterator<Item = &'a KeyboardInput>,
     held: &mut Modifiers,

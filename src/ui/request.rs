@@ -1,10 +1,12 @@
-//! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push requests, and one
-//! function ([`super::carry_out`]) fulfils them.
+//! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push
+//! requests, and one function ([`super::dispatch`]) fulfils them.
 
-use super::{Export, FilmOrder};
 use crate::scene::Scene;
 use crate::simulation::{Command, Half, Parameter};
+use crate::ui::plot_export::Export;
+use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::view::CameraRequest;
+use bevy::prelude::*;
 use std::path::PathBuf;
 
 /// Something a person asked for.
@@ -32,7 +34,8 @@ pub enum Request {
     ChooseFile,
     /// Open this: the path of a scene or a session, or a built-in scene's name.
     Open(String),
-    /// Start afresh with this scene in place of the present one, and the present values of the live parameters.
+    /// Start afresh with this scene in place of the present one, and the present values of the live
+    /// parameters.
     Start(Box<Scene>),
     /// Write the whole session to the file it has, or let the person choose one.
     Save,
@@ -50,16 +53,14 @@ pub enum Request {
     SaveChanges(PathBuf),
     /// Let the person choose where the picture of the window goes.
     ChoosePicture,
-    /// Write a picture of the window to this PNG file.
-    SavePicture(PathBuf),
     /// Let the person choose where this plot goes.
     ExportPlot(Box<Export>),
     /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.
     SavePlot(PathBuf),
     /// Let the person choose where a film of the picture goes.
     ChooseFilm,
-    /// Something asked of the recorder of films.
-    Film(FilmOrder),
+    /// Take a picture or a film, or end one.
+    Screenshot(ScreenshotOrder),
     /// Show a sheet over the window.
     Show(Sheet),
     /// End the program.
@@ -73,4 +74,15 @@ pub enum Sheet {
     Shortcuts,
     /// What the program is.
     About,
+}
+
+/// What has been asked for and not yet fulfilled.
+#[derive(Resource, Default)]
+pub struct Requests(pub(super) Vec<Request>);
+
+impl Requests {
+    /// Asks for `request`, as a panel would.
+    pub fn ask(&mut self, request: Request) {
+        self.0.push(request);
+    }
 }

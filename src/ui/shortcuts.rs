@@ -1,9 +1,9 @@
-//! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from it.
+//! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from
+//! it.
 
-use super::plots::{Way, to_avalanche};
-use super::transport::{allows, leap, play_or_pause, step_back};
-use super::{Request, Sheet};
 use crate::simulation::{Command, Simulation};
+use crate::ui::playback::{Way, allows, leap, play_or_pause, step_back, to_avalanche};
+use crate::ui::request::{Request, Sheet};
 use crate::view::{CameraRequest, Side};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
 
@@ -302,7 +302,8 @@ impl Shortcut {
     }
 }
 
-/// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet lies over the window.
+/// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet
+/// lies over the window.
 pub fn pressed(ctx: &egui::Context, simulation: Option<&Simulation>) -> Vec<Request> {
     let covered = ctx.memory(|memory| memory.top_modal_layer().is_some());
     if covered || ctx.text_edit_focused() {

@@ -1,12 +1,13 @@
 //! How the panels look: every colour, size and font of them stands here.
 //!
-//! In: dark or light. Out: egui's style for the whole window, and a [`Palette`] for what the panels paint themselves.
-//! The picture has its own colours in `view`.
+//! In: dark or light. Out: egui's style for the whole window, and a [`Palette`] for what the panels
+//! paint themselves. The picture has its own colours in `view`.
 
 use crate::view::Background;
+use bevy_egui::egui::style::WidgetVisuals;
 use bevy_egui::egui::{
     self, Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, TextStyle, Theme,
-    Visuals, style::WidgetVisuals, vec2,
+    Visuals, vec2,
 };
 
 /// Size of body text in points: readable at a projector.
@@ -96,7 +97,8 @@ const LIGHT: Palette = Palette {
     veil: Color32::from_rgba_premultiplied(0x90, 0x98, 0xA0, 0xA8),
 };
 
-/// Length of the dashes of the kept run of `index` on plots, in points, by which kept runs are told apart.
+/// Length of the dashes of the kept run of `index` on plots, in points, by which kept runs are told
+/// apart.
 pub fn dash(index: usize) -> f32 {
     const LENGTHS: [f32; 4] = [9.0, 4.0, 16.0, 2.0];
     LENGTHS[index % LENGTHS.len()]
@@ -191,7 +193,8 @@ pub fn show(ctx: &egui::Context, background: Background) {
     }
 }
 
-/// The default fonts; text falls back on the monospaced one for the symbols that only it has: ⟨ ⟩ ⁻ ′ →.
+/// The default fonts; text falls back on the monospaced one for the symbols that only it has: ⟨ ⟩ ⁻
+/// ′ →.
 fn fonts() -> egui::FontDefinitions {
     let mut fonts = egui::FontDefinitions::default();
     let families = &mut fonts.families;

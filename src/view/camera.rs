@@ -1,9 +1,11 @@
-//! Where the eye is: a camera that orbits a point, moved by the pointer over the free part of the window.
+//! Where the eye is: a camera that orbits a point, moved by the pointer over the free part of the
+//! window.
 //!
-//! In: drags and scrolls in egui points, requests, the points that should fit. Out: eye, rotation, visible height, and
-//! where a point of the world lands in the picture. Nothing here knows of Bevy's camera entity; the rig does.
+//! In: drags and scrolls in egui points, requests, the points that should fit. Out: eye, rotation,
+//! visible height, and where a point of the world lands in the picture. Nothing here knows of
+//! Bevy's camera entity; the rig does.
 
-use super::{CameraRequest, ProjectionKind, SAVED_VIEWS, Side};
+use crate::view::settings::{CameraRequest, ProjectionKind, SAVED_VIEWS, Side};
 use bevy::math::{EulerRot, Quat, Rect, Vec2, Vec3};
 use bevy::prelude::Resource;
 use bevy_egui::egui;
@@ -11,7 +13,8 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Vertical field of view of the perspective [rad].
 const FIELD_OF_VIEW: f32 = 0.5;
-/// Yaw and pitch of the view that most scenes open with: a little from the right and from above [rad].
+/// Yaw and pitch of the view that most scenes open with: a little from the right and from above
+/// [rad].
 pub(super) const HOME: (f32, f32) = (0.2, 0.17);
 /// Share of the picture that [`OrbitCamera::fit`] leaves free in all.
 const MARGIN: f32 = 0.09;
@@ -82,8 +85,8 @@ impl OrbitCamera {
         self.fits = false;
     }
 
-    /// Comes closer by a scroll (positive) at the point `at`, counted from the picture's middle with y downwards, which
-    /// stays where it is.
+    /// Comes closer by a scroll (positive) at the point `at`, counted from the picture's middle
+    /// with y downwards, which stays where it is.
     pub fn zoom(&mut self, scroll: f32, at: Vec2) {
         let before = self.metres_per_point();
         self.height = (self.height * (-scroll / 450.0).exp()).clamp(1e-5, 1e4);
@@ -105,7 +108,8 @@ impl OrbitCamera {
         self.fits = true;
     }
 
-    /// Does what was asked; the picture then fits the scene again, unless a view was kept or called back.
+    /// Does what was asked; the picture then fits the scene again, unless a view was kept or called
+    /// back.
     pub fn follow(&mut self, request: CameraRequest) {
         match request {
             CameraRequest::Save(number) => return self.save(number),
@@ -137,7 +141,8 @@ impl OrbitCamera {
         }
     }
 
-    /// From now on the scene's view is from `home`, yaw and pitch [rad]; turns there unless a person has turned away.
+    /// From now on the scene's view is from `home`, yaw and pitch [rad]; turns there unless a
+    /// person has turned away.
     pub(super) fn set_home(&mut self, home: (f32, f32)) {
         if (self.yaw, self.pitch) == self.home {
             (self.yaw, self.pitch) = home;
@@ -150,7 +155,8 @@ impl OrbitCamera {
         self.requests
     }
 
-    /// Moves so that all `points` [m] are just seen, in the middle, in a picture of the present shape.
+    /// Moves so that all `points` [m] are just seen, in the middle, in a picture of the present
+    /// shape.
     pub fn fit(&mut self, points: &[Vec3]) {
         if points.is_empty() {
             return;
@@ -183,7 +189,8 @@ impl OrbitCamera {
         Quat::from_euler(EulerRot::YXZ, self.yaw, -self.pitch, 0.0)
     }
 
-    /// Distance of the eye from the focus [m]; for the orthographic picture far enough to have all in front.
+    /// Distance of the eye from the focus [m]; for the orthographic picture far enough to have all
+    /// in front.
     pub fn distance(&self) -> f32 {
         let perspective = 0.5 * self.height / (0.5 * FIELD_OF_VIEW).tan();
         match self.projection {
@@ -207,8 +214,8 @@ impl OrbitCamera {
         self.height / self.viewport.y.max(1.0)
     }
 
-    /// Where the point `x` [m] lands in the picture, in points from its upper left corner, and how many points a metre
-    /// is there; `None` behind the eye.
+    /// Where the point `x` [m] lands in the picture, in points from its upper left corner, and how
+    /// many points a metre is there; `None` behind the eye.
     pub fn project(&self, x: Vec3) -> Option<(Vec2, f32)> {
         let seen = self.rotation().inverse() * (x - self.focus);
         let points_per_metre = match self.projection {
@@ -236,11 +243,11 @@ impl OrbitCamera {
     }
 }
 
-/// Lets the pointer over the free part of the window move the camera: drag to orbit, with the right or middle button or
-/// Shift to pan, scroll or pinch to zoom, double click to fit.
+/// Lets the pointer over the free part of the window move the camera: drag to orbit, with the right
+/// or middle button or Shift to pan, scroll or pinch to zoom, double click to fit.
 ///
-/// The response must come from `root.interact(free_rect, id, Sense::click_and_drag())` after the panels, so that egui
-/// decides whether the pointer is on the picture or on a panel.
+/// The response must come from `root.interact(free_rect, id, Sense::click_and_drag())` after the
+/// panels, so that egui decides whether the pointer is on the picture or on a panel.
 pub fn apply_response(response: &egui::Response, camera: &mut OrbitCamera) {
     let size = response.rect.size();
     camera.viewport = Vec2::new(size.x, size.y);
@@ -276,8 +283,8 @@ fn centre(points: &[Vec3]) -> Vec3 {
     (low + high) / 2.0
 }
 
-/// How far off the eye must be to see points (sideways, towards the viewer) within the half angle of this `tangent`, if
-/// it stands where that is nearest.
+/// How far off the eye must be to see points (sideways, towards the viewer) within the half angle
+/// of this `tangent`, if it stands where that is nearest.
 fn distance_to_fit(points: &[(f32, f32)], tangent: f32) -> f32 {
     let farthest = |side: f32| {
         let needed = points.iter().map(|(x, z)| z + side * x / tangent);
@@ -286,7 +293,8 @@ fn distance_to_fit(points: &[(f32, f32)], tangent: f32) -> f32 {
     f32::midpoint(farthest(1.0), farthest(-1.0))
 }
 
-/// Where the eye must stand sideways, at this `distance`, to have points (sideways, towards the viewer) in the middle.
+/// Where the eye must stand sideways, at this `distance`, to have points (sideways, towards the
+/// viewer) in the middle.
 fn middle(points: &[(f32, f32)], distance: f32) -> f32 {
     let mut eye = 0.0;
     // Each round divides the error by the ratio of distance to depth, at least about four.
@@ -339,7 +347,8 @@ mod tests {
                     };
                     camera.fit(&corners());
                     let area = shown(&camera);
-                    // The tight direction fills the picture but for the margin; both are centred, to a point.
+                    // The tight direction fills the picture but for the margin; both are centred,
+                    // to a point.
                     let off = (area.center() - viewport / 2.0).abs();
                     assert!(off.max_element() < 1.0, "{area:?}");
                     assert!(area.min.min_element() > 0.0, "{area:?}");

@@ -1,14 +1,15 @@
 //! The colours of the picture, all of them.
 //!
-//! In: a world and what to colour by. Out: one linear colour per grain and the legend that explains it.
+//! In: a world and what to colour by. Out: one linear colour per grain and the legend that explains
+//! it.
 
-use super::{Background, ColourBy, ColourMap, ColourRange, Legend};
 use crate::measure::GrainQuantity;
+use crate::view::settings::{Background, ColourBy, ColourMap, ColourRange, Legend};
 use crate::world::World;
 use bevy::color::{Color, ColorToComponents, LinearRgba};
 
-/// The colours of species in order of their index, readable side by side on a projector and by people with any kind of
-/// colour vision: they differ in lightness too.
+/// The colours of species in order of their index, readable side by side on a projector and by
+/// people with any kind of colour vision: they differ in lightness too.
 const SPECIES: [[u8; 3]; 6] = [
     [0xE9, 0xA8, 0x3F],
     [0x2F, 0x8F, 0xC4],
@@ -68,8 +69,9 @@ impl Scheme {
     }
 }
 
-/// What the colours of `worlds` mean, the same in all of them; `None` for species, or of no world. An automatic range stays as it was in `before` while it suits, so
-/// that colours do not jump from frame to frame.
+/// What the colours of `worlds` mean, the same in all of them; `None` for species, or of no world.
+/// An automatic range stays as it was in `before` while it suits, so that colours do not jump from
+/// frame to frame.
 pub fn legend(
     worlds: &[&World],
     colour_by: ColourBy,
@@ -135,7 +137,8 @@ pub(super) fn stride(count: usize) -> usize {
     count.div_ceil(SAMPLED).max(1)
 }
 
-/// The number that this share of `numbers` stays below, as far as these tell; none of none. Leaves them in another order.
+/// The number that this share of `numbers` stays below, as far as these tell; none of none. Leaves
+/// them in another order.
 pub(super) fn quantile(numbers: &mut [f64], share: f64) -> Option<f64> {
     let last = numbers.len().checked_sub(1)?;
     let rank = (share.clamp(0.0, 1.0) * last as f64) as usize;
@@ -166,7 +169,8 @@ fn sampled_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
     sampled.filter(|value| value.is_finite()).collect()
 }
 
-/// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four, at least 8.
+/// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four,
+/// at least 8.
 fn automatic_maximum(worlds: &[&World], quantity: GrainQuantity, before: Option<&Legend>) -> f64 {
     let Some(most) = quantile(&mut sampled_values(worlds, quantity), 0.98) else {
         return 1.0;
@@ -214,6 +218,23 @@ fn individual_lightness(i: usize) -> f32 {
     0.92 + 0.16 * (scrambled as f32 / 65_535.0)
 }
 
+/// sRGB colour of what is selected.
+pub(super) const SELECTED: [u8; 3] = [0xFF, 0xE0, 0x66];
+/// sRGB colours of trails, light ones: they lie over grains of every colour.
+const TRAILS: [[u8; 3]; 6] = [
+    SELECTED,
+    [0x7F, 0xD8, 0xFF],
+    [0xFF, 0x9A, 0xD5],
+    [0xA6, 0xE8, 0x8C],
+    [0xFF, 0xFF, 0xFF],
+    [0xFF, 0xA8, 0x5C],
+];
+
+/// The sRGB colour of the trail of this index.
+pub fn trail_colour(index: usize) -> [u8; 3] {
+    TRAILS[index % TRAILS.len()]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -250,7 +271,7 @@ mod tests {
 
     #[test]
     fn automatic_range_is_round_and_keeps_still_while_it_suits() {
-        let mut world = crate::view::tests::grains_in_a_row(100);
+        let mut world = crate::view::test_worlds::grains_in_a_row(100);
         let mut shown = None;
         // The largest speed of all but two grains, and the range that is shown then.
         for (speed, max) in [
@@ -291,7 +312,7 @@ mod tests {
 
     #[test]
     fn two_worlds_share_the_range_that_holds_the_grains_of_both() {
-        let [mut slow, mut fast] = [(); 2].map(|()| crate::view::tests::grains_in_a_row(100));
+        let [mut slow, mut fast] = [(); 2].map(|()| crate::view::test_worlds::grains_in_a_row(100));
         for (world, speed) in [(&mut slow, 0.01), (&mut fast, 0.3)] {
             world.grains.velocity.iter_mut().for_each(|v| v.x = speed);
         }

@@ -1,10 +1,11 @@
 //! The surface of a rounded polyhedron as triangles.
 //!
-//! In: a shape. Out: corners with normals, triangles, and the planes of its faces, all in the body frame. Every corner
-//! lies on the surface of the body: each face of the core is moved outward by the rounding radius as it is, a strip
-//! joins two faces along their edge and a cap closes each vertex. So faces are exact, and a strip runs at most
-//! `R (1 − cos ½θ)` inside the cylinder that it stands for, θ the angle between the faces' normals; its corners have the
-//! normals of the faces, so that it is lit as if it were round.
+//! In: a shape. Out: corners with normals, triangles, and the planes of its faces, all in the body
+//! frame. Every corner lies on the surface of the body: each face of the core is moved outward by
+//! the rounding radius as it is, a strip joins two faces along their edge and a cap closes each
+//! vertex. So faces are exact, and a strip runs at most `R (1 − cos ½θ)` inside the cylinder that
+//! it stands for, θ the angle between the faces' normals; its corners have the normals of the
+//! faces, so that it is lit as if it were round.
 
 use crate::world::Polyhedron;
 use bevy::math::{Vec3, Vec4};
@@ -129,7 +130,8 @@ impl HalfEdges {
         self.from_to[usize::from(a) * self.vertices + usize::from(b)]
     }
 
-    /// The corners round `vertex`, anticlockwise seen from outside; none where the faces do not close round it.
+    /// The corners round `vertex`, anticlockwise seen from outside; none where the faces do not
+    /// close round it.
     fn round(&self, vertex: u16, ring: &mut Vec<u32>) {
         ring.clear();
         let Some(first) = self.any[usize::from(vertex)] else {
@@ -215,7 +217,8 @@ mod tests {
             let back = half_edges.binary_search(&[*b, *a]);
             assert!(back.is_ok(), "the edge from {a} to {b} has one side only");
         }
-        // Core, a slab on each face, half a square column along each edge, a sixth of a cube at each vertex.
+        // Core, a slab on each face, half a square column along each edge, a sixth of a cube at
+        // each vertex.
         let (a, r) = (a as f32, r as f32);
         let expected = (2.0 * a).powi(3)
             + 6.0 * (2.0 * a).powi(2) * r

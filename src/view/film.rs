@@ -1,9 +1,12 @@
-//! Films as files: an animated GIF, a folder of PNG pictures, an MP4 where ffmpeg is on the search path.
+//! Films as files: an animated GIF, a folder of PNG pictures, an MP4 where ffmpeg is on the search
+//! path.
 //!
-//! In: pictures one after another. Out: the file, whole or not at all. All work is done on a thread of its own.
+//! In: pictures one after another. Out: the file, whole or not at all. All work is done on a thread
+//! of its own.
 
 use crate::files::{folder_beside, write_whole};
 use crate::simulation::Provenance;
+use crate::view::png::save_png;
 use bevy::image::Image;
 use bevy::math::URect;
 use std::fs;
@@ -174,14 +177,14 @@ struct Reel {
 }
 
 /// A picture: width, height, red, green, blue by rows.
-struct Picture {
+struct FilmPicture {
     size: [u32; 2],
     rgb: Vec<u8>,
 }
 
 impl Reel {
     /// The next picture; none after the last.
-    fn next(&mut self) -> io::Result<Option<Picture>> {
+    fn next(&mut self) -> io::Result<Option<FilmPicture>> {
         let shot = self.shots.recv();
         if self.cancelled.load(Ordering::Relaxed) {
             return Err(io::Error::new(
@@ -203,15 +206,16 @@ impl Reel {
     }
 
     /// The first picture.
-    fn first(&mut self) -> io::Result<Picture> {
+    fn first(&mut self) -> io::Result<FilmPicture> {
         self.next()?
             .ok_or_else(|| io::Error::other("it has no picture"))
     }
 }
 
 impl Shot {
-    /// The part asked for, in `size` where that is given: cut or filled with black where a window has changed.
-    fn develop(self, size: Option<[u32; 2]>) -> io::Result<Picture> {
+    /// The part asked for, in `size` where that is given: cut or filled with black where a window
+    /// has changed.
+    fn develop(self, size: Option<[u32; 2]>) -> io::Result<FilmPicture> {
         let dynamic = self.image.try_into_dynamic().map_err(io::Error::other)?;
         let all = dynamic.into_rgb8();
         let (width, height) = all.dimensions();
@@ -233,7 +237,7 @@ impl Shot {
             let to = 3 * (y * size[0]) as usize;
             rgb[to..to + columns].copy_from_slice(&all.as_raw()[start..start + columns]);
         }
-        Ok(Picture { size, rgb })
+        Ok(FilmPicture { size, rgb })
     }
 }
 
@@ -266,10 +270,10 @@ fn write_pictures(path: &Path, mut reel: Reel) -> io::Result<()> {
     let folder = folder_beside(path)?;
     let mut next = Some(reel.first()?);
     let mut number = 0;
-    while let Some(Picture { size, rgb }) = next {
+    while let Some(FilmPicture { size, rgb }) = next {
         let picture = image_of(size, rgb)?;
         let file = folder.path().join(format!("{number:05}.png"));
-        super::save_png(&picture, Some(&reel.from), &file)?;
+        save_png(&picture, Some(&reel.from), &file)?;
         reel.done();
         number += 1;
         next = reel.next()?;
@@ -344,7 +348,7 @@ fn write_video(path: &Path, program: &Path, mut reel: Reel) -> io::Result<()> {
     fs::rename(file, path)
 }
 
-fn feed(child: &mut std::process::Child, first: Picture, reel: &mut Reel) -> io::Result<()> {
+fn feed(child: &mut std::process::Child, first: FilmPicture, reel: &mut Reel) -> io::Result<()> {
     let mut input = child.stdin.take();
     let mut next = Some(first);
     while let (Some(input), Some(picture)) = (&mut input, next) {

@@ -1,14 +1,17 @@
-//! What lies between grains or starts at them: force chains, liquid bridges, velocity arrows, drawn to scale.
+//! What lies between grains or starts at them: force chains, liquid bridges, velocity arrows, drawn
+//! to scale.
 //!
-//! In: the world shown and what of it is to be seen. Out: one draw of round bars, and what their thickness and length mean.
-//! A bar of a force goes from centre to centre, as thick as the force is large; one that pulls has a waist. A bridge is as
-//! thick as its volume makes it. An arrow tapers to its tip.
+//! In: the world shown and what of it is to be seen. Out: one draw of round bars, and what their
+//! thickness and length mean. A bar of a force goes from centre to centre, as thick as the force is
+//! large; one that pulls has a waist. A bridge is as thick as its volume makes it. An arrow tapers
+//! to its tip.
 
-use super::colour::{linear, quantile, round_up, stride};
-use super::grains::CutPlanes;
-use super::quads::{self, quads};
-use super::{LinkScales, Shown, ViewSettings, layers};
 use crate::simulation::Half;
+use crate::view::colour::{linear, quantile, round_up, stride};
+use crate::view::grain_buffer::CutPlanes;
+use crate::view::quads::{self, quads};
+use crate::view::settings::{Cut, LinkScales, ViewSettings};
+use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
 use crate::world::{Contact, Partner, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
@@ -25,9 +28,10 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 const SHADER: Handle<Shader> = uuid_handle!("c1a9b0de-5f35-4a25-8a53-71f5a2f0cb21");
+
 /// What a bar stands for; `as usize` gives its place in the palette.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum LinkKind {
     /// A force that pushes.
     Push,
     /// A force that pulls.
@@ -38,7 +42,7 @@ pub(super) enum Kind {
     Velocity,
 }
 
-impl Kind {
+impl LinkKind {
     const ALL: [Self; 4] = [Self::Push, Self::Pull, Self::Liquid, Self::Velocity];
 
     /// sRGB.
@@ -74,7 +78,7 @@ pub(super) fn plugin(app: &mut App) {
     );
     app.add_plugins(MaterialPlugin::<LinkMaterial>::default())
         .add_systems(Startup, spawn)
-        .add_systems(Update, update.in_set(super::ViewSystems::Draw));
+        .add_systems(Update, update.in_set(ViewSystems::Draw));
 }
 
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
@@ -82,13 +86,13 @@ struct LinkMaterial {
     #[storage(0, read_only)]
     links: Handle<ShaderBuffer>,
     #[uniform(1)]
-    palette: Palette,
+    palette: LinkColours,
 }
 
-/// The linear colour of each [`Kind`].
+/// The linear colour of each [`LinkKind`].
 #[derive(Clone, Copy, ShaderType)]
-struct Palette {
-    colours: [Vec4; Kind::ALL.len()],
+struct LinkColours {
+    colours: [Vec4; LinkKind::ALL.len()],
 }
 
 impl Material for LinkMaterial {
@@ -118,7 +122,8 @@ impl Material for LinkMaterial {
     }
 }
 
-/// A bar as the shader reads it, small: a picture of the tallest columns has a quarter of a million.
+/// A bar as the shader reads it, small: a picture of the tallest columns has a quarter of a
+/// million.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct Link {
@@ -126,12 +131,12 @@ struct Link {
     /// The larger of the radii at both ends.
     radius: f32,
     to: [f32; 3],
-    /// Radii at both ends in 255ths of the larger one, and the [`Kind`].
+    /// Radii at both ends in 255ths of the larger one, and the [`LinkKind`].
     shape: [u8; 4],
 }
 
 impl Link {
-    fn new(ends: [DVec3; 2], radii: [f64; 2], kind: Kind) -> Self {
+    fn new(ends: [DVec3; 2], radii: [f64; 2], kind: LinkKind) -> Self {
         let radius = radii[0].max(radii[1]);
         let share = |r: f64| (255.0 * r / radius).round() as u8;
         Self {
@@ -160,8 +165,8 @@ fn spawn(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<LinkMaterial>>,
 ) {
-    let colours = Kind::ALL.map(|kind| Vec3::from(linear(kind.colour())).extend(1.0));
-    let palette = Palette { colours };
+    let colours = LinkKind::ALL.map(|kind| Vec3::from(linear(kind.colour())).extend(1.0));
+    let palette = LinkColours { colours };
     for half in Half::ALL {
         commands.spawn((
             half,
@@ -179,11 +184,11 @@ fn spawn(
 }
 
 /// What decides the links beside the world.
-type Choice = (bool, bool, bool, Option<super::Cut>);
+type Choice = (bool, bool, bool, Option<Cut>);
 
 /// Draws the links of the worlds shown when they or the choice are others.
 fn update(
-    shown: Res<Shown>,
+    shown: Res<ShownWorlds>,
     mut settings: ResMut<ViewSettings>,
     mut last: Local<Option<Choice>>,
     mut halves: Query<(
@@ -240,7 +245,8 @@ fn update(
     }
 }
 
-/// For how many of them a mesh and a buffer are made: those there are while neither too small nor much too large.
+/// For how many of them a mesh and a buffer are made: those there are while neither too small nor
+/// much too large.
 fn room_for(count: usize, room: usize) -> usize {
     if (count..=2 * count).contains(&room) {
         room
@@ -301,7 +307,7 @@ impl Links {
         }
     }
 
-    fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], kind: Kind) {
+    fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], kind: LinkKind) {
         self.drawn.push(Link::new(ends, radii, kind));
     }
 
@@ -313,12 +319,12 @@ impl Links {
         let [from, to] = ends(world, contact);
         let thick = FORCE_RADIUS * radius * share.min(LARGEST);
         if contact.force.dot(to - from) <= 0.0 {
-            self.push([from, to], [thick; 2], Kind::Push);
+            self.push([from, to], [thick; 2], LinkKind::Push);
             return;
         }
         let (middle, thin) = (0.5 * (from + to), WAIST * thick);
-        self.push([from, middle], [thick, thin], Kind::Pull);
-        self.push([middle, to], [thin, thick], Kind::Pull);
+        self.push([from, middle], [thick, thin], LinkKind::Pull);
+        self.push([middle, to], [thin, thick], LinkKind::Pull);
     }
 
     fn bridge(&mut self, world: &World, contact: &Contact) {
@@ -338,14 +344,14 @@ impl Links {
             from + normal * inside(radii[0]),
             to - normal * inside(radii[1]),
         ];
-        self.push(ends, [neck; 2], Kind::Liquid);
+        self.push(ends, [neck; 2], LinkKind::Liquid);
     }
 
     fn arrows(&mut self, world: &World, reference: f64, radius: f64) {
         for (x, v) in world.grains.position.iter().zip(&world.grains.velocity) {
             if v.length() > SMALLEST * reference {
                 let tip = *x + *v * (ARROW_LENGTH * radius / reference);
-                self.push([*x, tip], [ARROW_RADIUS * radius, 0.0], Kind::Velocity);
+                self.push([*x, tip], [ARROW_RADIUS * radius, 0.0], LinkKind::Velocity);
             }
         }
     }
@@ -364,8 +370,9 @@ fn ends(world: &World, contact: &Contact) -> [DVec3; 2] {
     [from, to]
 }
 
-/// Radius of the cylinder of liquid between two spheres of these `radii` at this `gap` that holds `volume` [m³]: of
-/// `V = π q (D + q / 4 r*)`, with `q` the square of the radius, in the spheres' parabolas.
+/// Radius of the cylinder of liquid between two spheres of these `radii` at this `gap` that holds
+/// `volume` [m³]: of `V = π q (D + q / 4 r*)`, with `q` the square of the radius, in the spheres'
+/// parabolas.
 fn neck_radius(volume: f64, gap: f64, radii: [f64; 2]) -> f64 {
     let effective = radii[0] * radii[1] / (radii[0] + radii[1]);
     let q = 2.0 * effective * ((gap * gap + volume / (PI * effective)).sqrt() - gap);
@@ -434,7 +441,7 @@ mod tests {
 
     #[test]
     fn a_bar_is_as_thick_as_its_force_and_a_pull_has_a_waist() {
-        let mut world = crate::view::tests::grains_in_a_row(2);
+        let mut world = crate::view::test_worlds::grains_in_a_row(2);
         let contact = |force: DVec3| Contact {
             grain: 0,
             partner: Partner::Grain(1),
@@ -457,8 +464,8 @@ mod tests {
         let pull = bars(0.5 * along, &mut world);
         assert_eq!(pull.len(), 2);
         // A waist of 0.35 in 255ths.
-        assert_eq!(pull[0].shape, [255, 89, Kind::Pull as u8, 0]);
-        assert_eq!(pull[1].shape, [89, 255, Kind::Pull as u8, 0]);
+        assert_eq!(pull[0].shape, [255, 89, LinkKind::Pull as u8, 0]);
+        assert_eq!(pull[1].shape, [89, 255, LinkKind::Pull as u8, 0]);
         assert!(bars(DVec3::splat(f64::NAN), &mut world).is_empty());
     }
 }

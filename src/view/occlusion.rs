@@ -1,8 +1,10 @@
-//! How much of the sky neighbouring grains hide from each grain's surface, as a soft shadow in the gaps of a packing.
+//! How much of the sky neighbouring grains hide from each grain's surface, as a soft shadow in the
+//! gaps of a packing.
 //!
-//! In: centres and radii. Out: per grain a function of the surface normal, `c + b·n + n·Q n` with a traceless symmetric
-//! `Q`: the first three orders of spherical harmonics of what the neighbours hide. It is a picture's shadow, smooth in
-//! the positions so that nothing flickers; it is no measure. Walls hide nothing.
+//! In: centres and radii. Out: per grain a function of the surface normal, `c + b·n + n·Q n` with a
+//! traceless symmetric `Q`: the first three orders of spherical harmonics of what the neighbours
+//! hide. It is a picture's shadow, smooth in the positions so that nothing flickers; it is no
+//! measure. Walls hide nothing.
 
 use bevy::math::{USizeVec3, Vec3};
 use bevy::tasks::futures::check_ready;
@@ -19,14 +21,16 @@ pub(super) struct Occlusion {
     pub quadrupole: [f32; 5],
 }
 
-/// First three Legendre coefficients of the share of the sky that a touching sphere of the same size hides, over the
-/// cosine between normal and direction: of `(2μ − 1)/s³`, `s² = 5 − 4μ`, for μ > 1/2.
+/// First three Legendre coefficients of the share of the sky that a touching sphere of the same
+/// size hides, over the cosine between normal and direction: of `(2μ − 1)/s³`, `s² = 5 − 4μ`, for μ
+/// > 1/2.
 const TOUCHING: [f32; 3] = [0.0670, 0.1764, 0.2252];
 /// Gap beyond which a neighbour hides nothing, in its radii.
 const RANGE: f32 = 1.0;
 
 impl Occlusion {
-    /// Adds a neighbour in the direction `towards` (a unit vector) that hides `strength` times what a touching one does.
+    /// Adds a neighbour in the direction `towards` (a unit vector) that hides `strength` times what
+    /// a touching one does.
     fn add(&mut self, towards: Vec3, strength: f32) {
         let [mean, gradient, quadrupole] = TOUCHING.map(|c| c * strength);
         let Vec3 { x, y, z } = towards;
@@ -49,7 +53,8 @@ impl Occlusion {
     }
 }
 
-/// The shadows of all spheres, which follow them round by round beside the frames, so that no frame waits for them.
+/// The shadows of all spheres, which follow them round by round beside the frames, so that no frame
+/// waits for them.
 #[derive(Default)]
 pub(super) struct Shadows {
     hidden: Vec<Occlusion>,
@@ -76,8 +81,9 @@ impl Shadows {
         self.is_stale = true;
     }
 
-    /// Takes over a round that has ended, and begins one where the `spheres` (centre, radius) have changed since; those for
-    /// which `absent` holds hide nothing. Whether the shadows are others now.
+    /// Takes over a round that has ended, and begins one where the `spheres` (centre, radius) have
+    /// changed since; those for which `absent` holds hide nothing. Whether the shadows are others
+    /// now.
     pub(super) fn follow(
         &mut self,
         spheres: &[(Vec3, f32)],
@@ -112,7 +118,7 @@ impl Shadows {
 #[derive(Default)]
 struct Round {
     spheres: Vec<(Vec3, f32)>,
-    cells: Cells,
+    cells: ShadowCells,
     hidden: Vec<Occlusion>,
 }
 
@@ -130,17 +136,19 @@ impl Round {
     }
 }
 
-/// What a sphere of radius `other` at a `gap` hides from one of radius `own`, in what a touching equal one does.
+/// What a sphere of radius `other` at a `gap` hides from one of radius `own`, in what a touching
+/// equal one does.
 fn strength(gap: f32, own: f32, other: f32) -> f32 {
     let fade = (1.0 - gap.max(0.0) / (RANGE * other)).max(0.0);
-    // Seen from the surface, a sphere covers a share of the sky that goes with the square of radius over distance.
+    // Seen from the surface, a sphere covers a share of the sky that goes with the square of radius
+    // over distance.
     let size = (2.0 * other / (own + other)).min(1.5);
     fade * fade * size * size
 }
 
 /// Spheres in the order of the cubic cells that their centres are in.
 #[derive(Default)]
-struct Cells {
+struct ShadowCells {
     low: Vec3,
     cell: f32,
     size: USizeVec3,
@@ -162,7 +170,7 @@ struct Sorted {
     sphere: u32,
 }
 
-impl Cells {
+impl ShadowCells {
     /// Sorts `spheres`; false where their places are no numbers or none has a size.
     fn sort(&mut self, spheres: &[(Vec3, f32)], absent: impl Fn(Vec3) -> bool) -> bool {
         let (mut low, mut high, mut largest) = (Vec3::INFINITY, Vec3::NEG_INFINITY, 0.0_f32);
@@ -212,7 +220,8 @@ impl Cells {
         x + self.size.x * (y + self.size.y * z)
     }
 
-    /// Calls `visit` with all spheres near the one at `place` in the order of cells, and with some that are not.
+    /// Calls `visit` with all spheres near the one at `place` in the order of cells, and with some
+    /// that are not.
     fn for_near(&self, place: usize, mut visit: impl FnMut(&Sorted)) {
         let at = self.cell_at(self.sorted[place].centre);
         let from = at.saturating_sub(USizeVec3::ONE);
@@ -249,7 +258,8 @@ impl Cells {
 mod tests {
     use super::*;
 
-    /// Share of the sky that a touching equal sphere at direction cosine `mu` hides, as the module says.
+    /// Share of the sky that a touching equal sphere at direction cosine `mu` hides, as the module
+    /// says.
     fn touching(mu: f32) -> f32 {
         let s2 = 5.0 - 4.0 * mu;
         ((2.0 * mu - 1.0) / (s2 * s2.sqrt())).max(0.0)
@@ -322,7 +332,7 @@ mod tests {
     fn pairs_found_by_cells_are_those_found_by_looking_at_all() {
         let spheres = scattered();
         let near = |a: Vec3, b: Vec3| a.distance_squared(b) < 2.25;
-        let mut cells = Cells::default();
+        let mut cells = ShadowCells::default();
         assert!(cells.sort(&spheres, |_| false));
         let mut pairs = 0;
         for place in 0..spheres.len() {

@@ -1,41 +1,33 @@
-//! What is written into the picture: scale bar, simulated time, speed relative to real time, and what the colours mean.
+//! What is written into the picture: scale bar, simulated time, speed relative to real time, and
+//! what the colours mean.
 //!
-//! In: the free part of the window, camera, settings and what is shown. Out: egui shapes. Nothing here reacts to the
-//! pointer but [`viewport_ui`], which hands it to the camera.
+//! In: the free part of the window, camera, settings and what is shown. Out: egui shapes. Nothing
+//! here reacts to the pointer.
 
-use super::camera::apply_response;
-use super::colour::{Scheme, species_colour, stride};
-use super::container::ring_distance;
-use super::grains::CutPlanes;
-use super::links::Kind;
-use super::pick::pick;
-use super::{Axis, ColourMap, Legend, OrbitCamera, ViewSettings};
 use crate::simulation::Half;
+use crate::view::camera::OrbitCamera;
+use crate::view::colour::{SELECTED, Scheme, species_colour, stride, trail_colour};
+use crate::view::framing::ring_distance;
+use crate::view::grain_buffer::CutPlanes;
+use crate::view::halves::BETWEEN;
+use crate::view::links::LinkKind;
+use crate::view::scale::{Prefixed, ScaleBar, length, short_number, with_unit};
+use crate::view::settings::{Axis, ColourMap, Legend, ViewSettings};
 use crate::world::{self, World};
 use bevy::color::{Color, ColorToPacked};
 use bevy::math::{Vec2, Vec3};
 use bevy_egui::egui::{
-    Align2, Color32, CornerRadius, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape,
-    Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2, vec2,
+    Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, StrokeKind,
+    pos2, vec2,
 };
 
 /// Distance of everything from the edge of the picture, in points.
 const INSET: f32 = 18.0;
-/// sRGB colour of what is selected.
-const SELECTED: [u8; 3] = [0xFF, 0xE0, 0x66];
-/// sRGB colours of trails, light ones: they lie over grains of every colour.
-const TRAILS: [[u8; 3]; 6] = [
-    SELECTED,
-    [0x7F, 0xD8, 0xFF],
-    [0xFF, 0x9A, 0xD5],
-    [0xA6, 0xE8, 0x8C],
-    [0xFF, 0xFF, 0xFF],
-    [0xFF, 0xA8, 0x5C],
-];
 /// Length that the scale bar does not exceed, in points.
 const LONGEST_BAR: f32 = 180.0;
 
-/// What the overlay of one half of the picture, or of all of it, says beside what the settings know.
+/// What the overlay of one half of the picture, or of all of it, says beside what the settings
+/// know.
 #[derive(Clone, Debug)]
 pub struct Caption<'a> {
     /// The world shown.
@@ -46,88 +38,20 @@ pub struct Caption<'a> {
     pub title: Option<String>,
 }
 
-/// Where something is written: which half of the picture, and whether it has the left or the right edge of all of it.
+/// Where something is written: which half of the picture, and whether it has the left or the right
+/// edge of all of it.
 #[derive(Clone, Copy)]
-struct Part {
-    half: Half,
-    is_first: bool,
-    is_last: bool,
-}
-
-/// Room between two halves, in points.
-const BETWEEN: f32 = 2.0;
-
-/// `rect` in `count` equal parts, from left to right.
-pub(super) fn parts(rect: Rect, count: usize) -> impl Iterator<Item = Rect> {
-    let width = ((rect.width() + BETWEEN) / count as f32 - BETWEEN).max(0.0);
-    (0..count).map(move |i| {
-        let left = rect.left() + i as f32 * (width + BETWEEN);
-        Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()))
-    })
-}
-
-/// The free part of the window: call it after all panels with what they left. The pointer moves the camera there, the
-/// picture is fitted into it, and the overlay is drawn; twice, side by side, where there are two `captions`.
-pub fn viewport_ui(
-    ui: &mut Ui,
-    captions: &[Caption],
-    settings: &mut ViewSettings,
-    camera: &mut OrbitCamera,
-) {
-    let free = ui.available_rect_before_wrap();
-    settings.free_rect = Some(free);
-    settings.pixels_per_point = ui.ctx().pixels_per_point();
-    let halves = Half::ALL.into_iter().zip(captions);
-    for (rect, (half, caption)) in parts(free, captions.len()).zip(halves) {
-        let response = ui.interact(rect, Id::new(("picture", half)), Sense::click_and_drag());
-        response.widget_info(|| {
-            let title = caption
-                .title
-                .as_ref()
-                .map_or_else(String::new, |title| format!(": {title}"));
-            WidgetInfo::labeled(WidgetType::Image, true, format!("Picture{title}"))
-        });
-        apply_response(&response, camera);
-        click(&response, half, caption, settings, camera);
-        if settings.show_overlay {
-            let part = Part {
-                half,
-                is_first: half == Half::Left,
-                is_last: half.index() + 1 == captions.len(),
-            };
-            overlay(&ui.painter_at(rect), rect, caption, part, settings, camera);
-        }
-    }
-}
-
-/// Puts the grain that is clicked on under the microscope; with Shift, traces it.
-fn click(
-    response: &Response,
-    half: Half,
-    caption: &Caption,
-    settings: &mut ViewSettings,
-    camera: &OrbitCamera,
-) {
-    let (Some(world), Some(at)) = (caption.world, response.interact_pointer_pos()) else {
-        return;
-    };
-    if !response.clicked() {
-        return;
-    }
-    settings.focus = half;
-    let at = at - response.rect.min;
-    let picked = pick(world, camera, settings, Vec2::new(at.x, at.y));
-    if response.ctx.input(|input| input.modifiers.shift) {
-        if let Some(grain) = picked {
-            settings.trace(grain);
-        }
-    } else if picked != settings.selected {
-        (settings.selected, settings.beside) = (picked, None);
-    }
+pub(super) struct Part {
+    /// Which half.
+    pub(super) half: Half,
+    /// Whether it has the left edge of the whole picture.
+    pub(super) is_first: bool,
+    /// Whether it has the right edge of the whole picture.
+    pub(super) is_last: bool,
 }
 
 /// Draws the overlay of one `part` into `rect`.
-fn overlay(
+pub(super) fn overlay(
     painter: &Painter,
     rect: Rect,
     caption: &Caption,
@@ -183,7 +107,8 @@ fn overlay(
     }
 }
 
-/// What tells a half from the other, above it; framed where the panels describe it. Returns where it stands.
+/// What tells a half from the other, above it; framed where the panels describe it. Returns where
+/// it stands.
 fn heading(ink: &Ink, rect: Rect, title: &str, is_described: bool) -> Rect {
     let font = FontId::proportional(16.0);
     let room = (rect.width() - 24.0).max(1.0);
@@ -230,7 +155,8 @@ fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
     }
 }
 
-/// The distance of every fifth ring on the floor from the axis of a column, to the right before it, where no grains lie.
+/// The distance of every fifth ring on the floor from the axis of a column, to the right before it,
+/// where no grains lie.
 fn ring_labels(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, radius: f64) {
     const LABELS: usize = 8;
     let step = 5.0 * ring_distance(radius);
@@ -379,11 +305,6 @@ fn outlined(ink: &Ink, at: Pos2, text: &str, colour: Color32) {
     ink.painter.galley(place.min, text, colour);
 }
 
-/// The sRGB colour of the trail of this index.
-pub fn trail_colour(index: usize) -> [u8; 3] {
-    TRAILS[index % TRAILS.len()]
-}
-
 /// The directions of the axes.
 fn axes(ink: &Ink, at: Pos2, camera: &OrbitCamera) {
     const LENGTH: f32 = 30.0;
@@ -402,7 +323,7 @@ fn links(ink: &Ink, corner: Pos2, camera: &OrbitCamera, settings: &ViewSettings)
     let scales = &settings.link_scales;
     let points = |metres: f64| (metres / f64::from(camera.metres_per_point())) as f32;
     let mut at = corner;
-    let mut line = |kind: Kind, size: bevy_egui::egui::Vec2, text: String| {
+    let mut line = |kind: LinkKind, size: bevy_egui::egui::Vec2, text: String| {
         let swatch = Rect::from_min_size(at - vec2(0.0, 0.5 * size.y), size);
         ink.painter
             .rect_filled(swatch, CornerRadius::same(2), rgb(kind.colour()));
@@ -412,11 +333,11 @@ fn links(ink: &Ink, corner: Pos2, camera: &OrbitCamera, settings: &ViewSettings)
     };
     if let Some(speed) = scales.speed {
         let text = with_unit(speed, "m/s");
-        line(Kind::Velocity, vec2(points(scales.length), 3.0), text);
+        line(LinkKind::Velocity, vec2(points(scales.length), 3.0), text);
     }
     if scales.liquid {
         line(
-            Kind::Liquid,
+            LinkKind::Liquid,
             vec2(26.0, 10.0),
             "liquid bridges, to scale".to_owned(),
         );
@@ -424,22 +345,16 @@ fn links(ink: &Ink, corner: Pos2, camera: &OrbitCamera, settings: &ViewSettings)
     if let Some(force) = scales.force {
         let thickness = points(scales.thickness).max(1.0);
         line(
-            Kind::Pull,
+            LinkKind::Pull,
             vec2(26.0, 4.0),
             "pulls (with a waist)".to_owned(),
         );
         line(
-            Kind::Push,
+            LinkKind::Push,
             vec2(26.0, thickness),
             format!("pushes with {}", with_unit(force, "N")),
         );
     }
-}
-
-/// A number with its unit, which takes a prefix where that reads better.
-fn with_unit(x: f64, unit: &str) -> String {
-    let scale = Prefixed::new(x.abs(), unit);
-    format!("{} {}", short_number(x * scale.factor), scale.unit)
 }
 
 fn species(ink: &Ink, corner: Pos2, world: &World) {
@@ -478,146 +393,4 @@ fn srgb(colour: Color) -> [u8; 3] {
 
 fn rgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
-}
-
-/// A bar of a round length.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScaleBar {
-    /// The length it stands for [m].
-    pub metres: f64,
-    /// How long it is drawn, in points.
-    pub points: f64,
-}
-
-impl ScaleBar {
-    /// The longest bar of 1, 2 or 5 times a power of ten metres that is at most `longest` points.
-    pub fn new(metres_per_point: f64, longest: f64) -> Self {
-        let room = metres_per_point * longest;
-        let decade = 10_f64.powf(room.log10().floor());
-        let digit = [5.0, 2.0].into_iter().find(|digit| digit * decade <= room);
-        let metres = digit.unwrap_or(1.0) * decade;
-        Self {
-            metres,
-            points: metres / metres_per_point,
-        }
-    }
-
-    /// Its length with a unit: `20 mm`.
-    pub fn label(&self) -> String {
-        length(self.metres)
-    }
-}
-
-/// A round length [m] with a unit.
-fn length(metres: f64) -> String {
-    let (factor, unit) = match metres {
-        // The limits stand between round lengths, so that rounding decides nothing.
-        m if m < 0.9e-3 => (1e6, "µm"),
-        m if m < 0.09 => (1e3, "mm"),
-        m if m < 0.9 => (1e2, "cm"),
-        m if m < 900.0 => (1.0, "m"),
-        _ => (1e-3, "km"),
-    };
-    format!("{} {unit}", short_number(metres * factor))
-}
-
-/// A unit whose numbers are of handy size.
-struct Prefixed {
-    factor: f64,
-    unit: String,
-}
-
-impl Prefixed {
-    /// For numbers up to `largest`: metres per second become mm/s, pascal kPa, joule nJ where that reads better.
-    fn new(largest: f64, unit: &str) -> Self {
-        const PREFIXES: [(f64, &str); 7] = [
-            (1e-6, "M"),
-            (1e-3, "k"),
-            (1.0, ""),
-            (1e3, "m"),
-            (1e6, "µ"),
-            (1e9, "n"),
-            (1e12, "p"),
-        ];
-        let takes_one = !unit.is_empty() && !unit.starts_with("rad");
-        let fits = |(factor, _): &&(f64, &str)| largest * factor > 0.15;
-        let (factor, prefix) = match PREFIXES.iter().find(fits) {
-            Some(prefixed) if takes_one && largest > 0.0 => *prefixed,
-            _ => (1.0, ""),
-        };
-        Self {
-            factor,
-            unit: format!("{prefix}{unit}"),
-        }
-    }
-}
-
-/// At most three digits, no trailing zeros.
-fn short_number(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    let decimals = (2 - x.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    let text = format!("{x:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn halves_are_equal_and_fill_the_picture() {
-        let free = Rect::from_min_max(pos2(300.0, 40.0), pos2(1002.0, 700.0));
-        let halves: Vec<Rect> = parts(free, 2).collect();
-        assert_eq!(halves[0].size(), halves[1].size());
-        assert_eq!((halves[0].left(), halves[1].right()), (300.0, 1002.0));
-        assert_eq!(halves[1].left() - halves[0].right(), BETWEEN);
-        assert_eq!(parts(free, 1).collect::<Vec<_>>(), [free]);
-    }
-
-    #[test]
-    fn scale_bar_is_round_and_as_long_as_it_says() {
-        for (metres_per_point, label) in [
-            (2.0e-4, "20 mm"),
-            (1.0e-3, "10 cm"),
-            (2.8e-5, "5 mm"),
-            (1.2e-6, "200 µm"),
-            (0.1, "10 m"),
-        ] {
-            let bar = ScaleBar::new(metres_per_point, 180.0);
-            assert_eq!(bar.label(), label);
-            assert!(bar.points <= 180.0 && bar.points > 180.0 / 2.6, "{bar:?}");
-            // A billionth: rounding.
-            assert!((bar.points * metres_per_point / bar.metres - 1.0).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        for (x, text) in [
-            (0.0, "0"),
-            (12.5, "12.5"),
-            (0.025, "0.025"),
-            (1500.0, "1500"),
-            (2.0, "2"),
-        ] {
-            assert_eq!(short_number(x), text);
-        }
-    }
-
-    #[test]
-    fn legend_units_take_a_prefix_where_it_reads_better() {
-        assert_eq!(Prefixed::new(0.05, "m/s").unit, "mm/s");
-        assert_eq!(Prefixed::new(0.5, "m/s").unit, "m/s");
-        assert_eq!(Prefixed::new(0.05, "rad/s").unit, "rad/s");
-        assert_eq!(Prefixed::new(8.0, "").unit, "");
-        assert_eq!(Prefixed::new(4e4, "Pa").unit, "kPa");
-        assert_eq!(Prefixed::new(2e-8, "J").unit, "nJ");
-        assert_eq!(Prefixed::new(0.0, "N").unit, "N");
-    }
 }

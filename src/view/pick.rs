@@ -1,10 +1,12 @@
 //! Which grain a point of the picture shows.
 //!
-//! In: the world shown, the camera, what is cut away, a point of the picture. Out: the nearest grain on the ray of sight.
-//! A polyhedron counts as the solid between the planes of its faces, a little larger than its rounded self at edges.
+//! In: the world shown, the camera, what is cut away, a point of the picture. Out: the nearest
+//! grain on the ray of sight. A polyhedron counts as the solid between the planes of its faces, a
+//! little larger than its rounded self at edges.
 
-use super::grains::polyhedron;
-use super::{Cut, OrbitCamera, ProjectionKind, ViewSettings};
+use crate::view::camera::OrbitCamera;
+use crate::view::grain_buffer::polyhedron;
+use crate::view::settings::{Cut, ProjectionKind, ViewSettings};
 use crate::world::{Polyhedron, World};
 use bevy::math::Vec2;
 use glam::{DQuat, DVec3};
@@ -139,7 +141,7 @@ impl Ray {
 mod tests {
     use super::*;
     use crate::view::Axis;
-    use crate::view::tests::grains_in_a_row;
+    use crate::view::test_worlds::grains_in_a_row;
 
     /// Three spheres of radius 1 mm behind each other along z, the first nearest to the viewer.
     fn behind_each_other() -> World {

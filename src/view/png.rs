@@ -1,7 +1,7 @@
 //! Pictures as files.
 //!
-//! In: what the view drew, or the text of an SVG drawing. Out: a PNG file with where it came from in its text chunks
-//! (`iTXt`), whole or not at all; missing folders are made.
+//! In: what the view drew, or the text of an SVG drawing. Out: a PNG file with where it came from
+//! in its text chunks (`iTXt`), whole or not at all; missing folders are made.
 
 use crate::files::write_whole;
 use crate::simulation::Provenance;
@@ -9,7 +9,8 @@ use bevy::image::Image;
 use bevy::math::UVec2;
 use bevy_egui::egui::FontDefinitions;
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{self, fontdb};
+use resvg::usvg;
+use resvg::usvg::fontdb;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! Quads that a shader turns to the camera and draws round bodies on: one for each body, all in one draw.
+//! Quads that a shader turns to the camera and draws round bodies on: one for each body, all in one
+//! draw.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};

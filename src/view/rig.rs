@@ -1,9 +1,13 @@
-//! Bevy's camera entities, which follow [`OrbitCamera`] and fill the free part of the window: one, or one for each half.
+//! Bevy's camera entities, which follow [`OrbitCamera`] and fill the free part of the window: one,
+//! or one for each half.
 
-use super::camera::HOME;
-use super::colour::Scheme;
-use super::{OrbitCamera, ProjectionKind, Shown, ViewSettings, container, layers, parts};
 use crate::simulation::Half;
+use crate::view::camera::{HOME, OrbitCamera};
+use crate::view::colour::Scheme;
+use crate::view::framing::outline;
+use crate::view::halves::parts;
+use crate::view::settings::{ProjectionKind, ViewSettings};
+use crate::view::shown_worlds::{ShownWorlds, layers};
 use crate::world::Shape;
 use bevy::camera::{ClearColorConfig, ScalingMode, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
@@ -52,12 +56,12 @@ pub(super) struct Framed {
     camera: Option<OrbitCamera>,
 }
 
-/// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away. An unbounded scene is
-/// measured once, not after every moving grain.
+/// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away.
+/// An unbounded scene is measured once, not after every moving grain.
 pub(super) fn steer(
     mut settings: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
-    shown: Res<Shown>,
+    shown: Res<ShownWorlds>,
     mut framed: Local<Framed>,
 ) {
     if let Some(request) = settings.bypass_change_detection().camera_request.take() {
@@ -73,7 +77,7 @@ pub(super) fn steer(
             camera.set_home(home(shape));
             *framed = Framed {
                 of,
-                outline: container::outline(world, shown.watched),
+                outline: outline(world, shown.watched),
                 camera: None,
             };
         }
@@ -84,7 +88,8 @@ pub(super) fn steer(
     }
 }
 
-/// Yaw and pitch of the view that a scene opens with [rad]: for a column from higher up, so that its front is seen.
+/// Yaw and pitch of the view that a scene opens with [rad]: for a column from higher up, so that
+/// its front is seen.
 fn home(shape: Shape) -> (f32, f32) {
     match shape {
         Shape::Column { .. } => (0.55, 0.3),
@@ -95,7 +100,7 @@ fn home(shape: Shape) -> (f32, f32) {
 /// Moves Bevy's cameras to where [`OrbitCamera`] is, each with its part of the picture.
 pub(super) fn follow(
     settings: Res<ViewSettings>,
-    shown: Res<Shown>,
+    shown: Res<ShownWorlds>,
     mut orbit: ResMut<OrbitCamera>,
     mut cameras: Query<(&Half, &mut Camera, &mut Transform, &mut Projection), With<WorldCamera>>,
 ) {

@@ -2,15 +2,16 @@
 //!
 //! In: choices made in panels. Out: plain data that the view reads every frame. Nothing here draws.
 
-use super::Trail;
 use crate::measure::GrainQuantity;
 use crate::simulation::Half;
+use crate::view::trail::Trail;
 use crate::world::World;
 use bevy::prelude::Resource;
 use bevy_egui::egui;
 use serde::{Deserialize, Serialize};
 
-/// Everything about the picture that a person can choose, and the two things that the panels need to know of it.
+/// Everything about the picture that a person can choose, and the two things that the panels need
+/// to know of it.
 #[derive(Resource, Clone, Debug, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of a panel")]
 pub struct ViewSettings {
@@ -30,7 +31,8 @@ pub struct ViewSettings {
     pub show_bridges: bool,
     /// Whether the grains' velocities are drawn.
     pub show_velocities: bool,
-    /// The grain that is looked at closely, by its number; one that the world shown does not have counts as none.
+    /// The grain that is looked at closely, by its number; one that the world shown does not have
+    /// counts as none.
     pub selected: Option<usize>,
     /// The grain beside it whose contact with it is looked at.
     pub beside: Option<usize>,
@@ -52,7 +54,8 @@ pub struct ViewSettings {
     pub background: Background,
     /// What the camera is asked to do next; the view takes it.
     pub camera_request: Option<CameraRequest>,
-    /// In: the part of the window that the panels leave free, in egui points. `None`: the whole window.
+    /// In: the part of the window that the panels leave free, in egui points. `None`: the whole
+    /// window.
     pub free_rect: Option<egui::Rect>,
     /// In: physical pixels per egui point.
     pub pixels_per_point: f32,
@@ -199,7 +202,8 @@ pub enum ColourRange {
     Automatic,
     /// From the first to the second.
     Fixed(f64, f64),
-    /// From the number that this share of the grains stay below to that which the second share stay below, 0 … 1.
+    /// From the number that this share of the grains stay below to that which the second share stay
+    /// below, 0 … 1.
     Percentiles(f64, f64),
 }
 

@@ -1,12 +1,13 @@
 //! Spheres: one draw for all of them, exact.
 //!
-//! In: the buffer of grains and which of them are spheres. Out: one entity whose mesh is a quad per sphere; the shader
-//! finds the grain in the buffer and raymarches it.
+//! In: the buffer of grains and which of them are spheres. Out: one entity whose mesh is a quad per
+//! sphere; the shader finds the grain in the buffer and raymarches it.
 
-use super::grains::{CutPlanes, Forms, GrainBuffer, polyhedron};
-use super::quads::{self, quads};
-use super::{Shown, ViewSettings, layers};
 use crate::simulation::Half;
+use crate::view::grain_buffer::{CutPlanes, Forms, GrainBuffer, polyhedron};
+use crate::view::quads::{self, quads};
+use crate::view::settings::ViewSettings;
+use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::mesh::MeshVertexBufferLayoutRef;
@@ -30,7 +31,7 @@ pub(super) fn plugin(app: &mut App) {
     );
     app.add_plugins(MaterialPlugin::<SphereMaterial>::default())
         .add_systems(Startup, spawn)
-        .add_systems(Update, update.in_set(super::ViewSystems::Draw));
+        .add_systems(Update, update.in_set(ViewSystems::Draw));
 }
 
 #[derive(Asset, TypePath, AsBindGroup, Clone)]
@@ -108,7 +109,7 @@ fn spawn(
 
 /// Draws the spheres of the worlds shown, from the present buffers and cut as asked.
 fn update(
-    shown: Res<Shown>,
+    shown: Res<ShownWorlds>,
     settings: Res<ViewSettings>,
     grains: Res<GrainBuffer>,
     mut halves: Query<(

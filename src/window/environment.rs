@@ -1,7 +1,8 @@
 //! What a window needs of the machine: a display that answers and a graphics driver.
 //!
-//! In: the environment. Out: what is found, or an error that says which is missing, how to get it and how to do without.
-//! Asking here first is kinder than the panics of the libraries that would otherwise find out.
+//! In: the environment. Out: what is found, or an error that says which is missing, how to get it
+//! and how to do without. Asking here first is kinder than the panics of the libraries that would
+//! otherwise find out.
 
 use bevy::render::settings::Backends;
 use bevy::tasks::block_on;
@@ -112,8 +113,8 @@ pub fn adapters() -> Vec<Adapter> {
 /// A display that answers, or what was tried.
 ///
 /// # Errors
-/// [`Missing::Display`] where neither `WAYLAND_DISPLAY` nor `DISPLAY` leads to one. Systems whose windows need neither
-/// always have one.
+/// [`Missing::Display`] where neither `WAYLAND_DISPLAY` nor `DISPLAY` leads to one. Systems whose
+/// windows need neither always have one.
 pub fn display() -> Result<(), Missing> {
     if cfg!(not(unix)) || cfg!(target_os = "macos") {
         return Ok(());

@@ -1,5 +1,5 @@
-//! A whole lesson in the app as a whole: played, changed, scrubbed, branched, taken back, compared, saved and verified, and at
-//! each moment the grain is drawn where the solver says.
+//! A whole lesson in the app as a whole: played, changed, scrubbed, branched, taken back, compared,
+//! saved and verified, and at each moment the grain is drawn where the solver says.
 
 use crate::twin::{ask, falling_from_the_front, place, simulation};
 use crate::view::{photographed, studio};

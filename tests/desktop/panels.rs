@@ -1,4 +1,5 @@
-//! Panels by their accessible labels, without Bevy's app and without a GPU: what a click or a typed value asks for.
+//! Panels by their accessible labels, without Bevy's app and without a GPU: what a click or a typed
+//! value asks for.
 
 use crate::timeline::carried_out;
 use bevy_egui::egui::accesskit::Role;
@@ -13,8 +14,8 @@ use grainfall::simulation::{
 };
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{
-    Curves, Desk, Detail, Look, Memory, Plots, Purpose, Request, open_error_ui, parameter_ui,
-    status_ui, theme,
+    AvalanchePlots, Curves, Detail, Dock, Look, Purpose, Request, UserMemory, open_error_ui,
+    parameter_ui, status_ui, theme,
 };
 use grainfall::view::{
     Background, CameraRequest, Caption, ColourBy, ColourRange, Cut, OrbitCamera, Side,
@@ -78,7 +79,7 @@ pub fn ready(mut simulation: Simulation) -> Simulation {
 
 /// A window with all panels, without a picture.
 pub struct Window {
-    desk: Desk,
+    dock: Dock,
     pub simulation: Simulation,
     view: ViewSettings,
     pub asked: Vec<Request>,
@@ -87,7 +88,7 @@ pub struct Window {
 impl Window {
     pub fn of(simulation: Simulation) -> Harness<'static, Self> {
         let window = Self {
-            desk: Desk::default(),
+            dock: Dock::default(),
             simulation,
             view: ViewSettings::default(),
             asked: Vec::new(),
@@ -102,7 +103,7 @@ impl Window {
                     }
                     let simulation = Some(&window.simulation);
                     window
-                        .desk
+                        .dock
                         .ui(ui, simulation, &mut window.view, &mut window.asked);
                 },
                 window,
@@ -112,7 +113,7 @@ impl Window {
     }
 
     pub fn show_panel(&mut self, title: &str) {
-        self.desk.show_panel(title);
+        self.dock.show_panel(title);
     }
 }
 
@@ -348,7 +349,7 @@ fn each_parameter_leads_to_its_comparison() {
     assert_eq!(harness.state().asked, [request]);
     harness
         .state_mut()
-        .desk
+        .dock
         .compare(Some(&Parameter::DrumSpeed));
     harness.run_steps(8);
     harness.get_by_label("Left: 2 rpm, the present value");
@@ -499,7 +500,7 @@ fn a_scene_that_stands_still_has_one_big_button() {
 #[test]
 fn the_gallery_says_what_to_look_for_and_how_fast_scenes_run_here() {
     let folder = tempfile::tempdir().unwrap();
-    let mut memory = Memory::at(folder.path().join("remembered.json"));
+    let mut memory = UserMemory::at(folder.path().join("remembered.json"));
     memory.ran("small-drum", 12.0);
     memory.opened("lecture/slides.grainfall");
     let mut harness = Window::of(prepared());
@@ -507,8 +508,8 @@ fn the_gallery_says_what_to_look_for_and_how_fast_scenes_run_here() {
     harness.run_steps(2);
     assert_eq!(harness.state().asked, [Request::ShowScenes]);
     harness.state_mut().asked.clear();
-    harness.state_mut().desk.remember(memory);
-    harness.state_mut().desk.show_scenes();
+    harness.state_mut().dock.remember(memory);
+    harness.state_mut().dock.show_scenes();
     harness.run_steps(6);
     // It is as high as the window lets it be.
     let gallery_end = harness.get_by_label("Close").rect().bottom();
@@ -539,7 +540,7 @@ fn the_gallery_says_what_to_look_for_and_how_fast_scenes_run_here() {
         "it is closed"
     );
     harness.state_mut().asked.clear();
-    harness.state_mut().desk.show_scenes();
+    harness.state_mut().dock.show_scenes();
     harness.run_steps(10);
     press(&mut harness, "lecture/slides.grainfall");
     let file = Request::Open("lecture/slides.grainfall".into());
@@ -551,10 +552,13 @@ fn how_much_is_shown_is_remembered() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("remembered.json");
     let mut harness = Window::of(prepared());
-    harness.state_mut().desk.remember(Memory::at(path.clone()));
+    harness
+        .state_mut()
+        .dock
+        .remember(UserMemory::at(path.clone()));
     harness.get_by_label("Lab").click();
     harness.run_steps(4);
-    assert_eq!(Memory::at(path).detail(), Detail::Lab);
+    assert_eq!(UserMemory::at(path).detail(), Detail::Lab);
 }
 
 #[test]
@@ -565,17 +569,24 @@ fn the_look_is_as_it_was_the_last_time() {
         scale: 1.25,
         background: Background::Light,
     };
-    Memory::at(path.clone()).wear(look);
+    UserMemory::at(path.clone()).wear(look);
     let mut harness = Window::of(prepared());
-    harness.state_mut().desk.remember(Memory::at(path.clone()));
+    harness
+        .state_mut()
+        .dock
+        .remember(UserMemory::at(path.clone()));
     harness.run_steps(4);
     assert_eq!(harness.ctx.theme(), egui::Theme::Light);
     assert_eq!(harness.ctx.zoom_factor(), 1.25);
-    assert_eq!(Memory::at(path.clone()).look(), look, "nobody changed it");
+    assert_eq!(
+        UserMemory::at(path.clone()).look(),
+        look,
+        "nobody changed it"
+    );
     harness.ctx.set_zoom_factor(1.5);
     harness.run_steps(2);
     let look = Look { scale: 1.5, ..look };
-    assert_eq!(Memory::at(path).look(), look);
+    assert_eq!(UserMemory::at(path).look(), look);
 }
 
 #[test]
@@ -794,7 +805,7 @@ fn a_scene_error_leaves_the_present_scene_as_it_is() {
     let mut harness = Window::of(prepared());
     harness
         .state_mut()
-        .desk
+        .dock
         .show_open_error("bad.ron, line 3: no".into());
     harness.run_steps(3);
     harness.get_by_label("bad.ron, line 3: no");
@@ -821,7 +832,7 @@ fn work_in_no_file_is_saved_discarded_or_kept_open() {
         ("Cancel", Vec::new()),
     ] {
         let mut harness = Window::of(prepared());
-        harness.state_mut().desk.ask_to_save(Request::Quit);
+        harness.state_mut().dock.ask_to_save(Request::Quit);
         harness.run_steps(3);
         harness.key_press(Key::R);
         harness.run_steps(2);
@@ -833,13 +844,13 @@ fn work_in_no_file_is_saved_discarded_or_kept_open() {
     }
     // The keyboard alone: Escape stays, Tab and Return choose.
     let mut harness = Window::of(prepared());
-    harness.state_mut().desk.ask_to_save(Request::Quit);
+    harness.state_mut().dock.ask_to_save(Request::Quit);
     harness.run_steps(3);
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert_eq!(harness.state().asked, []);
     assert!(harness.query_by_label("Save the session?").is_none());
-    harness.state_mut().desk.ask_to_save(Request::Quit);
+    harness.state_mut().dock.ask_to_save(Request::Quit);
     harness.run_steps(3);
     harness.key_press(Key::Tab);
     harness.run_steps(2);
@@ -875,7 +886,7 @@ fn a_path_can_be_typed_where_the_system_has_no_dialog() {
     let purpose = Purpose::Open;
     harness
         .state_mut()
-        .desk
+        .dock
         .path_dialog
         .type_path(purpose, "There is no dialog here.");
     harness.run_steps(3);
@@ -945,7 +956,7 @@ fn it_is_said_where_a_file_goes_and_what_it_replaces() {
     let taken = folder.path().join("taken.grainfall");
     std::fs::write(&taken, "").unwrap();
     let mut harness = Window::of(prepared());
-    let dialog = &mut harness.state_mut().desk.path_dialog;
+    let dialog = &mut harness.state_mut().dock.path_dialog;
     dialog.type_path(Purpose::Session, "There is no dialog here.");
     harness.run_steps(3);
     let mut write = |path: &Path| {
@@ -1071,7 +1082,7 @@ pub fn sample(time: f64, angle: f64, temperature: f64) -> Sample {
 fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
     let width = 400.0;
     let data = Sawtooth::new();
-    let mut plots = Plots::default();
+    let mut plots = AvalanchePlots::default();
     let mut harness = Harness::builder()
         .with_size([width, 500.0])
         .build_ui(move |ui| assert_eq!(plots.curves_ui(ui, &data.curves()), None));
@@ -1088,7 +1099,7 @@ fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
 
 #[test]
 fn plots_without_samples_draw_nothing_and_do_not_fail() {
-    let mut plots = Plots::default();
+    let mut plots = AvalanchePlots::default();
     let series = Series::default();
     let mut harness = Harness::new_ui(move |ui| {
         let empty = Curves {
@@ -1126,7 +1137,8 @@ fn velocities_are_seen_from_the_laboratory_and_from_the_drum() {
     let mut harness = Window::of(prepared());
     harness.get_by_label("Velocity map").click();
     harness.run_steps(12);
-    // At time zero the grains rest while the drum turns at 0.209 rad/s, 20 to 21.5 mm from its axis.
+    // At time zero the grains rest while the drum turns at 0.209 rad/s, 20 to 21.5 mm from its
+    // axis.
     harness.get_by_label("Velocity map, up to 0 m/s");
     harness.get_by_label("Relative to the drum").click();
     harness.run_steps(4);
@@ -1359,30 +1371,27 @@ fn energy_stands_as_a_stack_with_its_residual() {
 
 #[test]
 fn a_film_that_is_recorded_can_be_ended_or_cancelled() {
-    use grainfall::ui::{FilmOrder, FilmState, Recorder, recording_ui};
-    let recorder = Recorder {
-        order: None,
-        state: FilmState::Recording {
-            pictures: 7,
-            time: 0.24,
-        },
+    use grainfall::ui::{FilmState, ScreenshotOrder, film_bar_ui};
+    let film = FilmState::Recording {
+        pictures: 7,
+        time: 0.24,
     };
     let mut harness = Harness::builder().with_size([600.0, 200.0]).build_ui_state(
-        |ui, (recorder, asked): &mut (Recorder, Vec<Request>)| recording_ui(ui, recorder, asked),
-        (recorder, Vec::new()),
+        |ui, (film, asked): &mut (FilmState, Vec<Request>)| film_bar_ui(ui, *film, asked),
+        (film, Vec::new()),
     );
     harness.run_steps(2);
     harness.get_by_label("Recording: 0.24 s, 7 pictures");
     harness.get_by_label("Stop and save").click();
     harness.get_by_label("Cancel the film").click();
     harness.run_steps(2);
-    let orders = [FilmOrder::End, FilmOrder::Cancel].map(Request::Film);
+    let orders = [ScreenshotOrder::EndFilm, ScreenshotOrder::CancelFilm].map(Request::Screenshot);
     assert_eq!(harness.state().1, orders);
-    harness.state_mut().0.state = FilmState::Writing(3);
+    harness.state_mut().0 = FilmState::Writing(3);
     harness.run_steps(2);
     harness.get_by_label("Writing the film: 3 pictures left");
     assert!(harness.query_by_label("Stop and save").is_none());
-    harness.state_mut().0.state = FilmState::Idle;
+    harness.state_mut().0 = FilmState::Idle;
     harness.run_steps(2);
     assert!(harness.query_by_label("Cancel the film").is_none());
 }

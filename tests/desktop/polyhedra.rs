@@ -1,4 +1,5 @@
-//! Claims about pictures of polyhedra: each covers the pixels that its body covers, coloured and cut as asked.
+//! Claims about pictures of polyhedra: each covers the pixels that its body covers, coloured and
+//! cut as asked.
 
 use crate::view::{Photograph, SIZE, cosine, photograph, studio, world};
 use bevy::math::{Vec2, Vec3};
@@ -43,7 +44,8 @@ fn cube() -> Polyhedron {
     }
 }
 
-/// Grains without walls: place, orientation, species; the sphere is as large as the ball inside the cube.
+/// Grains without walls: place, orientation, species; the sphere is as large as the ball inside the
+/// cube.
 fn bodies(list: &[(DVec3, DQuat, u16)], shape: Polyhedron) -> World {
     let mut world = world(Shape::Planes, Vec::new());
     let radius = shape.bounding_radius();
@@ -94,7 +96,8 @@ fn distance_from_hull(points: &[Vec2], point: Vec2) -> f32 {
     if outside { nearest } else { -farthest_inside }
 }
 
-/// Where the vertices of the core of a body land in the picture, and how many pixels a metre is at its centre.
+/// Where the vertices of the core of a body land in the picture, and how many pixels a metre is at
+/// its centre.
 fn projected(photograph: &Photograph, at: DVec3, turn: DQuat) -> (Vec<Vec2>, f32) {
     let place = |x: DVec3| photograph.camera.project(x.as_vec3()).unwrap();
     let vertices = cube().vertices;
@@ -122,8 +125,9 @@ fn cubes_cover_the_pixels_of_their_bodies() {
                 let point = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                 let seen = photograph.covered(point);
                 covered += u32::from(seen);
-                // The body reaches a rounding radius beyond its core; strips and caps stay inside it by up to
-                // R (1 − 1/√3). The nearer corners of a perspective are a tenth larger. A pixel for the raster.
+                // The body reaches a rounding radius beyond its core; strips and caps stay inside
+                // it by up to R (1 − 1/√3). The nearer corners of a perspective are a tenth larger.
+                // A pixel for the raster.
                 let from_core = outlines.iter().map(|(points, pixels_per_metre)| {
                     let rounding = ROUNDING as f32 * pixels_per_metre;
                     let distance = distance_from_hull(points, point);

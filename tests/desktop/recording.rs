@@ -1,18 +1,19 @@
-//! Claims about films: every picture of one stands at its simulated time, and a film is whole or not there.
+//! Claims about films: every picture of one stands at its simulated time, and a film is whole or
+//! not there.
 
 use crate::panels::standing;
 use crate::view::{laboratory, studio};
 use bevy::math::UVec2;
 use bevy::prelude::*;
 use grainfall::simulation::{Command, Simulation};
-use grainfall::ui::{FilmOrder, FilmState, Recorder};
+use grainfall::ui::{FilmState, ScreenshotOrder, ScreenshotOrders};
 use grainfall::view::FILM_RATE;
-use grainfall::window::RecordingPlugin;
+use grainfall::window::ScreenshotPlugin;
 use std::path::Path;
 
-/// A laboratory with a recorder.
-fn studio_with_recorder() -> App {
-    laboratory(UVec2::new(160, 120), standing(), RecordingPlugin)
+/// A laboratory that takes pictures.
+fn studio_with_camera() -> App {
+    laboratory(UVec2::new(160, 120), standing(), ScreenshotPlugin)
 }
 
 /// Updates until `done`.
@@ -27,12 +28,14 @@ fn until(app: &mut App, done: impl Fn(&App) -> bool) {
     panic!("it does not come to an end");
 }
 
-fn order(app: &mut App, order: FilmOrder) {
-    app.world_mut().resource_mut::<Recorder>().order = Some(order);
+fn order(app: &mut App, order: ScreenshotOrder) {
+    (app.world_mut().resource_mut::<ScreenshotOrders>())
+        .asked
+        .push(order);
 }
 
 fn state(app: &App) -> FilmState {
-    app.world().resource::<Recorder>().state
+    app.world().resource::<ScreenshotOrders>().film
 }
 
 fn pictures(app: &App) -> usize {
@@ -45,7 +48,7 @@ fn pictures(app: &App) -> usize {
 /// Records the state that stands, then what follows, until there are `count` pictures.
 fn record(app: &mut App, path: &Path, count: usize) {
     (app.world_mut().resource_mut::<Simulation>()).send(Command::Speed(1.0));
-    order(app, FilmOrder::Begin(path.to_owned()));
+    order(app, ScreenshotOrder::Film(path.to_owned()));
     until(app, |app| pictures(app) == 1);
     (app.world_mut().resource_mut::<Simulation>()).send(Command::Play);
     until(app, |app| pictures(app) >= count);
@@ -58,7 +61,7 @@ fn film_has_a_picture_for_every_frame_of_simulated_time() {
     };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film");
-    let mut app = studio_with_recorder();
+    let mut app = studio_with_camera();
     let begun = app.world().resource::<Simulation>().world().unwrap().time();
     record(&mut app, &path, 4);
     let FilmState::Recording { pictures, time } = state(&app) else {
@@ -76,7 +79,7 @@ fn film_has_a_picture_for_every_frame_of_simulated_time() {
         .clone();
     let reached = (world.time() - begun) * f64::from(FILM_RATE);
     assert!(reached < pictures as f64 + 0.01, "{reached}");
-    order(&mut app, FilmOrder::End);
+    order(&mut app, ScreenshotOrder::EndFilm);
     until(&mut app, |app| state(app) == FilmState::Idle);
     let written: Vec<_> = std::fs::read_dir(&path).unwrap().collect();
     assert!(written.len() >= 4, "{}", written.len());
@@ -99,14 +102,37 @@ fn cancelled_film_leaves_nothing_and_lets_the_run_go() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let mut app = studio_with_recorder();
+    let mut app = studio_with_camera();
     record(&mut app, &folder.path().join("film.gif"), 2);
-    order(&mut app, FilmOrder::Cancel);
+    order(&mut app, ScreenshotOrder::CancelFilm);
     until(&mut app, |app| state(app) == FilmState::Idle);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     // A film of a kind that there is not is refused.
-    order(&mut app, FilmOrder::Begin(folder.path().join("film.avi")));
+    order(
+        &mut app,
+        ScreenshotOrder::Film(folder.path().join("film.avi")),
+    );
     app.update();
     app.update();
     assert_eq!(state(&app), FilmState::Idle);
+}
+
+#[test]
+fn picture_is_taken_beside_a_film_and_shows_the_state_that_it_names() {
+    let Some(_studio) = studio("picture_is_taken_beside_a_film_and_shows_the_state_that_it_names")
+    else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [film, picture] = ["film.gif", "picture.png"].map(|name| folder.path().join(name));
+    let mut app = studio_with_camera();
+    record(&mut app, &film, 2);
+    order(&mut app, ScreenshotOrder::Picture(picture.clone()));
+    until(&mut app, |_| picture.exists());
+    let size = image::open(&picture).unwrap().to_rgb8().dimensions();
+    assert_eq!(size, (160, 120));
+    assert!(pictures(&app) >= 2, "the film goes on: {:?}", state(&app));
+    order(&mut app, ScreenshotOrder::EndFilm);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    assert!(film.exists());
 }

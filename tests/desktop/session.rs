@@ -1,4 +1,5 @@
-//! Claims about saving, leaving and opening in the app as a whole: requests go in as panels make them, and nothing is drawn.
+//! Claims about saving, leaving and opening in the app as a whole: requests go in as panels make
+//! them, and nothing is drawn.
 
 use crate::panels::{friction, prepared, set, standing};
 use bevy::MinimalPlugins;
@@ -6,7 +7,7 @@ use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
 use grainfall::scene::Scene;
 use grainfall::simulation::{Command, DriverKind, Options, Simulation, SimulationPlugin, Status};
-use grainfall::ui::{Desk, DeskPlugin, Request, Requests};
+use grainfall::ui::{Dock, DockPlugin, Request, Requests};
 use grainfall::world::StateHash;
 use std::path::Path;
 
@@ -18,7 +19,7 @@ fn app() -> App {
     };
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, SimulationPlugin))
-        .add_plugins(DeskPlugin {
+        .add_plugins(DockPlugin {
             options: options.clone(),
         });
     let scene: Scene = prepared().scene().clone();
@@ -95,7 +96,7 @@ fn saved_session_is_dropped_on_another_and_is_as_it_was() {
     let hovers = |app: &mut App, message| {
         app.world_mut().write_message(message);
         app.update();
-        app.world().resource::<Desk>().file_hovers
+        app.world().resource::<Dock>().file_hovers
     };
     let hovered = FileDragAndDrop::HoveredFile { window, path_buf };
     assert!(hovers(&mut app, hovered));
@@ -185,7 +186,7 @@ fn what_cannot_be_opened_is_told_before_anybody_is_asked_to_save() {
     let mut app = app();
     work(&mut app);
     ask(&mut app, Request::Open(path.display().to_string()));
-    let reason = app.world().resource::<Desk>().open_error();
+    let reason = app.world().resource::<Dock>().open_error();
     assert!(reason.is_some_and(|reason| reason.contains("bad.ron")));
     assert!(simulation(&app).is_unsaved());
 }
@@ -216,7 +217,7 @@ fn damaged_session_leaves_what_is_open() {
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
     assert_eq!(hash(&app), state);
-    let reason = app.world().resource::<Desk>().open_error();
+    let reason = app.world().resource::<Dock>().open_error();
     assert!(
         reason.is_some_and(|reason| reason.contains("damaged")),
         "{reason:?}"

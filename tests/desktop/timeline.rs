@@ -1,4 +1,5 @@
-//! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and without a GPU.
+//! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and
+//! without a GPU.
 
 use crate::panels::{Window, commands, friction, prepared, ready, sample, set, standing};
 use bevy_egui::egui::accesskit::Role;
@@ -8,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use grainfall::measure::{Avalanche, Measure, Sample, Series};
 use grainfall::scene::TimeStep;
 use grainfall::simulation::{Command, Record, SAMPLE_INTERVAL, Simulation, Status};
-use grainfall::ui::{Curves, Level, Plots, Request, checks};
+use grainfall::ui::{AvalanchePlots, Curves, Level, Request, checks};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -61,7 +62,7 @@ fn the_numbers_beside_a_plot_are_those_of_the_moment_shown() {
     let mut series = Series::default();
     series.push(sample(0.0, 0.5, 1e-6));
     series.push(sample(0.02, 0.3, 1e-8));
-    let mut plots = Plots::default();
+    let mut plots = AvalanchePlots::default();
     let mut harness = Harness::new_ui(move |ui| {
         let curves = Curves {
             series: &series,
@@ -229,7 +230,7 @@ fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
     }
     let kept = [("Run 1".to_owned(), Arc::new(left))];
     let (series, kept) = (&series, &kept);
-    let mut plots = Plots::default();
+    let mut plots = AvalanchePlots::default();
     let mut harness = Harness::builder().with_size([600.0, 500.0]).build_ui_state(
         move |ui, clicked: &mut Vec<f64>| {
             let curves = Curves {

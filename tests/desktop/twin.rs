@@ -1,4 +1,5 @@
-//! Two runs side by side: the panel by its accessible labels, and both halves of the picture in the app as a whole.
+//! Two runs side by side: the panel by its accessible labels, and both halves of the picture in the
+//! app as a whole.
 
 use crate::panels::{Window, friction, prepared, sample, set, standing, type_number};
 use crate::timeline::carried_out;
@@ -11,7 +12,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::measure::{GrainQuantity, Series};
 use grainfall::simulation::{Command, DriverKind, Half, Options, Parameter, Simulation, Status};
-use grainfall::ui::{Curves, Desk, DeskPlugin, Plots, Request, Requests};
+use grainfall::ui::{AvalanchePlots, Curves, Dock, DockPlugin, Request, Requests};
 use grainfall::view::{ColourBy, OrbitCamera, ViewSettings};
 use std::time::Duration;
 
@@ -144,7 +145,7 @@ fn plots_of_two(samples: u32, size: [f32; 2]) -> Harness<'static> {
         left.push(sample(time, 0.5, 1e-6));
         right.push(sample(time, 0.3, 1e-8));
     }
-    let mut plots = Plots::default();
+    let mut plots = AvalanchePlots::default();
     let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
         let curves = Curves {
             series: &left,
@@ -193,10 +194,10 @@ pub fn falling_from_the_front() -> App {
         threads: 2,
         ..standing()
     };
-    let desk = DeskPlugin {
+    let dock = DockPlugin {
         options: options.clone(),
     };
-    let mut app = laboratory(SIZE, options, desk);
+    let mut app = laboratory(SIZE, options, dock);
     let mut camera = OrbitCamera::default();
     (camera.yaw, camera.pitch, camera.height) = (0.0, 0.0, 0.1);
     (camera.focus, camera.fits) = (Vec3::new(0.0, 0.04, 0.0), false);
@@ -265,7 +266,8 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     let across = |at: Vec2, of: Vec2| Vec2::new(at.x, of.y);
     assert!(fallen.covered(left) && !fallen.covered(across(left, right)));
     assert!(fallen.covered(right) && !fallen.covered(across(right, left)));
-    // One range for both: the fast one is yellow at its upper end, the other one violet at its lower.
+    // One range for both: the fast one is yellow at its upper end, the other one violet at its
+    // lower.
     let legend = app
         .world()
         .resource::<ViewSettings>()
@@ -286,5 +288,5 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     let (middle, _) = alone.camera.project(centre).unwrap();
     assert!(alone.covered(middle) && (middle.x - 0.5 * SIZE.x as f32).abs() < 1.0);
     assert!(!alone.covered(left) && !alone.covered(right));
-    assert!(app.world().resource::<Desk>().open_error().is_none());
+    assert!(app.world().resource::<Dock>().open_error().is_none());
 }

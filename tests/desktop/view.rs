@@ -1,7 +1,8 @@
-//! Claims about pictures: each grain is where and as large as the camera says, coloured as the map says, cut as asked.
+//! Claims about pictures: each grain is where and as large as the camera says, coloured as the map
+//! says, cut as asked.
 //!
-//! They need a Vulkan driver, a software one will do. Where there is none they say that they did not run, or fail if
-//! `GRAINFALL_REQUIRE_VULKAN` is set.
+//! They need a Vulkan driver, a software one will do. Where there is none they say that they did
+//! not run, or fail if `GRAINFALL_REQUIRE_VULKAN` is set.
 
 use crate::panels::standing;
 use bevy::app::Plugins;
@@ -16,13 +17,13 @@ use grainfall::scene::{ContactLaw, Scene};
 use grainfall::simulation::{Options, Simulation, SimulationPlugin, Status};
 use grainfall::ui::UiPlugin;
 use grainfall::view::{
-    Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, Shown,
-    Side, ViewPlugin, ViewSettings, save_png, species_colour,
+    Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind,
+    ShownWorlds, Side, ViewPlugin, ViewSettings, save_png, species_colour,
 };
-use grainfall::window::environment::adapters;
-use grainfall::window::picture::{
+use grainfall::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
+use grainfall::window::environment::adapters;
 use grainfall::world::{
     Bridge, Clock, Contact, Container, Grains, Ledger, Material, MaterialId, Materials, Motion,
     PairProperties, Partner, Shape, Species, SpeciesId, Surface, Wall, World,
@@ -78,7 +79,8 @@ impl Photograph {
         self.contrast(place) > 30
     }
 
-    /// From `place` outwards, where the contrast falls below half of that just inside the edge expected [pixels].
+    /// From `place` outwards, where the contrast falls below half of that just inside the edge
+    /// expected [pixels].
     fn reach(&self, place: Vec2, direction: Vec2, expected: f32) -> f32 {
         let inside = self.contrast(place + (expected - 2.0) * direction);
         (0..800)
@@ -101,13 +103,14 @@ pub fn photograph(
     set(&mut settings, &mut camera);
     app.insert_resource(settings).insert_resource(camera);
     app.world_mut()
-        .resource_mut::<Shown>()
+        .resource_mut::<ShownWorlds>()
         .show(Some(Arc::new(world)));
     make_ready(&mut app);
     photographed(&mut app, name)
 }
 
-/// A laboratory without panels that draws a grain that falls, on a canvas of this `size`, with these `plugins` more.
+/// A laboratory without panels that draws a grain that falls, on a canvas of this `size`, with
+/// these `plugins` more.
 pub fn laboratory<M>(size: UVec2, options: Options, plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
@@ -132,7 +135,8 @@ fn write_words(words: Res<Words>, mut contexts: EguiContexts) -> Result {
     Ok(())
 }
 
-/// Once a letter's picture reached the renderer a frame after the letter: numbers on the plots had holes.
+/// Once a letter's picture reached the renderer a frame after the letter: numbers on the plots had
+/// holes.
 #[test]
 fn a_letter_is_there_in_the_frame_that_first_shows_it() {
     let name = "a_letter_is_there_in_the_frame_that_first_shows_it";
@@ -248,8 +252,8 @@ fn five_grains() -> World {
     world
 }
 
-/// The ends of a sphere's outline, an ellipse in perspective, along the line from the picture's middle through its own:
-/// found from the angles at the eye.
+/// The ends of a sphere's outline, an ellipse in perspective, along the line from the picture's
+/// middle through its own: found from the angles at the eye.
 fn outline(camera: &OrbitCamera, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
     let (place, per_metre) = camera.project(centre).unwrap();
     let middle = camera.viewport / 2.0;
@@ -323,7 +327,8 @@ fn colours_are_those_of_the_map() {
                 .map(f32::from);
             (1e6 * (1.0 - cosine(seen, colour))) as i64
         });
-        // Light changes the lightness and adds some gloss, so the hue is compared: within a tenth of the map.
+        // Light changes the lightness and adds some gloss, so the hue is compared: within a tenth
+        // of the map.
         let t = f64::from(nearest.unwrap()) / 20.0;
         assert!(
             (t - speed).abs() <= 0.1,
@@ -373,7 +378,8 @@ fn section_of_a_cut_grain_is_a_flat_disc() {
             position: 0.0,
         });
     });
-    // The middle of the first grain is cut through its centre: one colour over the disc but for its rim.
+    // The middle of the first grain is cut through its centre: one colour over the disc but for its
+    // rim.
     let (centre, per_metre) = photograph.camera.project(Vec3::ZERO).unwrap();
     let inside = 0.7 * 6e-3 * per_metre;
     let colour = photograph.at(centre);
@@ -391,8 +397,8 @@ fn nearer_grains_hide_farther_ones_where_they_intersect() {
     let Some(_studio) = studio("nearer_grains_hide_farther_ones_where_they_intersect") else {
         return;
     };
-    // Two equal spheres one in front of the other, seen along z: the nearer one hides the other entirely, whichever
-    // comes first in the list; seen from the back it is the other way round.
+    // Two equal spheres one in front of the other, seen along z: the nearer one hides the other
+    // entirely, whichever comes first in the list; seen from the back it is the other way round.
     for flip in [false, true] {
         let mut world = world(Shape::Planes, Vec::new());
         let mut place = [(4e-3, 0), (-4e-3, 1)];

@@ -1,4 +1,5 @@
-//! Claims about the program as a whole: it draws itself without a display, and says why where it cannot.
+//! Claims about the program as a whole: it draws itself without a display, and says why where it
+//! cannot.
 
 use crate::panels::ready;
 use crate::timeline::carried_out;
@@ -69,7 +70,8 @@ fn laboratory_draws_itself_without_a_display() {
     let time: f64 = chunks["Time"].trim_end_matches(" s").parse().unwrap();
     assert!((0.05..0.0501).contains(&time), "{time}");
     assert_eq!(chunks["State hash"], state_at(&chunks["Step"]));
-    // The grain is amber; nothing else in the window has so much more red than blue over so many pixels.
+    // The grain is amber; nothing else in the window has so much more red than blue over so many
+    // pixels.
     let amber = picture
         .pixels()
         .filter(|p| p[0] > 120 && p[0].saturating_sub(p[2]) > 80)

@@ -1,0 +1,313 @@
+//! The badge that says at any time whether the run can be trusted, and why.
+//!
+//! In: the simulation. Out: one mark, told by its shape and a word as well as by its colour, with one line why; a click
+//! shows every number that was looked at, its limits and what to do.
+
+use crate::measure::{Measure, Sample};
+use crate::simulation::{Simulation, Status};
+use crate::ui::theme::Palette;
+use crate::ui::words::number;
+use crate::world::{StateHash, World};
+use bevy_egui::egui::{self, Color32, Popup, PopupCloseBehavior, RichText, WidgetInfo, WidgetType};
+use std::borrow::Cow;
+
+/// Largest overlap over the smaller radius up to which contacts are small deformations, and above which forces no longer
+/// mean what the contact laws say.
+const OVERLAPS: [f64; 2] = [0.02, 0.05];
+/// The same for polyhedra, over the smaller rounding radius: an eighth and half of the way to where the cores of two grains
+/// meet. A rounding radius is a small part of a grain, and their law is linear all the way.
+const OVERLAPS_OF_ROUNDING: [f64; 2] = [0.25, 1.0];
+/// Energy that the ledger leaves unexplained, as a share of its largest term: what users of explicit codes commonly allow.
+const RESIDUALS: [f64; 2] = [0.05, 0.10];
+/// Time step over the smallest of its limits.
+const STEPS: [f64; 2] = [1.0, 2.0];
+/// Least energy that has been turned over before a residual means anything, in lifts of all grains by their radius.
+const LIFTS: f64 = 1.0;
+/// Width of what a click shows, in points.
+const WIDTH: f32 = 430.0;
+
+/// How something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// As it should be.
+    Good,
+    /// Worth a look.
+    Doubtful,
+    /// Results mean nothing.
+    Bad,
+}
+
+/// One thing that was looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What it is.
+    pub name: Cow<'static, str>,
+    /// How it is.
+    pub level: Level,
+    /// The number with its limits.
+    pub value: String,
+    /// What to do where it is not good.
+    pub remedy: &'static str,
+}
+
+impl Level {
+    /// Where `value` lies between two limits; what is no number is worth a look.
+    fn of(value: f64, [good, doubtful]: [f64; 2]) -> Self {
+        if value <= good {
+            Self::Good
+        } else if value > doubtful {
+            Self::Bad
+        } else {
+            Self::Doubtful
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Good => "Sound",
+            Self::Doubtful => "Doubtful",
+            Self::Bad => "Not to be trusted",
+        }
+    }
+
+    fn mark(self) -> &'static str {
+        match self {
+            Self::Good => "✔",
+            Self::Doubtful => "⚠",
+            Self::Bad => "✖",
+        }
+    }
+
+    fn colour(self, palette: Palette) -> Color32 {
+        match self {
+            Self::Good => palette.minimum,
+            Self::Doubtful => palette.warning,
+            Self::Bad => palette.error,
+        }
+    }
+}
+
+/// The badge.
+#[derive(Default)]
+pub struct Badge {
+    checks: Vec<Check>,
+    hash: Option<StateHash>,
+    /// Generation of the state that both were made of.
+    generation: u64,
+}
+
+impl Badge {
+    /// Draws it; a click shows the numbers.
+    pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+        if self.generation != simulation.generation() || self.checks.is_empty() {
+            self.generation = simulation.generation();
+            self.checks = checks(simulation);
+            self.hash = None;
+        }
+        let Some(worst) = self.checks.iter().max_by_key(|check| check.level) else {
+            return;
+        };
+        let level = worst.level;
+        let colour = level.colour(Palette::of(ui.visuals()));
+        let text = match level {
+            Level::Good => format!("{} {}", level.mark(), level.word()),
+            _ => format!("{} {}: {}", level.mark(), level.word(), worst.name),
+        };
+        let why = match level {
+            Level::Good => {
+                "Time step, overlaps, energy and grains are as they should be".to_owned()
+            }
+            _ => format!("{}: {}", number::capitalised(&worst.name), worst.value),
+        };
+        let response = ui
+            .button(RichText::new(text).color(colour))
+            .on_hover_text(&why);
+        let name = format!("Trust: {}. {why}", level.word());
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &name));
+        Popup::from_toggle_button_response(&response)
+            .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+            .width(WIDTH)
+            .show(|ui| self.details_ui(ui, simulation));
+    }
+
+    fn details_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+        ui.set_width(WIDTH);
+        let palette = Palette::of(ui.visuals());
+        for check in &self.checks {
+            ui.horizontal_wrapped(|ui| {
+                let mark = RichText::new(check.level.mark()).color(check.level.colour(palette));
+                ui.label(mark);
+                ui.label(RichText::new(number::capitalised(&check.name)).strong());
+                ui.label(&check.value);
+            });
+            if check.level != Level::Good {
+                ui.weak(check.remedy);
+            }
+        }
+        ui.separator();
+        ui.label(pace(simulation));
+        if *simulation.status() == Status::Running {
+            ui.weak("State hash: pause to see it");
+        } else if let Some(world) = simulation.world() {
+            let hash = self.hash.get_or_insert_with(|| world.hash());
+            ui.label(format!("State hash at step {}:", world.clock.step));
+            ui.monospace(hash.to_string());
+        }
+    }
+}
+
+/// How fast the run goes, in words.
+fn pace(simulation: &Simulation) -> String {
+    let factor = simulation.real_time_factor();
+    if factor > 0.0 {
+        format!(
+            "{} simulated seconds per second; nothing is ever skipped",
+            number::short(factor)
+        )
+    } else {
+        "The run holds".into()
+    }
+}
+
+/// All that is looked at, for the state shown and that of a twin; nothing before there is one.
+pub fn checks(simulation: &Simulation) -> Vec<Check> {
+    let mut checks = checks_of(simulation);
+    if let Some(twin) = simulation.twin() {
+        let right = checks_of(twin.run()).into_iter().map(|check| Check {
+            name: format!("{}, right", check.name).into(),
+            ..check
+        });
+        checks.extend(right);
+    }
+    checks
+}
+
+/// The same for one run.
+fn checks_of(simulation: &Simulation) -> Vec<Check> {
+    let Some(world) = simulation.world() else {
+        return Vec::new();
+    };
+    let sample = simulation.sample();
+    let of_sample =
+        |check: fn(&Sample, &World) -> Check| sample.map(|sample| check(&sample, world));
+    [
+        fault(simulation.status()),
+        Some(time_step(simulation)),
+        of_sample(overlap),
+        of_sample(residual),
+        Some(lost(world)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn fault(status: &Status) -> Option<Check> {
+    let Status::Faulted(fault) = status else {
+        return None;
+    };
+    Some(Check {
+        name: "a fault".into(),
+        level: Level::Bad,
+        value: fault.to_string(),
+        remedy: "Undo the last change, or give the scene a smaller time step.",
+    })
+}
+
+fn time_step(simulation: &Simulation) -> Check {
+    let advice = simulation.advice();
+    let shown = |time| number::short_time(time);
+    let (level, value) = match advice.limits.first() {
+        Some(limit) => (
+            // The last bit of a step that is its own limit does not count.
+            Level::of(advice.time_step / limit.time_step * (1.0 - 1e-12), STEPS),
+            format!(
+                "{}, limit {} ({})",
+                shown(advice.time_step),
+                shown(limit.time_step),
+                limit.name
+            ),
+        ),
+        None => (
+            Level::Doubtful,
+            format!("{}, no limit is known", shown(advice.time_step)),
+        ),
+    };
+    Check {
+        name: "time step".into(),
+        level,
+        value,
+        remedy: "Give the scene `time_step: Automatic`, or a step below the limit.",
+    }
+}
+
+fn overlap(sample: &Sample, world: &World) -> Check {
+    let overlap = sample.value(Measure::LargestOverlap);
+    let (limits, radius) = match world.polyhedra {
+        Some(_) => (OVERLAPS_OF_ROUNDING, "rounding radius"),
+        None => (OVERLAPS, "radius"),
+    };
+    Check {
+        name: "largest overlap".into(),
+        level: Level::of(overlap, limits),
+        value: format!(
+            "{} % of the {radius}, good up to {} %",
+            number::short(100.0 * overlap),
+            100.0 * limits[0]
+        ),
+        remedy: "Use stiffer materials (a larger Young's modulus or stiffness), or let grains meet more slowly.",
+    }
+}
+
+fn residual(sample: &Sample, world: &World) -> Check {
+    const TERMS: [Measure; 9] = [
+        Measure::GravityWork,
+        Measure::WallWork,
+        Measure::KineticEnergy,
+        Measure::ElasticEnergy,
+        Measure::DashpotLoss,
+        Measure::SlidingLoss,
+        Measure::RollingLoss,
+        Measure::ViscousLoss,
+        Measure::CapillaryLoss,
+    ];
+    let largest = TERMS
+        .map(|term| sample.value(term).abs())
+        .into_iter()
+        .fold(0.0, f64::max);
+    let grains = &world.grains;
+    let weight = world.gravity.length();
+    let lifts = grains
+        .mass
+        .iter()
+        .zip(&grains.radius)
+        .map(|(m, r)| m * weight * r);
+    let share =
+        sample.value(Measure::EnergyResidual).abs() / largest.max(LIFTS * lifts.sum::<f64>());
+    let share = if share.is_nan() { 0.0 } else { share };
+    Check {
+        name: "energy residual".into(),
+        level: Level::of(share, RESIDUALS),
+        value: format!(
+            "{} % of what was turned over, good up to {} %",
+            number::short(100.0 * share),
+            100.0 * RESIDUALS[0]
+        ),
+        remedy: "Halve the time step: what the ledger leaves unexplained is the step's error.",
+    }
+}
+
+/// Grains that are not where grains can be: not finite, or with their centres behind a wall.
+fn lost(world: &World) -> Check {
+    let walls = &world.container.walls;
+    let outside = |x: &&glam::DVec3| {
+        !x.is_finite() || walls.iter().any(|wall| wall.surface.distance(**x).0 < 0.0)
+    };
+    let lost = world.grains.position.iter().filter(outside).count();
+    Check {
+        name: "grains lost".into(),
+        level: if lost == 0 { Level::Good } else { Level::Bad },
+        value: format!("{lost} of {}, must be 0", world.grains.len()),
+        remedy: "Undo the last change, or give the scene a smaller time step.",
+    }
+}

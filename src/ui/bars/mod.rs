@@ -1,0 +1,9 @@
+//! The bars round the picture: the menu, the bar under the picture, the film's bar, the badge of
+//! trust.
+
+pub mod badge;
+pub mod film_bar;
+pub mod menu;
+pub mod sides;
+pub mod time_slider;
+pub mod transport;

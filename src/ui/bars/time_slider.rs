@@ -1,0 +1,179 @@
+//! The timeline under the picture: the present run from its start to its newest state, to look at
+//! any moment of it.
+//!
+//! In: the simulation. Out: requests to show a moment, to undo and to redo. Changes are marked
+//! above the line, avalanches below it.
+
+use crate::simulation::{Changed, Command, Simulation};
+use crate::ui::playback::allows;
+use crate::ui::request::Request;
+use crate::ui::theme::Palette;
+use crate::ui::words::number;
+use crate::ui::words::run_names::parameter_name;
+use bevy_egui::egui::{self, Rect, RichText, WidgetInfo, WidgetType, pos2, vec2};
+
+/// Marks closer than this share one, in points.
+const BETWEEN_MARKS: f32 = 3.0;
+
+/// Draws the timeline, over the whole width; nothing while there is no run.
+pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    if simulation.world().is_none() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        turns_ui(ui, simulation, out);
+        line_ui(ui, simulation, out);
+        place_ui(ui, simulation, out);
+    });
+}
+
+/// Undo and redo.
+fn turns_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let [undo, redo] = simulation.turns();
+    let turns = [
+        ("⟲", "Undo", "Undo (Ctrl+Z)", undo, Command::Undo),
+        ("⟳", "Redo", "Redo (Ctrl+Shift+Z)", redo, Command::Redo),
+    ];
+    for (face, name, title, what, command) in turns {
+        let enabled = what.is_some() && allows(simulation.status(), &command);
+        let button = egui::Button::new(RichText::new(face).size(17.0)).min_size(vec2(32.0, 26.0));
+        let mut response = ui.add_enabled(enabled, button);
+        response = response.on_disabled_hover_text(format!("{title}: {}", why_no_undo(simulation)));
+        if let Some(what) = what {
+            let about = changed_name(what, simulation);
+            let effect = match command {
+                Command::Undo => "Back to the moment before it, as if it had not been made",
+                _ => "On to where the run was when it was taken back",
+            };
+            response = response.on_hover_text(format!("{title}: {about}\n{effect}"));
+        }
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, enabled, name));
+        if response.clicked() {
+            out.push(Request::Command(command));
+        }
+    }
+}
+
+/// Why there is no undo or redo.
+pub fn why_no_undo(simulation: &Simulation) -> &'static str {
+    match simulation.twin() {
+        Some(_) => "there is nothing to take back since the comparison began",
+        None => "there is nothing to take back",
+    }
+}
+
+fn changed_name(what: &Changed, simulation: &Simulation) -> String {
+    match what {
+        Changed::Parameter(parameter) => parameter_name(parameter, simulation),
+        Changed::Parameters => "several parameters".into(),
+        Changed::Start => "starting afresh".into(),
+        Changed::Run => "taking up another run".into(),
+    }
+}
+
+/// The line itself.
+fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let Some(world) = simulation.world() else {
+        return;
+    };
+    let time_step = world.clock.time_step;
+    let end = simulation.past().end;
+    let shown = simulation.step();
+    let enabled = end.step > 0 && allows(simulation.status(), &Command::Seek(0));
+    let mut time = shown.min(end.step) as f64 * time_step;
+    ui.spacing_mut().slider_width = (ui.available_width() - room_for_place(ui, end.time)).max(80.0);
+    let slider = egui::Slider::new(&mut time, 0.0..=end.time.max(time_step)).show_value(false);
+    let response = ui.add_enabled(enabled, slider);
+    let value = (time * 1e6).round() / 1e6;
+    response.widget_info(|| WidgetInfo::slider(enabled, value, "Moment shown"));
+    if response.changed() {
+        let step = ((time / time_step).round() as u64).min(end.step);
+        if step != shown {
+            out.push(Request::Command(Command::Seek(step)));
+        }
+    }
+    marks_ui(ui, response.rect, simulation, end.time);
+    response.on_hover_text(
+        "Drag to see any moment of the run. Change something there to begin another run from it.",
+    );
+}
+
+/// Changes above the line, avalanches below it.
+fn marks_ui(ui: &egui::Ui, line: Rect, simulation: &Simulation, end: f64) {
+    let palette = Palette::of(ui.visuals());
+    let inset = line.height() / 2.5;
+    let span = line.x_range().shrink(inset);
+    let place = |time: f64| egui::lerp(span, (time / end.max(f64::MIN_POSITIVE)).min(1.0) as f32);
+    let mut drawn_until = f32::NEG_INFINITY;
+    let commands = simulation.commands();
+    let changes = (simulation.past().changes.iter()).filter_map(|first| commands.get(*first));
+    for x in changes.map(|change| place(change.time)) {
+        if x >= drawn_until {
+            let mark = egui::Stroke::new(2.0, palette.change);
+            ui.painter()
+                .vline(x, line.top()..=line.center().y - 3.0, mark);
+            drawn_until = x + BETWEEN_MARKS;
+        }
+    }
+    drawn_until = f32::NEG_INFINITY;
+    for x in simulation
+        .avalanches()
+        .iter()
+        .map(|avalanche| place(avalanche.start))
+    {
+        if x >= drawn_until {
+            let centre = pos2(x, line.bottom() - 2.0);
+            ui.painter().circle_filled(centre, 2.0, palette.maximum);
+            drawn_until = x + BETWEEN_MARKS;
+        }
+    }
+}
+
+/// Shows the newest state of the run.
+const TO_THE_NEWEST: &str = "To the newest";
+
+/// `2.04 of 17.22 s`.
+fn place_in_words(time: f64, end: f64) -> String {
+    format!("{} of {} s", number::fixed(time, 2), number::fixed(end, 2))
+}
+
+/// Width of what stands right of the line, with the space before it: the same whatever moment is
+/// shown.
+fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let width = |text: String| {
+        let words = (ui.painter()).layout_no_wrap(text, font.clone(), egui::Color32::WHITE);
+        words.size().x
+    };
+    let spacing = ui.spacing();
+    let texts = width(place_in_words(end, end)) + width(TO_THE_NEWEST.to_owned());
+    texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
+}
+
+/// Which moment is shown of how many, and the way back to the newest.
+fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let end = simulation.past().end;
+    if !simulation.looks_back() {
+        ui.weak("newest")
+            .on_hover_text("The newest state of the run is shown");
+        return;
+    }
+    let Some(world) = simulation.world() else {
+        return;
+    };
+    let time = simulation.step() as f64 * world.clock.time_step;
+    let palette = Palette::of(ui.visuals());
+    let text = place_in_words(time, end.time);
+    ui.label(RichText::new(text).color(palette.warning))
+        .on_hover_text(
+            "An earlier moment is shown: Play shows what followed, a change begins another run",
+        );
+    let enabled = allows(simulation.status(), &Command::Seek(end.step));
+    let button = ui.add_enabled(enabled, egui::Button::new(TO_THE_NEWEST));
+    if button
+        .on_hover_text("Show the newest state (End)")
+        .clicked()
+    {
+        out.push(Request::Command(Command::Seek(end.step)));
+    }
+}

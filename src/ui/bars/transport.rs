@@ -1,0 +1,231 @@
+//! The bar under the picture: the timeline; play, pause, single step, reset, speed, simulated time;
+//! how far a bed is prepared or a moment is away; what went wrong and what to do.
+
+use crate::simulation::{Command, Simulation, Status};
+use crate::ui::bars::time_slider::timeline_ui;
+use crate::ui::playback::{SPEEDS, allows, play_or_pause, step_back};
+use crate::ui::request::Request;
+use crate::ui::theme::Palette;
+use crate::ui::words::number;
+use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec2};
+
+/// Room for the clock, and as much for the speed beside it, in points.
+const ROOM_FOR_CLOCK: f32 = 140.0;
+/// Below this share of the speed asked for, the bar says that the machine is slower.
+const KEEPING_UP: f64 = 0.9;
+
+/// The transport bar.
+#[derive(Default)]
+pub struct Transport;
+
+impl Transport {
+    /// Draws the bar.
+    pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+        let status = simulation.status();
+        timeline_ui(ui, simulation, out);
+        ui.horizontal_wrapped(|ui| {
+            buttons_ui(ui, simulation, out);
+            speed_ui(ui, simulation.speed(), out);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                clock_ui(ui, simulation);
+                warnings_ui(ui, simulation.warnings());
+            });
+        });
+        let can_undo = simulation.turns()[0].is_some();
+        status_ui(ui, status, simulation.advice().time_step, can_undo, out);
+    }
+}
+
+fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let status = simulation.status();
+    let mut button =
+        |ui: &mut egui::Ui, face: &str, name: &str, hint: &str, command: Option<Command>| {
+            let face = RichText::new(face).size(19.0);
+            let button = egui::Button::new(face).min_size(vec2(40.0, 32.0));
+            let response = ui
+                .add_enabled(command.is_some(), button)
+                .on_hover_text(hint)
+                .on_disabled_hover_text(format!("{name}: {}", why_not(status)));
+            response
+                .widget_info(|| WidgetInfo::labeled(WidgetType::Button, command.is_some(), name));
+            if response.clicked() {
+                out.extend(command.map(Request::Command));
+            }
+        };
+    let allowed = |command| Some(command).filter(|command| allows(status, command));
+    let (face, name, hint) = match status {
+        Status::Running => ("⏸", "Pause", "Pause (Space)"),
+        Status::Seeking { .. } => ("⏸", "Pause", "Stop on the way (Space)"),
+        _ if simulation.looks_back() => ("▶", "Play", "See what followed (Space)"),
+        _ => ("▶", "Play", "Play (Space)"),
+    };
+    button(ui, face, name, hint, play_or_pause(status));
+    button(
+        ui,
+        "⏴",
+        "Step back",
+        "The time step before (, or ←)",
+        step_back(simulation),
+    );
+    button(
+        ui,
+        "⏭",
+        "Single step",
+        "One time step (. or →)",
+        allowed(Command::Step(1)),
+    );
+    button(
+        ui,
+        "⏮",
+        "Reset",
+        "Start afresh with the settled bed and the present parameters; the run is kept (R)",
+        allowed(Command::Reset),
+    );
+}
+
+/// Why a button does nothing now.
+fn why_not(status: &Status) -> &'static str {
+    match status {
+        Status::Preparing { .. } => "the bed is still being prepared",
+        Status::Failed(_) => "there is no run; open another scene",
+        Status::Faulted(_) => "the run met a fault; undo the last change, or go back to time zero",
+        Status::Running | Status::Paused | Status::Seeking { .. } => "the run is at its start",
+    }
+}
+
+fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
+    let response = egui::ComboBox::from_id_salt("speed")
+        .selected_text(speed_name(speed))
+        .width(74.0)
+        .height(420.0)
+        .show_ui(ui, |ui| {
+            for choice in SPEEDS {
+                if ui
+                    .selectable_label(choice == speed, speed_name(choice))
+                    .clicked()
+                    && choice != speed
+                {
+                    out.push(Request::Command(Command::Speed(choice)));
+                }
+            }
+        })
+        .response
+        .on_hover_text("Speed: simulated seconds per second");
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Speed"));
+}
+
+/// `0.5×`, `max`.
+fn speed_name(speed: f64) -> String {
+    if speed.is_finite() {
+        format!("{speed}×")
+    } else {
+        "max".into()
+    }
+}
+
+fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
+    let Some(world) = simulation.world() else {
+        return;
+    };
+    // Where there is little room the clock in the picture will do.
+    if ui.available_width() < ROOM_FOR_CLOCK {
+        return;
+    }
+    let palette = Palette::of(ui.visuals());
+    let (factor, asked) = (simulation.real_time_factor(), simulation.speed());
+    let slower = factor > 0.0 && asked.is_finite() && factor < KEEPING_UP * asked;
+    let time = RichText::new(format!("t = {:.2} s", world.time()))
+        .monospace()
+        .size(17.0);
+    ui.label(time.strong())
+        .on_hover_text(format!("Simulated time, step {}", world.clock.step));
+    if factor > 0.0 && ui.available_width() >= ROOM_FOR_CLOCK {
+        let text = RichText::new(format!("{factor:.2}× real time"));
+        if slower {
+            let hint = "This machine is slower than the speed asked for: simulated time slows down, nothing is skipped.";
+            ui.label(text.color(palette.warning)).on_hover_text(hint);
+        } else {
+            ui.label(text.weak())
+                .on_hover_text("Simulated seconds per second, measured");
+        }
+    }
+}
+
+fn warnings_ui(ui: &mut egui::Ui, warnings: &[String]) {
+    if warnings.is_empty() {
+        return;
+    }
+    let colour = Palette::of(ui.visuals()).warning;
+    let text = RichText::new(format!("⚠ {}", warnings.len())).color(colour);
+    let response = ui.label(text).on_hover_text(warnings.join("\n\n"));
+    let name = || format!("Warnings: {}", warnings.join("; "));
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, name()));
+}
+
+/// How far the bed is prepared, or what went wrong and what to do; nothing while all goes well.
+pub fn status_ui(
+    ui: &mut egui::Ui,
+    status: &Status,
+    time_step: f64,
+    can_undo: bool,
+    out: &mut Vec<Request>,
+) {
+    match status {
+        Status::Running | Status::Paused => {}
+        Status::Seeking { progress } => {
+            progress_ui(ui, "Going to the moment asked for", "On the way", *progress);
+        }
+        Status::Preparing { stage, progress } => {
+            let text = number::capitalised(stage);
+            progress_ui(ui, &text, "Preparing the bed", *progress);
+        }
+        Status::Faulted(fault) => message_ui(ui, "The run stopped", &fault.to_string(), |ui| {
+            ui.label(remedy(time_step));
+            if can_undo && ui.button("Undo the last change").clicked() {
+                out.push(Request::Command(Command::Undo));
+            }
+            if ui.button("Back to time zero").clicked() {
+                out.push(Request::Command(Command::Reset));
+            }
+        }),
+        Status::Failed(reason) => message_ui(ui, "There is nothing to run", reason, |ui| {
+            ui.label("Open another scene (Ctrl+O), or correct this one and open it again.");
+        }),
+    }
+}
+
+fn progress_ui(ui: &mut egui::Ui, text: &str, name: &str, progress: f32) {
+    let text = format!("{text} · {:.0} %", 100.0 * progress);
+    let bar = egui::ProgressBar::new(progress)
+        .text(text)
+        .desired_height(24.0);
+    let response = ui.add(bar);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(WidgetType::ProgressIndicator, true, name);
+        info.value = Some(f64::from(progress));
+        info
+    });
+}
+
+/// What a person can do about a fault of a run with steps of `time_step` [s].
+fn remedy(time_step: f64) -> String {
+    format!(
+        "What to do: undo the last change of a parameter, or go back to time zero; if it stops again, give the scene half \
+         the time step, `time_step: Given({:.1e})`.",
+        0.5 * time_step
+    )
+}
+
+fn message_ui(ui: &mut egui::Ui, title: &str, text: &str, rest: impl FnOnce(&mut egui::Ui)) {
+    let palette = Palette::of(ui.visuals());
+    egui::Frame::new()
+        .fill(palette.error_fill)
+        .corner_radius(6)
+        .inner_margin(10)
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.label(RichText::new(title).strong().color(palette.error));
+            ui.label(text);
+            rest(ui);
+        });
+}

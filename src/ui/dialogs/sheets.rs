@@ -1,0 +1,114 @@
+//! Sheets over the window: the shortcuts, what the program is, a file that could not be opened,
+//! work that is in no file.
+
+use crate::ui::request::{Request, Sheet};
+use crate::ui::shortcuts::{GESTURES, SHORTCUTS};
+use crate::ui::theme::Palette;
+use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
+
+/// Draws `sheet`; false once it is closed.
+pub fn sheet_ui(ctx: &egui::Context, sheet: Sheet) -> bool {
+    match sheet {
+        Sheet::Shortcuts => modal_ui(ctx, "Shortcuts", 500.0, shortcuts_ui),
+        Sheet::About => modal_ui(ctx, "Grainfall", 460.0, about_ui),
+    }
+}
+
+/// Draws the reason why a scene or a session could not be opened; false once it is closed.
+pub fn open_error_ui(ctx: &egui::Context, reason: &str) -> bool {
+    modal_ui(ctx, "This file cannot be opened", 720.0, |ui| {
+        let palette = Palette::of(ui.visuals());
+        egui::Frame::new()
+            .fill(palette.error_fill)
+            .corner_radius(6)
+            .inner_margin(10)
+            .show(ui, |ui| {
+                let height = 0.5 * ui.ctx().content_rect().height();
+                ScrollArea::both().max_height(height).show(ui, |ui| {
+                    let text = RichText::new(reason).monospace();
+                    ui.add(egui::Label::new(text).selectable(true).extend());
+                });
+            });
+        ui.label("What was open goes on. A scene can be corrected and opened again.");
+    })
+}
+
+/// Asks what becomes of work that is in no file before `next`, which leaves it; false once that is
+/// answered.
+pub fn unsaved_ui(ctx: &egui::Context, next: &Request, out: &mut Vec<Request>) -> bool {
+    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
+    let modal = Modal::new(Id::new("unsaved")).frame(frame).show(ctx, |ui| {
+        ui.set_width(460.0_f32.min(0.9 * ui.ctx().content_rect().width()));
+        ui.heading("Save the session?");
+        ui.add_space(4.0);
+        ui.label(
+            "Its changes and runs are in no file yet. Saved, it opens again as it is now, with every change, every run and \
+             this moment, to the bit.",
+        );
+        ui.add_space(8.0);
+        let mut answered = false;
+        ui.horizontal(|ui| {
+            let answers = [
+                ("Save", Some(Request::SaveThen(Box::new(next.clone())))),
+                ("Discard", Some(Request::Leave(Box::new(next.clone())))),
+                ("Cancel", None),
+            ];
+            for (name, answer) in answers {
+                if ui.button(name).clicked() {
+                    out.extend(answer);
+                    answered = true;
+                }
+            }
+        });
+        answered
+    });
+    !(modal.inner || modal.should_close())
+}
+
+/// A window that must be closed before anything else; false once it is.
+fn modal_ui(
+    ctx: &egui::Context,
+    title: &str,
+    width: f32,
+    content: impl FnOnce(&mut egui::Ui),
+) -> bool {
+    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
+    let modal = Modal::new(Id::new(title)).frame(frame).show(ctx, |ui| {
+        ui.set_width(width.min(0.9 * ui.ctx().content_rect().width()));
+        ui.heading(title);
+        ui.add_space(4.0);
+        content(ui);
+        ui.add_space(4.0);
+        ui.button("Close").clicked()
+    });
+    !(modal.inner || modal.should_close())
+}
+
+fn shortcuts_ui(ui: &mut egui::Ui) {
+    egui::Grid::new("shortcuts")
+        .num_columns(2)
+        .spacing([24.0, 5.0])
+        .show(ui, |ui| {
+            for shortcut in SHORTCUTS {
+                ui.monospace(shortcut.keys(ui.ctx()));
+                ui.label(shortcut.name);
+                ui.end_row();
+            }
+            for (gesture, name) in GESTURES {
+                ui.monospace(gesture);
+                ui.label(name);
+                ui.end_row();
+            }
+        });
+}
+
+fn about_ui(ui: &mut egui::Ui) {
+    ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
+    ui.label(
+        "A laboratory for granular matter: every grain is computed, with the contact laws of the papers that the scenes \
+         come from. What is drawn is what is computed; the same scene, seed and commands give the same numbers, with and \
+         without a window.",
+    );
+    ui.label("Kasper, Magnanimo, de Jong, Beek, Jarray: Effect of viscosity on the avalanche dynamics and flow transition of wet granular matter, Particuology (2021).");
+    ui.weak("MIT or Apache-2.0");
+}

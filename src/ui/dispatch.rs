@@ -1,0 +1,338 @@
+//! What each request of the panels does: the only place that changes the run, opens scenes and
+//! writes files for them.
+//!
+//! In: requests in the order in which they were made. Out: the simulation, the dock and the view
+//! changed; orders for the screenshot job. What would lose work is asked about first.
+
+use crate::scene::Scene;
+use crate::simulation::{
+    Claim, Command, Half, Options, Parameter, SavedFile, ScriptedCommand, Session, SessionError,
+    Simulation,
+};
+use crate::ui::dialogs::path_dialog::Purpose;
+use crate::ui::dock::Dock;
+use crate::ui::playback::first_speed;
+
+use crate::ui::request::{Request, Requests};
+use crate::ui::screenshot_orders::ScreenshotOrders;
+use crate::view::{CameraRequest, ViewSettings};
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+use bevy::tasks::futures::check_ready;
+use bevy::tasks::{IoTaskPool, Task};
+use std::fmt::Display;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How scenes that a person opens are run.
+#[derive(Resource, Clone, Debug)]
+pub struct OpenWith(pub(super) Options);
+
+/// A session that is being read.
+#[derive(Resource, Default)]
+pub struct Opening(Option<(String, Task<Result<Session, SessionError>>)>);
+
+/// What it takes to open something.
+#[derive(SystemParam)]
+pub struct Opener<'w, 's> {
+    opening: ResMut<'w, Opening>,
+    options: Res<'w, OpenWith>,
+    view: ResMut<'w, ViewSettings>,
+    screenshots: ResMut<'w, ScreenshotOrders>,
+    commands: Commands<'w, 's>,
+}
+
+/// Fulfils every request in the order in which it was made.
+pub fn fulfil_requests(
+    mut requests: ResMut<Requests>,
+    mut simulation: Option<ResMut<Simulation>>,
+    mut dock: ResMut<Dock>,
+    mut opener: Opener,
+    mut exit: MessageWriter<AppExit>,
+) {
+    let mut asked = std::mem::take(&mut requests.0);
+    if let Some(simulation) = &mut simulation {
+        asked.extend(tell_saved(simulation, &mut dock));
+    }
+    for request in asked {
+        let simulation = simulation.as_deref_mut();
+        let unsaved = (simulation.as_ref()).is_some_and(|simulation| simulation.is_unsaved());
+        if let Some(request) = without_loss(request, unsaved, &mut dock) {
+            fulfil(request, simulation, &mut dock, &mut opener, &mut exit);
+        }
+    }
+    let saving = simulation.is_some_and(|simulation| simulation.is_saving());
+    let given_up = !saving && !dock.path_dialog.is_open();
+    if given_up && dock.after_saving.take().is_some() {
+        dock.notify("The session was not saved, so it stays open. Ctrl+S saves it.");
+    }
+}
+
+/// Fulfils one request that loses nothing.
+fn fulfil(
+    request: Request,
+    simulation: Option<&mut Simulation>,
+    dock: &mut Dock,
+    opener: &mut Opener,
+    exit: &mut MessageWriter<AppExit>,
+) {
+    match (request, simulation) {
+        (Request::Command(command), Some(simulation)) => simulation.send(command),
+        (Request::StartTwin(parameter, value), Some(simulation)) => {
+            start_pair(simulation, &parameter, value, dock, &mut opener.view);
+        }
+        (Request::TwinValue(value), Some(simulation)) => simulation.set_twin(value),
+        (Request::EndTwin(half), Some(simulation)) => {
+            end_pair(simulation, half, dock, &mut opener.view);
+        }
+        (Request::SaveSession(path), Some(simulation)) => simulation.save(path),
+        (Request::SaveChanges(path), Some(simulation)) => {
+            let saved = save_changes(simulation, &path);
+            dock.notify(said("The list of changes", &path, saved));
+        }
+        (Request::Save, simulation) => save(simulation, dock),
+        (Request::Start(scene), simulation) => {
+            opener.start_again(*scene, simulation.as_deref());
+            dock.scene_changed();
+        }
+        (Request::Trail, _) => opener.trace_selected(),
+        (Request::NoTrails, _) => opener.view.traced.clear(),
+        (Request::Camera(request), _) => opener.view.camera_request = Some(request),
+        (Request::Compare(parameter), _) => dock.compare(parameter.as_ref()),
+        (Request::ShowScenes, _) => dock.show_scenes(),
+        (Request::Show(sheet), _) => dock.show_sheet(sheet),
+        (Request::Open(name), _) => opener.open(name, dock),
+        (Request::ChooseFile, _) => dock.path_dialog.ask(Purpose::Open),
+        (Request::ChoosePicture, _) => dock.path_dialog.ask(Purpose::Picture),
+        (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
+        (Request::ChooseChanges, _) => dock.path_dialog.ask(Purpose::Changes),
+        (Request::ChooseFilm, _) => dock.path_dialog.ask(Purpose::Film),
+        (Request::ExportPlot(export), _) => dock.export_plot(export),
+        (Request::SavePlot(path), _) => save_plot(&path, dock),
+        (Request::Screenshot(order), _) => opener.screenshots.asked.push(order),
+        (Request::Quit, _) => {
+            exit.write(AppExit::Success);
+        }
+        // Without a run there is nothing to change; what leaves a session was taken apart before.
+        (
+            Request::Command(_)
+            | Request::StartTwin(..)
+            | Request::TwinValue(_)
+            | Request::EndTwin(_)
+            | Request::SaveSession(_)
+            | Request::SaveChanges(_),
+            None,
+        )
+        | (Request::SaveThen(_) | Request::Leave(_), _) => {}
+    }
+}
+
+/// Saves the session to the file it has, or lets the person choose one.
+fn save(simulation: Option<&mut Simulation>, dock: &mut Dock) {
+    match (simulation, dock.session.clone()) {
+        (Some(simulation), Some(path)) => simulation.save(path),
+        _ => dock.path_dialog.ask(Purpose::Session),
+    }
+}
+
+/// Begins a run beside the present one, or says why not.
+fn start_pair(
+    simulation: &mut Simulation,
+    parameter: &Parameter,
+    value: f64,
+    dock: &mut Dock,
+    view: &mut ViewSettings,
+) {
+    if let Err(reason) = simulation.start_twin(parameter, value) {
+        dock.notify(reason);
+    }
+    view.focus = Half::Left;
+}
+
+/// Goes on with the run in `half` alone.
+fn end_pair(simulation: &mut Simulation, half: Half, dock: &mut Dock, view: &mut ViewSettings) {
+    simulation.end_twin(half);
+    dock.notify(format!(
+        "The {} run goes on; the other one stays on the plots and in the list of runs",
+        half.label()
+    ));
+    view.focus = Half::Left;
+}
+
+/// What to do for `request`; nothing yet where it leaves `unsaved` work and a person must be asked
+/// first. What cannot be opened leaves nothing, and is told at once.
+fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Request> {
+    match request {
+        Request::Open(name) if unsaved && let Some(error) = no_scene(&name) => {
+            dock.show_open_error(error);
+            None
+        }
+        Request::Open(_) | Request::Start(_) | Request::Quit if unsaved => {
+            dock.ask_to_save(request);
+            None
+        }
+        Request::Leave(request) => Some(*request),
+        Request::SaveThen(next) => {
+            dock.after_saving = Some(*next);
+            Some(Request::Save)
+        }
+        request => Some(request),
+    }
+}
+
+/// Why there is no scene called `name`, where that is no session either.
+fn no_scene(name: &str) -> Option<String> {
+    let scene = (!Session::is_at(Path::new(name))).then(|| Scene::open(name))?;
+    scene.err().map(|error| error.to_string())
+}
+
+/// What gives a run the present values of the live parameters at its start.
+fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
+    let away = simulation.parameters().iter().filter_map(|info| {
+        let value = simulation.value(&info.parameter);
+        let parameter = info.parameter.clone();
+        (value != info.default).then_some(Command::Set { parameter, value })
+    });
+    let at_the_start = |command| ScriptedCommand {
+        step: Some(0),
+        time: None,
+        command,
+    };
+    away.map(at_the_start).collect()
+}
+
+/// Says what became of the session's files; what was to follow, if it may now.
+fn tell_saved(simulation: &mut Simulation, dock: &mut Dock) -> Option<Request> {
+    let mut next = None;
+    for SavedFile { path, outcome } in simulation.take_saved() {
+        let following = dock.after_saving.take();
+        if outcome.is_ok() {
+            dock.session = Some(path.clone());
+            next = following.map(|next| Request::Leave(Box::new(next)));
+        }
+        dock.notify(said("The session", &path, outcome));
+    }
+    next
+}
+
+/// Goes on with the session that has been read; one that cannot be leaves the present one running.
+pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
+    let Some((name, task)) = &mut opener.opening.0 else {
+        return;
+    };
+    let Some(read) = check_ready(task) else {
+        return;
+    };
+    let name = std::mem::take(name);
+    opener.opening.0 = None;
+    match read {
+        Ok(session) => {
+            let options = Options {
+                speed: first_speed(session.claim().scene.duration),
+                ..opener.options.0.clone()
+            };
+            opener.show(Simulation::resume(session, options));
+            dock.session_opened(&name);
+        }
+        Err(error) => dock.show_open_error(error.to_string()),
+    }
+}
+
+impl Opener<'_, '_> {
+    /// Draws the trail of the selected grain, or no longer.
+    fn trace_selected(&mut self) {
+        if let Some(grain) = self.view.selected {
+            self.view.trace(grain);
+        }
+    }
+
+    /// Opens the scene or the session called `name`; one that cannot be opened leaves the present
+    /// one running.
+    fn open(&mut self, name: String, dock: &mut Dock) {
+        self.opening.0 = None;
+        if Session::is_at(Path::new(&name)) {
+            dock.notify(format!("Reading {name}"));
+            let path = PathBuf::from(&name);
+            let read = IoTaskPool::get().spawn(async move { Session::read(&path) });
+            self.opening.0 = Some((name, read));
+            return;
+        }
+        match Scene::open(&name) {
+            Ok(scene) => {
+                // A script belongs to the scene it was given with.
+                let speed = first_speed(scene.duration);
+                self.start(scene, Vec::new(), None, speed);
+                dock.scene_opened(&name);
+            }
+            Err(error) => dock.show_open_error(error.to_string()),
+        }
+    }
+
+    /// Starts a run of `scene`, which came of that of the present `simulation`, with what was
+    /// changed there.
+    fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>) {
+        let script = simulation.map_or_else(Vec::new, present);
+        let original = simulation.map(|simulation| simulation.original().clone());
+        let speed = simulation.map_or(1.0, Simulation::speed);
+        self.start(scene, script, original, speed);
+    }
+
+    /// Starts a run of `scene`, which came of the `original`, with `script`, at this `speed`.
+    fn start(
+        &mut self,
+        scene: Scene,
+        script: Vec<ScriptedCommand>,
+        original: Option<Arc<Scene>>,
+        speed: f64,
+    ) {
+        let options = Options {
+            speed,
+            script,
+            ..self.options.0.clone()
+        };
+        let simulation = Simulation::open(scene, options);
+        self.show(match original {
+            Some(original) => simulation.made_of(original),
+            None => simulation,
+        });
+    }
+
+    /// Shows `simulation` as a scene is shown at first.
+    fn show(&mut self, simulation: Simulation) {
+        self.commands.insert_resource(simulation);
+        self.view.cut = None;
+        (self.view.selected, self.view.beside) = (None, None);
+        self.view.traced.clear();
+        self.view.focus = Half::Left;
+        self.view.camera_request = Some(CameraRequest::Home);
+    }
+}
+
+/// Writes the plot that was asked for to `path`.
+fn save_plot(path: &Path, dock: &mut Dock) {
+    let Some(export) = dock.export.take() else {
+        return;
+    };
+    let written = export.write(path);
+    dock.notify(said("The plot", path, written));
+}
+
+/// Writes the changes of the present run to `path`, with what leads to the state shown.
+fn save_changes(simulation: &Simulation, path: &Path) -> io::Result<()> {
+    let world = simulation.world();
+    let world = world.ok_or_else(|| io::Error::other("there is no run yet"))?;
+    let scene = simulation.scene();
+    Claim::of(&scene.title, scene, simulation.commands(), world).write(path)
+}
+
+/// What to tell a person about a file that was to be written.
+pub(crate) fn said(what: &str, path: &Path, written: Result<(), impl Display>) -> String {
+    // In full: a person should find it again.
+    let whole = std::path::absolute(path).unwrap_or(path.to_owned());
+    let shown = whole.display();
+    match written {
+        Ok(()) => format!("Saved {shown}"),
+        Err(reason) => format!("{what} cannot be written to {shown}: {reason}"),
+    }
+}

@@ -1,0 +1,432 @@
+//! Everything that is drawn round the picture: which panels there are, where they stand, what lies
+//! over them.
+//!
+//! In: the simulation and the view's settings. Out: requests, and what is left free for the
+//! picture. Needs no Bevy app.
+
+use crate::scene::built_in;
+use crate::simulation::{Command, Parameter, Simulation, Status};
+use crate::ui::bars::badge::Badge;
+use crate::ui::bars::menu::menu_ui;
+use crate::ui::bars::sides::{ROOM_FOR_BOTH, ROOM_FOR_ONE, Sides};
+use crate::ui::bars::transport::Transport;
+use crate::ui::detail::Detail;
+use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
+use crate::ui::dialogs::scene_gallery::Gallery;
+use crate::ui::dialogs::sheets::{open_error_ui, sheet_ui, unsaved_ui};
+use crate::ui::panels::about_scene::AboutScene;
+use crate::ui::panels::avalanche_plots::AvalanchePlots;
+use crate::ui::panels::beside_paper::BesidePaper;
+use crate::ui::panels::changes::Changes;
+use crate::ui::panels::collapse_plots::CollapsePlots;
+use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
+use crate::ui::panels::compare::Compare;
+use crate::ui::panels::energy_stack::EnergyStack;
+use crate::ui::panels::explorer::Explorer;
+use crate::ui::panels::mean_velocities::MeanVelocities;
+use crate::ui::panels::microscope::Microscope;
+use crate::ui::panels::parameters::Parameters;
+use crate::ui::panels::picture_settings::PictureSettings;
+use crate::ui::panels::results::Results;
+use crate::ui::panels::solver_profile::SolverProfile;
+use crate::ui::plot_export::Export;
+use crate::ui::request::{Request, Sheet};
+use crate::ui::sections::{Section, section, sections_ui};
+use crate::ui::theme::Palette;
+use crate::ui::user_memory::{Look, UserMemory};
+use crate::ui::widgets::focus::focus_ui;
+use crate::ui::{shortcuts, theme};
+use crate::view::ViewSettings;
+use bevy::prelude::Resource;
+use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText, WidgetInfo, WidgetType};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// How long a notice stays.
+const NOTICE_TIME: Duration = Duration::from_secs(6);
+
+/// All that surrounds the picture.
+#[derive(Resource)]
+pub struct Dock {
+    left: Vec<Section>,
+    right: Vec<Section>,
+    transport: Transport,
+    badge: Badge,
+    shown: Sides,
+    /// The plot that a file is being chosen for.
+    pub export: Option<Box<Export>>,
+    gallery: Gallery,
+    shows_scenes: bool,
+    memory: UserMemory,
+    /// The built-in scene that is open, as it came.
+    scene: Option<&'static str>,
+    /// Choosing a file.
+    pub path_dialog: PathDialog,
+    sheet: Option<Sheet>,
+    open_error: Option<String>,
+    /// The file of the session, where it has one.
+    pub session: Option<PathBuf>,
+    /// What would leave work that is in no file, while a person is asked about it.
+    leaving: Option<Request>,
+    /// What to do when the session has been saved.
+    pub after_saving: Option<Request>,
+    notice: Option<(String, Instant)>,
+    /// Whether a file hovers over the window.
+    pub file_hovers: bool,
+    /// Whether nothing of it is drawn.
+    pub is_hidden: bool,
+}
+
+/// The register of panels on the left, from top to bottom, and whether each is open at first.
+fn left() -> Vec<Section> {
+    vec![
+        section(AboutScene, true),
+        section(Parameters::default(), true),
+        section(Compare::default(), false),
+        section(Changes::default(), true),
+        section(PictureSettings, false),
+        section(SolverProfile, false),
+    ]
+}
+
+/// The register of panels on the right.
+fn right() -> Vec<Section> {
+    vec![
+        section(Microscope::default(), false),
+        section(AvalanchePlots::default(), true),
+        section(CollapsePlots::default(), true),
+        section(Explorer::default(), false),
+        section(EnergyStack, false),
+        section(MeanVelocities::default(), false),
+        section(BesidePaper::default(), true),
+        section(ColumnBesidePaper, true),
+        section(Results::default(), true),
+    ]
+}
+
+impl Default for Dock {
+    fn default() -> Self {
+        Self {
+            left: left(),
+            right: right(),
+            transport: Transport,
+            badge: Badge::default(),
+            shown: Sides {
+                left: true,
+                right: true,
+            },
+            export: None,
+            gallery: Gallery::default(),
+            shows_scenes: false,
+            memory: UserMemory::default(),
+            scene: None,
+            path_dialog: PathDialog::default(),
+            sheet: None,
+            open_error: None,
+            session: None,
+            leaving: None,
+            after_saving: None,
+            notice: None,
+            file_hovers: false,
+            is_hidden: false,
+        }
+    }
+}
+
+impl Dock {
+    /// Draws everything into `root`, which spans the window and keeps what is free, and reads the
+    /// keyboard.
+    pub fn ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        self.remember_look(root.ctx(), view);
+        theme::show(root.ctx(), view.background);
+        self.remember_ui(root.ctx(), simulation);
+        out.extend(shortcuts::pressed(root.ctx(), simulation));
+        self.menu_bar_ui(root, simulation, view, out);
+        if let Some(simulation) = simulation {
+            self.sides_ui(root, simulation, view, out);
+            let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
+            bar.show(root, |ui| self.transport.ui(ui, simulation, out));
+        }
+        if let Some(simulation) = simulation.filter(|simulation| is_untouched(simulation)) {
+            first_play_ui(root, simulation, out);
+        }
+        self.windows_ui(root.ctx(), out);
+        focus_ui(root.ctx(), Palette::of(root.visuals()));
+    }
+
+    /// Takes `memory` up, and keeps it from now on.
+    pub fn remember(&mut self, memory: UserMemory) {
+        self.memory = memory;
+    }
+
+    /// Opens the panel called `title`, on whichever side it stands.
+    pub fn show_panel(&mut self, title: &str) {
+        let sides = [
+            (&mut self.left, &mut self.shown.left),
+            (&mut self.right, &mut self.shown.right),
+        ];
+        for (sections, shown) in sides {
+            let wanted = sections
+                .iter_mut()
+                .find(|section| section.panel.title() == title);
+            if let Some(section) = wanted {
+                (section.is_wanted, *shown) = (true, true);
+            }
+        }
+    }
+
+    /// Opens the panel where two values are compared: of `parameter`, where one is given.
+    pub fn compare(&mut self, parameter: Option<&Parameter>) {
+        self.show_panel(Compare::TITLE);
+        if let Some(parameter) = parameter {
+            for section in self.left.iter_mut().chain(&mut self.right) {
+                section.panel.take_up(parameter);
+            }
+        }
+    }
+
+    /// Opens every panel on both sides.
+    pub fn show_all_panels(&mut self) {
+        for section in self.left.iter_mut().chain(&mut self.right) {
+            section.is_wanted = true;
+        }
+    }
+
+    /// Lets the person choose where the plot `export` goes.
+    pub fn export_plot(&mut self, export: Box<Export>) {
+        self.export = Some(export);
+        self.path_dialog.ask(Purpose::Plot);
+    }
+
+    /// Shows the scenes that come with the program.
+    pub fn show_scenes(&mut self) {
+        self.shows_scenes = true;
+    }
+
+    /// Lets all look as it did the last time, and notes how it looks for the next.
+    fn remember_look(&mut self, ctx: &egui::Context, view: &mut ViewSettings) {
+        if let Some(look) = self.memory.last_look() {
+            ctx.set_zoom_factor(look.scale);
+            view.background = look.background;
+        } else {
+            self.memory.wear(Look {
+                scale: ctx.zoom_factor(),
+                background: view.background,
+            });
+        }
+    }
+
+    /// Lets the panels be as they were the last time, and notes what is worth it for the next.
+    fn remember_ui(&mut self, ctx: &egui::Context, simulation: Option<&Simulation>) {
+        let chosen = Detail::chosen(ctx);
+        match chosen {
+            Some(detail) => self.memory.show(detail),
+            None => self.memory.detail().choose(ctx),
+        }
+        let running = simulation.filter(|simulation| *simulation.status() == Status::Running);
+        if let (Some(name), Some(simulation)) = (self.scene, running)
+            && let Some(world) = simulation.world()
+        {
+            let profile = simulation.profile();
+            let computed = profile.steps as f64 * world.clock.time_step;
+            if profile.steps > 0 {
+                self.memory
+                    .ran(name, computed / profile.total.as_secs_f64());
+            }
+        }
+    }
+
+    /// Paints over the picture, which fills what `root` keeps free, without taking its pointer.
+    pub fn over_picture_ui(&self, root: &egui::Ui, simulation: Option<&Simulation>) {
+        let free = root.available_rect_before_wrap();
+        let painter = root.painter_at(free);
+        let visuals = root.visuals();
+        let write = |text: &str, size, colour| {
+            let font = FontId::proportional(size);
+            painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
+        };
+        if simulation.is_none() {
+            let text = "Open a scene or a session: File menu, Ctrl+O, or drop a file here";
+            write(text, 18.0, visuals.text_color());
+        }
+        if self.file_hovers {
+            painter.rect_filled(free, 0.0, Palette::of(visuals).veil);
+            write("Drop to open", 24.0, visuals.strong_text_color());
+        }
+    }
+
+    /// Shows a sheet.
+    pub fn show_sheet(&mut self, sheet: Sheet) {
+        self.sheet = Some(sheet);
+    }
+
+    /// Shows why a file could not be opened.
+    pub fn show_open_error(&mut self, reason: String) {
+        self.open_error = Some(reason);
+    }
+
+    /// Why a file could not be opened, while that is shown.
+    pub fn open_error(&self) -> Option<&str> {
+        self.open_error.as_deref()
+    }
+
+    /// Asks whether to save before `next`, which leaves the session.
+    pub fn ask_to_save(&mut self, next: Request) {
+        self.leaving = Some(next);
+    }
+
+    /// Says `text` for a few seconds.
+    pub fn notify(&mut self, text: impl Into<String>) {
+        self.notice = Some((text.into(), Instant::now()));
+    }
+
+    /// Puts the scene called `name` first among the recent ones, and starts the panels afresh for
+    /// it.
+    pub fn scene_opened(&mut self, name: &str) {
+        self.memory.opened(name);
+        self.scene = built_in()
+            .iter()
+            .map(|scene| scene.name)
+            .find(|known| *known == name);
+        self.session = None;
+        (self.left, self.right) = (left(), right());
+    }
+
+    /// Starts the panels afresh for a scene that came of the present one.
+    pub fn scene_changed(&mut self) {
+        self.session = None;
+        self.scene = None;
+        (self.left, self.right) = (left(), right());
+    }
+
+    /// The same for the session in the file called `name`, to which it will be saved again.
+    pub fn session_opened(&mut self, name: &str) {
+        self.scene_opened(name);
+        self.session = Some(name.into());
+    }
+
+    fn menu_bar_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let (recent, shown, badge) = (self.memory.recent(), &mut self.shown, &mut self.badge);
+        egui::Panel::top("menu").show(root, |ui| {
+            menu_ui(ui, simulation, recent, shown, view, out, |ui| {
+                if let Some(simulation) = simulation {
+                    badge.ui(ui, simulation);
+                    let title = RichText::new(&simulation.scene().title).weak();
+                    ui.add(egui::Label::new(title).truncate());
+                }
+            });
+        });
+    }
+
+    fn sides_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: &Simulation,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let width = root.available_width();
+        let size = |share: f32, least: f32, most: f32| (share * width).clamp(least, most);
+        if width >= ROOM_FOR_ONE {
+            egui::Panel::left("controls")
+                .default_size(size(0.235, 290.0, 380.0))
+                .size_range(240.0..=520.0)
+                .show_collapsible(root, &mut self.shown.left, |ui| {
+                    sections_ui(ui, &mut self.left, simulation, view, out);
+                });
+        }
+        if width >= ROOM_FOR_BOTH || (width >= ROOM_FOR_ONE && !self.shown.left) {
+            egui::Panel::right("measures")
+                .default_size(size(0.285, 350.0, 560.0))
+                .size_range(280.0..=900.0)
+                .show_collapsible(root, &mut self.shown.right, |ui| {
+                    sections_ui(ui, &mut self.right, simulation, view, out);
+                });
+        }
+    }
+
+    fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
+        self.shows_scenes = self.shows_scenes && self.gallery.ui(ctx, &self.memory, out);
+        self.path_dialog.ui(ctx, out);
+        self.sheet = self.sheet.filter(|sheet| sheet_ui(ctx, *sheet));
+        let open = |reason: &String| open_error_ui(ctx, reason);
+        self.open_error = self.open_error.take().filter(open);
+        let asked = |next: &Request| unsaved_ui(ctx, next, out);
+        self.leaving = self.leaving.take().filter(asked);
+        self.notice_ui(ctx);
+    }
+
+    fn notice_ui(&mut self, ctx: &egui::Context) {
+        self.notice = self
+            .notice
+            .take()
+            .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
+        let waiting = "Waiting for the system's file dialog; ask again to type a path";
+        let said = self.notice.as_ref().map(|(text, _)| text.as_str());
+        let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
+            return;
+        };
+        // Each text is laid out by itself, however long the last one was.
+        egui::Area::new(Id::new("notice").with(text))
+            .anchor(Align2::CENTER_TOP, [0.0, 44.0])
+            .interactable(false)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style())
+                    .inner_margin(10)
+                    .show(ui, |ui| {
+                        ui.set_max_width(0.6 * ui.ctx().content_rect().width());
+                        ui.label(text);
+                    });
+            });
+        ctx.request_repaint_after(NOTICE_TIME);
+    }
+}
+
+/// Whether nothing has happened yet.
+fn is_untouched(simulation: &Simulation) -> bool {
+    *simulation.status() == Status::Paused && simulation.past().end.step == 0
+}
+
+/// The one thing to do first, over the picture of a scene that stands still.
+fn first_play_ui(root: &egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let free = root.available_rect_before_wrap();
+    egui::Area::new(Id::new("first play"))
+        .pivot(Align2::CENTER_BOTTOM)
+        .fixed_pos(free.center_bottom() - egui::vec2(0.0, 24.0))
+        .order(egui::Order::Middle)
+        .show(root.ctx(), |ui| {
+            ui.set_width(200.0);
+            ui.vertical_centered(|ui| {
+                let face = RichText::new("▶  Play").size(30.0).strong();
+                let button = ui.add(egui::Button::new(face).min_size(egui::vec2(190.0, 64.0)));
+                let label = format!("Play {}", simulation.scene().title);
+                button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
+                if button.on_hover_text("Play (Space)").clicked() {
+                    out.push(Request::Command(Command::Play));
+                }
+                if ui
+                    .button("Other scenes…")
+                    .on_hover_text("Scenes with their pictures (Ctrl+G)")
+                    .clicked()
+                {
+                    out.push(Request::ShowScenes);
+                }
+            });
+        });
+}
+
+fn bar_frame(ui: &egui::Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(10, 8))
+}

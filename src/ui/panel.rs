@@ -1,0 +1,62 @@
+//! What a panel is: a part of the window in one file, one struct and one function.
+//!
+//! In: the simulation, read only, and the view's settings. Out: requests. What kinds of scenes
+//! panels tell apart stands here too. Which panels there are is the dock's business.
+
+use crate::measure::Measure;
+use crate::simulation::{Parameter, Simulation};
+use crate::ui::request::Request;
+use crate::view::ViewSettings;
+use crate::world::{Shape, World};
+use bevy_egui::egui;
+
+/// A part of the window: one file, one struct, one function.
+pub trait Panel: Send + Sync + 'static {
+    /// What stands over it.
+    fn title(&self) -> &'static str;
+
+    /// Whether it has anything to say of this simulation; it is left out where it has not.
+    fn applies_to(&self, _simulation: &Simulation) -> bool {
+        true
+    }
+
+    /// Whether it is among what one looks at first in this simulation, so that it is open until a
+    /// person closes it.
+    fn comes_first(&self, _simulation: &Simulation) -> bool {
+        false
+    }
+
+    /// Whether it should open now, though a person has not opened it.
+    fn wants_open(&mut self, _view: &ViewSettings) -> bool {
+        false
+    }
+
+    /// Whether it describes one run only, and knows nothing of a twin.
+    fn describes_one_run(&self) -> bool {
+        false
+    }
+
+    /// Lets it be about `parameter`, where it is about one.
+    fn take_up(&mut self, _parameter: &Parameter) {}
+
+    /// Draws it; what is asked for goes into `out`.
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    );
+}
+
+/// Whether a column collapses in this simulation.
+pub fn is_column(simulation: &Simulation) -> bool {
+    let column = |world: &World| matches!(world.container.shape, Shape::Column { .. });
+    simulation.world().is_some_and(|world| column(world))
+}
+
+/// Whether grains lie in a bed, whose surface is measured.
+pub fn has_bed(simulation: &Simulation) -> bool {
+    let world = simulation.world();
+    world.is_some_and(|world| Measure::SurfaceAngle.concerns(world))
+}

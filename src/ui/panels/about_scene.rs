@@ -1,0 +1,47 @@
+//! What the scene is, what to look for, where its numbers come from.
+
+use crate::scene::{ContactLaw, Scene};
+use crate::simulation::Simulation;
+use crate::ui::panel::Panel;
+use crate::ui::request::Request;
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText};
+
+/// The panel about the scene.
+#[derive(Default)]
+pub struct AboutScene;
+
+impl Panel for AboutScene {
+    fn title(&self) -> &'static str {
+        "Scene"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        _out: &mut Vec<Request>,
+    ) {
+        let scene = simulation.scene();
+        ui.label(RichText::new(&scene.title).strong());
+        if !scene.look_for.is_empty() {
+            ui.label(&scene.look_for);
+        }
+        if !scene.source.is_empty() {
+            ui.label(RichText::new(&scene.source).small().weak());
+        }
+        ui.label(RichText::new(outline(scene)).small().weak());
+    }
+}
+
+/// Grains, law and seed in one line.
+fn outline(scene: &Scene) -> String {
+    let grains = scene.grain_count();
+    let law = match scene.law {
+        ContactLaw::HertzMindlin => "Hertz–Mindlin",
+        ContactLaw::Hooke { .. } => "Hooke",
+    };
+    let noun = if grains == 1 { "grain" } else { "grains" };
+    format!("{grains} {noun} · {law} · seed {}", scene.seed)
+}

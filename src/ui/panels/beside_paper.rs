@@ -1,0 +1,188 @@
+//! The running wet drum beside the laws of Kasper et al. 2021: the drops over viscosity with Eq. 23, the non-rigid share over
+//! √(1/Ga).
+//!
+//! In: the samples since the last change of a parameter. Out: one point on each plot that moves as the run goes on.
+
+use crate::measure::{drop_ratio_law, dry_drum, galilei_number};
+use crate::simulation::{Command, Parameter, Simulation};
+use crate::ui::panel::Panel;
+use crate::ui::panels::averages::Averages;
+use crate::ui::request::Request;
+use crate::ui::theme::Palette;
+use crate::ui::words::number;
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText};
+use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, Points, VLine};
+
+/// Height of a plot in points.
+const HEIGHT: f32 = 130.0;
+
+/// The panel.
+#[derive(Default)]
+pub struct BesidePaper {
+    averages: Averages,
+}
+
+/// One plot: a law, a threshold, and where the run stands. The horizontal axis is one of powers of ten.
+pub struct Comparison {
+    /// What tells it from the others.
+    pub id: &'static str,
+    /// What stands over it.
+    pub title: &'static str,
+    /// The law's line; empty where there is none.
+    pub law: Vec<[f64; 2]>,
+    /// What the law is called.
+    pub law_name: &'static str,
+    /// Where a threshold stands.
+    pub threshold: Option<f64>,
+    /// Where the run stands.
+    pub point: Option<[f64; 2]>,
+    /// What is in view across.
+    pub x: std::ops::RangeInclusive<f64>,
+    /// What is in view upright.
+    pub y: std::ops::RangeInclusive<f64>,
+}
+
+impl Panel for BesidePaper {
+    fn title(&self) -> &'static str {
+        "Beside the paper"
+    }
+
+    fn describes_one_run(&self) -> bool {
+        true
+    }
+
+    fn applies_to(&self, simulation: &Simulation) -> bool {
+        simulation.scene().liquid.is_some()
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        _out: &mut Vec<Request>,
+    ) {
+        let viscosity = simulation.value(&Parameter::Viscosity);
+        let Some(world) = simulation.world() else {
+            ui.weak("The laws appear when the bed stands.");
+            return;
+        };
+        let radius = world.grains.radius.first().copied().unwrap_or(0.0);
+        let from = last_change(simulation);
+        let summary = self.averages.over(simulation, from);
+        let drop = summary.value("drop Δθ");
+        let count = summary.value("avalanches").unwrap_or(0.0);
+        let dry = dry_drum(radius).map(|drum| drum.drop);
+        let ratio = drop.zip(dry).map(|(drop, dry)| drop / dry);
+        let flowing = summary.value("non-rigid share ta/ts");
+        let inverse_root = galilei_number(world).map(|number| number.powf(-0.5));
+        let millipascals = 1e3 * viscosity;
+        comparison_ui(
+            ui,
+            Comparison {
+                id: "drop ratio",
+                title: "Wet over dry drop, over viscosity η [mPa s]",
+                law: law_over(-0.5..=3.4, |viscosity| drop_ratio_law(1e-3 * viscosity)),
+                law_name: "0.4 + 0.47 exp(−η/295 mPa s)",
+                threshold: None,
+                point: ratio.map(|ratio| [millipascals.max(0.1).log10(), ratio]),
+                x: -0.5..=3.4,
+                y: 0.0..=ratio.unwrap_or(0.0).max(1.1) * 1.05,
+            },
+        );
+        comparison_ui(
+            ui,
+            Comparison {
+                id: "flowing share",
+                title: "Non-rigid share ta/ts, over √(1/Ga)",
+                law: Vec::new(),
+                law_name: "",
+                threshold: Some(0.0),
+                point: inverse_root.zip(flowing).map(|(x, y)| [x.log10(), y]),
+                x: -3.5..=1.2,
+                y: 0.0..=1.1,
+            },
+        );
+        let missing = match (dry, drop) {
+            (None, _) => "No stored dry drum has this radius: set a drum of 3 or 2 mm beside it. ",
+            (_, None) => "No avalanche yet. ",
+            _ => "",
+        };
+        let averages = format!(
+            "{missing}Averages since {} s, the last change: {} avalanches. The paper takes 30 s.",
+            number::fixed(from, 1),
+            number::fixed(count, 0)
+        );
+        ui.label(RichText::new(averages).small().weak());
+    }
+}
+
+/// When a parameter was last changed [s].
+fn last_change(simulation: &Simulation) -> f64 {
+    let mut commands = simulation.commands().iter().rev();
+    let change = commands.find(|stamped| matches!(stamped.command, Command::Set { .. }));
+    change.map_or(0.0, |stamped| stamped.time)
+}
+
+/// The points of a law on an axis of powers of ten.
+pub fn law_over(powers: std::ops::RangeInclusive<f64>, law: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+    let (from, to) = powers.into_inner();
+    let at = |k: i32| from + (to - from) * f64::from(k) / 80.0;
+    let point = |place: f64| [place, law(10_f64.powf(place))];
+    (0..=80).map(at).map(point).collect()
+}
+
+/// Draws one comparison.
+pub fn comparison_ui(ui: &mut egui::Ui, shown: Comparison) {
+    let palette = Palette::of(ui.visuals());
+    ui.label(RichText::new(shown.title).strong());
+    Plot::new(shown.id)
+        .height(HEIGHT)
+        .width(ui.available_width() - 14.0)
+        .show_crosshair(false)
+        .grid_color(palette.grid)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .auto_bounds(false)
+        .x_grid_spacer(|input| {
+            let (first, last) = (input.bounds.0.ceil() as i32, input.bounds.1.floor() as i32);
+            (first..=last)
+                .map(|decade| GridMark {
+                    value: f64::from(decade),
+                    step_size: 1.0,
+                })
+                .collect()
+        })
+        .custom_x_axes(vec![
+            AxisHints::new_x().formatter(|mark, _| number::power_of_ten(mark.value.round() as i32)),
+        ])
+        .custom_y_axes(vec![AxisHints::new_y().min_thickness(46.0)])
+        .show(ui, |plot| {
+            plot.set_plot_bounds(egui_plot::PlotBounds::from_min_max(
+                [*shown.x.start(), *shown.y.start()],
+                [*shown.x.end(), *shown.y.end()],
+            ));
+            if !shown.law.is_empty() {
+                let law = Line::new(shown.law_name, shown.law).color(palette.threshold);
+                plot.line(law.width(1.6));
+            }
+            if let Some(x) = shown.threshold {
+                let line = VLine::new("Ga = 1", x).color(palette.threshold);
+                plot.vline(line.style(LineStyle::dashed_dense()));
+            }
+            if let Some(point) = shown.point {
+                let points = Points::new("this run", vec![point]);
+                plot.points(
+                    points
+                        .shape(MarkerShape::Diamond)
+                        .radius(7.0)
+                        .color(palette.temperature),
+                );
+            }
+        });
+}

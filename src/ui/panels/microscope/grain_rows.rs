@@ -1,0 +1,74 @@
+//! The numbers of one grain: where it is, how it moves, what it weighs and touches.
+//!
+//! In: a world and a grain's index. Out: rows of a table, in the units that people think in.
+
+use crate::ui::widgets::value_table::Row;
+use crate::ui::words::number;
+use crate::world::World;
+use glam::DVec3;
+
+const MILLIMETRES: f64 = 1e3;
+
+/// A vector's components and its length, in `unit` after a factor.
+fn vector(v: DVec3, factor: f64, unit: &str) -> String {
+    let [x, y, z] = (v * factor).to_array().map(number::short);
+    format!("({x}, {y}, {z}) {unit}")
+}
+
+/// The numbers of one grain.
+pub(super) fn numbers(world: &World, i: usize) -> Vec<Row> {
+    let grains = &world.grains;
+    let species = &world.species[usize::from(grains.species[i].0)];
+    let (x, v, spin) = (grains.position[i], grains.velocity[i], grains.spin[i]);
+    let mass = grains.mass[i];
+    let energy = |joules: f64| number::with_prefix(joules, "J");
+    let mut rows = vec![
+        Row::of("Species", species.name.clone(), ""),
+        Row::of(
+            "Position",
+            vector(x, MILLIMETRES, "mm"),
+            "Centre: x to the right, y up, z towards the viewer",
+        ),
+        Row::of("Velocity", vector(v, MILLIMETRES, "mm/s"), "Of its centre"),
+        Row::of("Speed", number::with_prefix(v.length(), "m/s"), ""),
+        Row::of("Spin", vector(spin, 1.0, "rad/s"), "Angular velocity"),
+        Row::of(
+            "Radius",
+            format!("{} mm", number::short(MILLIMETRES * grains.radius[i])),
+            "Of a polyhedron: to its farthest point",
+        ),
+        Row::of("Mass", number::with_prefix(1e3 * mass, "g"), ""),
+        Row::of(
+            "Coordination",
+            grains.contact_count[i].to_string(),
+            "Partners that it touches, walls too",
+        ),
+    ];
+    if world.wetting().is_some() {
+        rows.push(Row::of(
+            "Bridges",
+            grains.open_bridges[i].to_string(),
+            "To grains that it does not touch",
+        ));
+        rows.push(Row::of(
+            "Film",
+            number::with_prefix(1e3 * grains.film[i], "L"),
+            "Liquid on it, its part in bridges included",
+        ));
+    }
+    let kinetic = 0.5 * mass * v.length_squared();
+    rows.extend([
+        Row::of("Kinetic energy", energy(kinetic), "Of translation: ½ m v²"),
+        Row::of(
+            "Rotational energy",
+            energy(world.rotational_energy(i)),
+            "½ I ω²",
+        ),
+        Row::of(
+            "Potential energy",
+            energy(-mass * world.gravity.dot(x)),
+            "−m g·x, from the origin",
+        ),
+    ]);
+    rows
+}

@@ -1,0 +1,376 @@
+//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command. In the
+//! laboratory also what acts from the next start on.
+
+use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer};
+use crate::simulation::{Command, Half, Parameter, ParameterInfo, Simulation};
+use crate::ui::detail::{Detail, is_basic, landmarks};
+use crate::ui::panel::Panel;
+use crate::ui::panels::start_values::StartValues;
+use crate::ui::request::Request;
+use crate::ui::widgets::value_row::{Value, value_ui};
+use crate::ui::words::{number, symbol};
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+
+/// The panel of parameters.
+#[derive(Default)]
+pub struct Parameters {
+    start: StartValues,
+}
+
+/// What a parameter belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Group {
+    Liquid,
+    GrainGrain,
+    GrainWall,
+    Drum,
+    Gravity,
+    Mixture,
+}
+
+impl Group {
+    const ALL: [Self; 6] = [
+        Self::Liquid,
+        Self::GrainGrain,
+        Self::GrainWall,
+        Self::Drum,
+        Self::Gravity,
+        Self::Mixture,
+    ];
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::Liquid => "Liquid",
+            Self::GrainGrain => "Grain – grain",
+            Self::GrainWall => "Grain – wall",
+            Self::Drum => "Drum",
+            Self::Gravity => "Gravity",
+            Self::Mixture => "Mixture",
+        }
+    }
+
+    fn of(parameter: &Parameter, scene: &Scene) -> Self {
+        match parameter {
+            Parameter::DrumSpeed => Self::Drum,
+            Parameter::Gravity => Self::Gravity,
+            Parameter::Share(_) => Self::Mixture,
+            Parameter::Viscosity
+            | Parameter::SurfaceTension
+            | Parameter::ContactAngle
+            | Parameter::LiquidVolume
+            | Parameter::BridgeLaw => Self::Liquid,
+            Parameter::Friction(a, b)
+            | Parameter::WetFriction(a, b)
+            | Parameter::Restitution(a, b)
+            | Parameter::RollingFriction(a, b) => {
+                if scene.has_grains_of(a) && scene.has_grains_of(b) {
+                    Self::GrainGrain
+                } else {
+                    Self::GrainWall
+                }
+            }
+        }
+    }
+}
+
+/// Whether walls of `scene` are made of `material`.
+fn is_of_walls(scene: &Scene, material: &str) -> bool {
+    match &scene.container {
+        SceneContainer::Nothing => false,
+        SceneContainer::Drum { material: own, .. } | SceneContainer::Box { material: own, .. } => {
+            own == material
+        }
+        SceneContainer::Column {
+            material: floor,
+            tube,
+            ..
+        } => floor == material || tube.as_ref().is_some_and(|tube| tube.material == material),
+        SceneContainer::Planes(planes) => planes.iter().any(|plane| plane.material == material),
+    }
+}
+
+impl Panel for Parameters {
+    fn title(&self) -> &'static str {
+        "Parameters"
+    }
+
+    fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        simulation: &Simulation,
+        _view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let list = simulation.parameters();
+        if list.is_empty() {
+            ui.weak("The parameters appear when the bed stands.");
+            return;
+        }
+        let detail = Detail::ui(ui);
+        ui.weak("These act at once, also while it runs.");
+        for group in Group::ALL {
+            group_ui(ui, group, detail, simulation, out);
+        }
+        ui.add_space(4.0);
+        self.footer_ui(ui, detail, simulation, out);
+    }
+}
+
+impl Parameters {
+    fn footer_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        detail: Detail,
+        simulation: &Simulation,
+        out: &mut Vec<Request>,
+    ) {
+        let is_away = |info: &&ParameterInfo| simulation.value(&info.parameter) != info.default;
+        let away = || simulation.parameters().iter().filter(is_away);
+        let of_start = self.start.changed(simulation);
+        let button = ui
+            .add_enabled(
+                away().count() + of_start > 0,
+                egui::Button::new("Reset all"),
+            )
+            .on_hover_text("Every value back to the scene's; some of them act at the next start")
+            .on_disabled_hover_text("Every value is the scene's");
+        if button.clicked() {
+            out.extend(away().map(|info| Request::Command(set(info, info.default))));
+            self.start.reset(simulation);
+        }
+        if detail == Detail::Lab {
+            self.start.rows_ui(ui, simulation);
+        } else {
+            let live = away().filter(|info| !is_basic(info, simulation.scene()));
+            unseen_ui(ui, live.count() + of_start);
+        }
+        self.start.footer_ui(ui, out);
+    }
+}
+
+/// Says how many values are others than the scene's and not shown, and shows them.
+fn unseen_ui(ui: &mut egui::Ui, unseen: usize) {
+    let text = format!("{unseen} more changed: show them in Lab");
+    if unseen > 0 && ui.button(text).clicked() {
+        Detail::Lab.choose(ui.ctx());
+    }
+}
+
+/// The parameters of a group that `detail` shows, under their headings.
+fn group_ui(
+    ui: &mut egui::Ui,
+    group: Group,
+    detail: Detail,
+    simulation: &Simulation,
+    out: &mut Vec<Request>,
+) {
+    let scene = simulation.scene();
+    let shown = |info: &&ParameterInfo| {
+        let wanted = detail == Detail::Lab || is_basic(info, scene);
+        wanted && Group::of(&info.parameter, scene) == group
+    };
+    let mut pair = None;
+    for info in simulation.parameters().iter().filter(shown) {
+        let own = pair_of(&info.parameter);
+        if pair != Some(own) {
+            heading_ui(ui, group, own, scene);
+            if group == Group::Liquid {
+                out.extend(liquids_ui(ui, simulation));
+            }
+            pair = Some(own);
+        }
+        let twin = simulation
+            .twin()
+            .filter(|twin| *twin.parameter() == info.parameter);
+        if twin.is_none() {
+            let (value, mut compared) = (simulation.value(&info.parameter), false);
+            let wanted = row_ui(ui, info, value, detail, scene, |ui| {
+                compared = compare_ui(ui, info, simulation);
+            });
+            out.extend(wanted.map(|value| Request::Command(set(info, value))));
+            out.extend(compared.then(|| Request::Compare(Some(info.parameter.clone()))));
+            continue;
+        }
+        for half in Half::ALL {
+            let named = ParameterInfo {
+                label: format!("{}, {}", info.label, half.label()),
+                ..info.clone()
+            };
+            ui.weak(number::capitalised(half.label()));
+            let value = simulation.half(half).value(&info.parameter);
+            let wanted = ui.push_id(half, |ui| row_ui(ui, &named, value, detail, scene, |_| ()));
+            out.extend(wanted.inner.map(|value| match half {
+                Half::Left => Request::Command(set(info, value)),
+                Half::Right => Request::TwinValue(value),
+            }));
+        }
+    }
+}
+
+/// The button that leads to two values of a parameter side by side; whether it was pressed.
+fn compare_ui(ui: &mut egui::Ui, info: &ParameterInfo, simulation: &Simulation) -> bool {
+    let enabled = simulation.twin().is_none();
+    let button = ui
+        .add_enabled(enabled, egui::Button::new("⇄").frame(false))
+        .on_hover_text("Compare two values of it side by side…")
+        .on_disabled_hover_text("Two values are compared already: end that comparison first");
+    let name = format!("Compare {}…", info.label);
+    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, enabled, &name));
+    button.clicked()
+}
+
+/// The row of one parameter, with what is drawn `beside` its field: what is wanted instead of `value`, if anything.
+fn row_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    detail: Detail,
+    scene: &Scene,
+    beside: impl FnOnce(&mut egui::Ui),
+) -> Option<f64> {
+    let wanted = match info.parameter {
+        Parameter::BridgeLaw => bridge_law_ui(ui, info, value, beside),
+        _ => parameter_ui(ui, info, value, detail, scene, beside),
+    };
+    match wanted? {
+        Command::Set { value, .. } => Some(value),
+        _ => None,
+    }
+}
+
+/// The two materials that a parameter is about.
+fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
+    match parameter {
+        Parameter::Friction(a, b)
+        | Parameter::WetFriction(a, b)
+        | Parameter::Restitution(a, b)
+        | Parameter::RollingFriction(a, b) => Some((a, b)),
+        _ => None,
+    }
+}
+
+/// What stands beside a slider, under a heading that says the rest.
+fn short_name(info: &ParameterInfo) -> String {
+    match &info.parameter {
+        Parameter::Friction(..) if info.label.starts_with("dry") => "Dry friction".into(),
+        Parameter::Friction(..) => "Friction".into(),
+        Parameter::WetFriction(..) => "Wet friction".into(),
+        Parameter::Restitution(..) => "Restitution".into(),
+        Parameter::RollingFriction(..) => "Rolling friction".into(),
+        _ => number::capitalised(&info.label),
+    }
+}
+
+fn heading_ui(ui: &mut egui::Ui, group: Group, pair: Option<(&str, &str)>, scene: &Scene) {
+    ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(group.title()).strong());
+        let Some((a, b)) = pair else {
+            return;
+        };
+        let names = ui.weak(format!("{a} – {b}"));
+        if group == Group::GrainGrain && (is_of_walls(scene, a) || is_of_walls(scene, b)) {
+            names.on_hover_text("Walls are made of it too: these values hold for them as well.");
+        }
+    });
+}
+
+/// The paper's liquids, water to glycerol, and none: each sets what makes it that liquid.
+fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
+    let set = |parameter, value| Request::Command(Command::Set { parameter, value });
+    let volume = simulation.value(&Parameter::LiquidVolume);
+    let mut wanted = Vec::new();
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let dry = ui.selectable_label(volume == 0.0, "dry");
+        if dry.on_hover_text("No liquid at all").clicked() {
+            wanted.push(set(Parameter::LiquidVolume, 0.0));
+        }
+        for case in &LIQUID_CASES {
+            let own = volume > 0.0 && simulation.value(&Parameter::Viscosity) == case.viscosity;
+            let button = ui.selectable_label(own, case.name.trim_end_matches(" glycerol"));
+            let hint = format!(
+                "{}: {} mPa s, case {} of Table 1 of Kasper et al. 2021",
+                case.name,
+                number::short(1e3 * case.viscosity),
+                case.number
+            );
+            if button.on_hover_text(hint).clicked() {
+                if volume == 0.0 {
+                    let scene = simulation.scene().liquid.as_ref();
+                    let poured = scene.map_or(PAPER_VOLUME, |liquid| liquid.volume);
+                    wanted.push(set(Parameter::LiquidVolume, poured));
+                }
+                wanted.push(set(Parameter::Viscosity, case.viscosity));
+                wanted.push(set(Parameter::SurfaceTension, case.surface_tension()));
+                wanted.push(set(Parameter::ContactAngle, case.contact_angle()));
+            }
+        }
+    });
+    wanted
+}
+
+/// The choice between the two bridge laws; the command that a change asks for.
+fn bridge_law_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    beside: impl FnOnce(&mut egui::Ui),
+) -> Option<Command> {
+    let mut chosen = value;
+    ui.horizontal(|ui| {
+        ui.label("Bridges").on_hover_text(info.description);
+        for (law, name) in [(0.0, "as printed"), (1.0, "as coded")] {
+            ui.selectable_value(&mut chosen, law, name)
+                .on_hover_text(info.description);
+        }
+        beside(ui);
+    });
+    (chosen != value).then(|| set(info, chosen))
+}
+
+/// The row of one parameter of `scene` whose present value is `value` (SI), with what is drawn `beside` its field; the
+/// command that a change asks for.
+pub fn parameter_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    detail: Detail,
+    scene: &Scene,
+    beside: impl FnOnce(&mut egui::Ui),
+) -> Option<Command> {
+    let name = short_name(info);
+    let mut row = Value {
+        label: &info.label,
+        name: &name,
+        symbol: info.symbol,
+        range: info.range.clone(),
+        default: info.default,
+        display: info.display,
+        is_logarithmic: info.parameter == Parameter::Viscosity,
+        is_whole: false,
+        landmarks: &[],
+        caption: None,
+    };
+    let extent = row.extent();
+    match detail {
+        Detail::Basics => row.landmarks = landmarks(&info.parameter),
+        Detail::Lab => row.caption = Some(format!("{extent} · acts at once")),
+    }
+    let wanted = value_ui(ui, &row, value, beside, |ui| {
+        ui.label(info.description);
+        ui.label(symbol::text(ui, info.parameter.equation(scene)));
+        ui.weak(&extent);
+        ui.weak("It acts from the next step on.");
+        ui.weak(format!("--set {}=… on the command line", info.parameter));
+    });
+    wanted.map(|wanted| set(info, wanted))
+}
+
+fn set(info: &ParameterInfo, value: f64) -> Command {
+    Command::Set {
+        parameter: info.parameter.clone(),
+        value,
+    }
+}

@@ -1,0 +1,134 @@
+//! What can be asked of the run now: play, pause, steps and leaps in time, the next avalanche.
+//!
+//! In: the simulation as it is. Out: a command or a request where it means something now, nothing
+//! elsewhere. Buttons, keys and plots ask here, so that all of them follow the same rule.
+
+use crate::simulation::{Command, SAMPLE_INTERVAL, Simulation, Status};
+use crate::ui::request::Request;
+
+/// Speeds to choose from, in simulated seconds per second.
+pub const SPEEDS: [f64; 11] = [
+    0.01,
+    0.025,
+    0.05,
+    0.1,
+    0.25,
+    0.5,
+    1.0,
+    2.0,
+    5.0,
+    10.0,
+    f64::INFINITY,
+];
+
+/// What a scene shows should last so long at least [s]: an impact is seen in slow motion.
+const WATCHED: f64 = 5.0;
+
+/// The speed at which a scene of this `duration` [s] is watched at first: real time, or slow motion
+/// where it is short.
+pub fn first_speed(duration: f64) -> f64 {
+    let slow = SPEEDS.into_iter().filter(|speed| *speed <= 1.0);
+    let lasting = slow.filter(|speed| duration >= WATCHED * speed);
+    lasting.fold(SPEEDS[0], f64::max)
+}
+
+/// Whether `command` means anything while the run is in `status`.
+pub fn allows(status: &Status, command: &Command) -> bool {
+    match status {
+        Status::Running | Status::Paused | Status::Seeking { .. } => true,
+        Status::Faulted(_) => matches!(
+            command,
+            Command::Reset | Command::Seek(_) | Command::Undo | Command::Redo | Command::Return(_)
+        ),
+        Status::Preparing { .. } | Status::Failed(_) => false,
+    }
+}
+
+/// What the one button for both and the space key ask for: pause while it goes on, else play where
+/// that is possible.
+pub fn play_or_pause(status: &Status) -> Option<Command> {
+    let command = match status {
+        Status::Running | Status::Seeking { .. } => Command::Pause,
+        _ => Command::Play,
+    };
+    allows(status, &command).then_some(command)
+}
+
+/// What a step back shows: the step before the one shown, where there is one.
+pub fn step_back(simulation: &Simulation) -> Option<Command> {
+    let before = Command::Seek(simulation.step().checked_sub(1)?);
+    allows(simulation.status(), &before).then_some(before)
+}
+
+/// What shows the moment a sample's interval before or after the one shown; after the newest one,
+/// the run goes on so far.
+pub fn leap(simulation: &Simulation, way: Way) -> Option<Command> {
+    let clock = simulation.world()?.clock;
+    let steps = (SAMPLE_INTERVAL / clock.time_step).ceil().max(1.0) as u64;
+    let (step, end) = (simulation.step(), simulation.past().end.step);
+    match way {
+        Way::Back => (step > 0).then(|| Command::Seek(step.saturating_sub(steps))),
+        Way::On if step < end => Some(Command::Seek(step.saturating_add(steps).min(end))),
+        Way::On => Some(Command::Step(steps)),
+    }
+}
+
+/// Backwards or on in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// To what was before.
+    Back,
+    /// To what comes next.
+    On,
+}
+
+/// The request to show the start of the avalanche before or after the moment shown, where there is
+/// one.
+pub fn to_avalanche(simulation: &Simulation, way: Way) -> Option<Request> {
+    let time_step = simulation.world()?.clock.time_step;
+    let now = simulation.step() as f64 * time_step;
+    // A start that is shown already is neither before nor after.
+    let mut starts = simulation
+        .avalanches()
+        .iter()
+        .map(|avalanche| avalanche.start);
+    let start = match way {
+        Way::Back => starts.rfind(|start| *start < now - time_step),
+        Way::On => starts.find(|start| *start > now + time_step),
+    };
+    seek(simulation, start?)
+}
+
+/// The moment shown [s], where it is not the newest.
+pub fn moment_shown(simulation: &Simulation) -> Option<f64> {
+    let time_step = simulation.world()?.clock.time_step;
+    simulation
+        .looks_back()
+        .then(|| simulation.step() as f64 * time_step)
+}
+
+/// The request to show the moment at `time` [s].
+pub fn seek(simulation: &Simulation, time: f64) -> Option<Request> {
+    let time_step = simulation.world()?.clock.time_step;
+    let step = (time.max(0.0) / time_step).round() as u64;
+    Some(Request::Command(Command::Seek(step)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_over_at_once_is_watched_in_slow_motion() {
+        let cases = [
+            (50.0, 1.0),
+            (2.0, 0.25),
+            (0.6, 0.1),
+            (0.3, 0.05),
+            (1e-6, 0.01),
+        ];
+        for (duration, speed) in cases {
+            assert_eq!(first_speed(duration), speed, "{duration} s");
+        }
+    }
+}

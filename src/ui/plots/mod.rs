@@ -1,0 +1,7 @@
+//! Curves of samples, as several panels draw them.
+
+pub mod axes;
+pub mod decimate;
+pub mod run_curves;
+pub mod time_plot;
+pub mod time_window;

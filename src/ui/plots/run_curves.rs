@@ -1,0 +1,170 @@
+//! The curves of one measure for all runs on a plot: the present one, the one beside it, those that
+//! were left for others.
+//!
+//! In: the simulation with its series. Out: points, no more than a plot shows, and the legend of
+//! two runs side by side.
+
+use crate::measure::{Avalanche, Series};
+use crate::simulation::{Half, Record, Simulation};
+use crate::ui::playback::moment_shown;
+use crate::ui::plots::decimate::decimate;
+use crate::ui::theme::{Palette, TWIN_DASH};
+use crate::ui::words::number;
+use crate::ui::words::run_names::half_title;
+use bevy_egui::egui::{self, Stroke};
+use egui_plot::{Line, LineStyle};
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub struct Curves<'a> {
+    /// The samples of the run.
+    pub series: &'a Series,
+    /// The samples of the run beside it.
+    pub twin: Option<&'a Series>,
+    /// Avalanches in order of time.
+    pub avalanches: &'a [Avalanche],
+    /// When parameters were changed [s], ascending.
+    pub changes: &'a [f64],
+    /// Runs that were left for others.
+    pub kept: &'a [KeptRun],
+    /// The moment shown [s], where it is not the newest.
+    pub shown: Option<f64>,
+}
+
+/// A run that was left for another, with its name.
+pub type KeptRun = (String, Arc<Record>);
+
+/// The lines of one plot.
+pub struct Lines {
+    /// That of the present run.
+    pub own: Vec<[f64; 2]>,
+    /// That of the run beside it.
+    pub twin: Option<Vec<[f64; 2]>>,
+    /// Those of runs kept beside it, with their names.
+    pub kept: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+impl<'a> Curves<'a> {
+    /// Those of `simulation` and its twin.
+    pub fn of(simulation: &'a Simulation, changes: &'a [f64], kept: &'a [KeptRun]) -> Self {
+        Self {
+            series: simulation.series(),
+            twin: simulation.twin().map(|twin| twin.run().series()),
+            avalanches: simulation.avalanches(),
+            changes,
+            kept,
+            shown: moment_shown(simulation),
+        }
+    }
+
+    /// The lines in `window`, where `value` is taken of their samples.
+    pub fn lines(
+        &self,
+        window: &RangeInclusive<f64>,
+        columns: usize,
+        value: impl Fn(&Series, usize) -> f64,
+    ) -> Lines {
+        let line = |series: &Series| decimate(series.time(), window, columns, |i| value(series, i));
+        let kept = self.kept.iter();
+        Lines {
+            own: line(self.series),
+            twin: self.twin.map(line),
+            kept: kept
+                .map(|(name, record)| (name.clone(), line(&record.series)))
+                .collect(),
+        }
+    }
+
+    /// The value of each run at the moment shown in words.
+    pub fn present(
+        &self,
+        value: impl Fn(&Series, usize) -> f64,
+        in_words: impl Fn(f64) -> String,
+    ) -> Vec<String> {
+        let present = |series: &Series| {
+            let until = |shown| series.time().partition_point(|time| *time <= shown);
+            let index = self.shown.map_or(series.len(), until).checked_sub(1);
+            in_words(index.map_or(f64::NAN, |index| value(series, index)))
+        };
+        std::iter::once(self.series)
+            .chain(self.twin)
+            .map(present)
+            .collect()
+    }
+}
+
+impl Lines {
+    /// All their points.
+    pub fn points(&self) -> impl Iterator<Item = &[f64; 2]> {
+        let kept = self.kept.iter().flat_map(|(_, points)| points);
+        (self.own.iter())
+            .chain(self.twin.iter().flatten())
+            .chain(kept)
+    }
+}
+
+/// The runs that were left for others by `simulation` and by its twin.
+pub fn kept_runs(simulation: &Simulation) -> Vec<KeptRun> {
+    let of = |run: &Simulation, beside: &str| -> Vec<KeptRun> {
+        let named =
+            |record: &Arc<Record>| (format!("Run {}{beside}", record.number), record.clone());
+        run.past().kept.iter().map(named).collect()
+    };
+    let twin = simulation.twin().map(|twin| of(twin.run(), ", right"));
+    let mut kept = of(simulation, "");
+    kept.extend(twin.into_iter().flatten());
+    kept
+}
+
+/// When parameters were changed [s], ascending: once for each change, however many values it took.
+pub fn change_times(simulation: &Simulation) -> Vec<f64> {
+    let (past, commands) = (simulation.past(), simulation.commands());
+    let times = past
+        .changes
+        .iter()
+        .filter_map(|first| Some(commands.get(*first)?.time));
+    times.collect()
+}
+
+/// Which line is which of the two runs, where there are two.
+pub fn halves_ui(ui: &mut egui::Ui, simulation: &Simulation) {
+    if simulation.twin().is_none() {
+        return;
+    }
+    let palette = Palette::of(ui.visuals());
+    let lines = [
+        (Half::Left, ui.visuals().text_color(), None),
+        (Half::Right, palette.twin, Some(TWIN_DASH)),
+    ];
+    for (half, colour, dash) in lines {
+        ui.horizontal(|ui| {
+            line_sample_ui(ui, dash, Stroke::new(1.8, colour));
+            let title = number::capitalised(&half_title(simulation, half));
+            ui.label(format!("{}: {title}", number::capitalised(half.label())));
+        });
+    }
+}
+
+/// A piece of a line on the plots, with dashes of this length.
+pub fn line_sample_ui(ui: &mut egui::Ui, dash: Option<f32>, stroke: Stroke) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 14.0), egui::Sense::hover());
+    let ends = [rect.left_center(), rect.right_center()];
+    match dash {
+        None => drop(ui.painter().line_segment(ends, stroke)),
+        Some(dash) => {
+            let line = egui::Shape::dashed_line(&ends, stroke, dash, 0.6 * dash);
+            ui.painter().extend(line);
+        }
+    }
+}
+
+/// The line of the run beside the first.
+pub fn twin_line<'a>(name: &str, points: Vec<[f64; 2]>, palette: Palette) -> Line<'a> {
+    let style = LineStyle::Dashed { length: TWIN_DASH };
+    Line::new(name, points)
+        .color(palette.twin)
+        .width(2.0)
+        .style(style)
+}

@@ -1,0 +1,193 @@
+//! One plot over time: the curves of one measure, its value at the moment shown, marks over it.
+//!
+//! In: the curves and the part of the run in view. Out: the plot, and what the pointer did on it.
+
+use crate::ui::plots::axes::{SPARSE_X, SPARSE_Y, round_marks, tick, tidy};
+use crate::ui::plots::run_curves::{Lines, twin_line};
+use crate::ui::theme::{Palette, dash};
+use crate::ui::words::number;
+use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
+use egui_plot::{
+    AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotUi, Text, VLine,
+};
+use std::ops::RangeInclusive;
+
+/// Room for half of the last label of the time axis.
+const ROOM_AT_THE_RIGHT: f32 = 14.0;
+/// Room for the value of a run beside the title, in points.
+const ROOM_FOR_VALUE: f32 = 92.0;
+
+/// One plot over time.
+pub struct TimePlot {
+    /// What tells it from the others.
+    pub id: &'static str,
+    /// What stands over it.
+    pub title: &'static str,
+    /// The value of each run at the moment shown.
+    pub present: Vec<String>,
+    /// Its line's colour.
+    pub colour: Color32,
+    /// Its lines.
+    pub lines: Lines,
+    /// The range of the vertical axis.
+    pub height: RangeInclusive<f64>,
+    /// Whether its numbers are powers of ten.
+    pub decades: bool,
+    /// The unit behind a number of the vertical axis.
+    pub unit: &'static str,
+}
+
+/// Height of a plot and number of its columns of pixels in `ui`.
+pub fn size_of_plots(ui: &egui::Ui) -> (f32, usize) {
+    let height = (0.215 * ui.ctx().content_rect().height()).clamp(110.0, 300.0);
+    let columns = (ui.available_width().max(100.0) * ui.ctx().pixels_per_point()) as usize;
+    (height, columns)
+}
+
+impl TimePlot {
+    /// Draws it with `marks` over its lines, over the part of the run in `window` [s], `height`
+    /// points high; what the pointer does on it is in the answer.
+    pub fn ui<'a>(
+        self,
+        ui: &mut egui::Ui,
+        window: &RangeInclusive<f64>,
+        height: f32,
+        marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
+    ) -> egui::Response {
+        let palette = Palette::of(ui.visuals());
+        let colours = [self.colour, palette.twin];
+        head_ui(ui, self.title, &self.present, colours);
+        let bounds = PlotBounds::from_min_max(
+            [*window.start(), *self.height.start()],
+            [*window.end(), *self.height.end()],
+        );
+        let room = egui::vec2(ui.available_width() - ROOM_AT_THE_RIGHT, height);
+        let plot = self.empty_plot(room, palette);
+        let Lines { own, twin, kept } = self.lines;
+        let name = if twin.is_some() { "left" } else { self.title };
+        let line = Line::new(name, own).color(self.colour).width(1.7);
+        let twin = twin.map(|points| twin_line("right", points, palette));
+        let shown = plot.show(ui, move |plot| {
+            plot.set_plot_bounds(bounds);
+            for (index, (name, points)) in kept.into_iter().enumerate() {
+                kept_ui(plot, index, &name, points, palette.kept);
+            }
+            plot.line(line);
+            if let Some(line) = twin {
+                plot.line(line);
+            }
+            marks(plot);
+        });
+        shown.response
+    }
+
+    /// Its axes and grid in a `room` of this size [points]; nothing but the part in view moves it.
+    fn empty_plot<'a>(&self, room: egui::Vec2, palette: Palette) -> Plot<'a> {
+        let (decades, unit) = (self.decades, self.unit);
+        Plot::new(self.id)
+            .height(room.y)
+            .width(room.x)
+            .show_crosshair(false)
+            .grid_color(palette.grid)
+            .x_grid_spacer(|input| round_marks(input, SPARSE_X, 0.0))
+            .y_grid_spacer(move |input| {
+                let finest = if decades { 1.0 } else { 0.0 };
+                round_marks(input, SPARSE_Y, finest)
+            })
+            .auto_bounds(false)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_axis_zoom_drag(false)
+            .allow_double_click_reset(false)
+            .link_cursor("time", Vec2b::new(true, false))
+            .custom_x_axes(vec![
+                AxisHints::new_x()
+                    .label_spacing(SPARSE_X * 6.0..=SPARSE_X * 8.0)
+                    .formatter(|mark, _| format!("{} s", tidy(mark.value))),
+            ])
+            .custom_y_axes(vec![
+                AxisHints::new_y()
+                    .min_thickness(46.0)
+                    .label_spacing(SPARSE_Y * 6.0..=SPARSE_Y * 8.0)
+                    .formatter(move |mark, _| tick(mark.value, decades)),
+            ])
+            .label_formatter(move |hover| Some(hover_label(hover, decades, unit)))
+    }
+}
+
+/// The title of a plot and the value of each run at the moment shown: in one line where there is
+/// room for all of it.
+fn head_ui(ui: &mut egui::Ui, title: &str, values: &[String], colours: [Color32; 2]) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let words = ui
+        .painter()
+        .layout_no_wrap(title.to_owned(), font, Color32::WHITE);
+    let needed = words.size().x + ROOM_FOR_VALUE * values.len() as f32;
+    let title_ui = |ui: &mut egui::Ui| ui.label(RichText::new(title).strong());
+    let values_ui = |ui: &mut egui::Ui| {
+        // From right to left.
+        for (index, (text, colour)) in values.iter().zip(colours).enumerate().rev() {
+            ui.label(RichText::new(text).color(colour).strong());
+            if index > 0 {
+                ui.weak("|");
+            }
+        }
+    };
+    if needed < ui.available_width() {
+        egui::Sides::new().show(ui, title_ui, values_ui);
+    } else {
+        title_ui(ui);
+        egui::Sides::new().show(ui, |_| (), values_ui);
+    }
+}
+
+/// A kept run as a dashed line with its name at the end.
+fn kept_ui(plot: &mut PlotUi, index: usize, name: &str, points: Vec<[f64; 2]>, colour: Color32) {
+    let Some([time, value]) = points.last().copied() else {
+        return;
+    };
+    plot.line(
+        Line::new(name, points)
+            .color(colour)
+            .width(1.2)
+            .style(LineStyle::Dashed {
+                length: dash(index),
+            }),
+    );
+    let label = RichText::new(name).small().color(colour);
+    let end = time.min(plot.plot_bounds().max()[0]);
+    plot.text(Text::new(name, PlotPoint::new(end, value), label).anchor(Align2::RIGHT_BOTTOM));
+}
+
+/// A mark at the moment shown.
+pub fn moment_ui(plot: &mut PlotUi, time: f64, palette: Palette) {
+    plot.vline(
+        VLine::new("shown", time)
+            .stroke(Stroke::new(2.0, palette.warning))
+            .allow_hover(false),
+    );
+}
+
+fn hover_label(hover: &HoverPosition, decades: bool, unit: &str) -> String {
+    let (name, position) = match hover {
+        HoverPosition::NearDataPoint {
+            plot_name,
+            position,
+            ..
+        } => (*plot_name, *position),
+        HoverPosition::Elsewhere { position } => ("", *position),
+    };
+    let value = if decades {
+        10_f64.powf(position.y)
+    } else {
+        position.y
+    };
+    let place = format!("{:.2} s\n{} {unit}", position.x, number::short(value));
+    if name.is_empty() {
+        place
+    } else {
+        format!("{name}\n{place}")
+    }
+}

@@ -1,0 +1,46 @@
+//! What is asked of the job that takes pictures, and how far a film has come.
+//!
+//! In: orders of a person. Out: the state that the bar over the picture shows. Who takes the
+//! pictures is the window's screenshot job.
+
+use bevy::prelude::Resource;
+use std::path::PathBuf;
+
+/// What was asked for and is still to be begun, and the film that is being recorded, if one is.
+#[derive(Resource, Default)]
+pub struct ScreenshotOrders {
+    /// What was asked for, in order.
+    pub asked: Vec<ScreenshotOrder>,
+    /// What becomes of the film.
+    pub film: FilmState,
+}
+
+/// What a person can ask for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ScreenshotOrder {
+    /// One picture of the whole window as it is now, into this PNG file.
+    Picture(PathBuf),
+    /// A film of the picture without panels from now on, into this file or folder.
+    Film(PathBuf),
+    /// That is all of the film; write it.
+    EndFilm,
+    /// Forget the film.
+    CancelFilm,
+}
+
+/// What becomes of a film.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum FilmState {
+    /// There is none.
+    #[default]
+    Idle,
+    /// Its pictures are taken.
+    Recording {
+        /// So many so far.
+        pictures: usize,
+        /// Simulated time that they span [s].
+        time: f64,
+    },
+    /// Its last pictures are written, so many of them.
+    Writing(usize),
+}

@@ -1,0 +1,97 @@
+//! Panels one under the other on a side of the dock, each open or closed under its title.
+//!
+//! In: the panels of the side and the simulation. Out: what the panels ask for. A panel that opens
+//! is scrolled into view.
+
+use crate::simulation::Simulation;
+use crate::ui::panel::Panel;
+use crate::ui::request::Request;
+use crate::ui::widgets::focus::follow_focus;
+use crate::view::ViewSettings;
+use bevy_egui::egui::{self, CollapsingHeader, RichText, ScrollArea};
+
+/// A panel in its place.
+pub struct Section {
+    /// What stands in it.
+    pub panel: Box<dyn Panel>,
+    open_at_first: bool,
+    /// Whether somebody asked to see it.
+    pub is_wanted: bool,
+    /// How far it was open in the last frame, 0 … 1.
+    openness: f32,
+}
+
+/// The section of `panel`, open at first or not.
+pub fn section(panel: impl Panel, open_at_first: bool) -> Section {
+    Section {
+        panel: Box::new(panel),
+        open_at_first,
+        is_wanted: false,
+        openness: 1.0,
+    }
+}
+
+/// Draws the `sections` from top to bottom; those that do not apply to `simulation` are left out.
+pub fn sections_ui(
+    ui: &mut egui::Ui,
+    sections: &mut [Section],
+    simulation: &Simulation,
+    view: &mut ViewSettings,
+    out: &mut Vec<Request>,
+) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        // Room for the scroll bar, so that it never lies over a number.
+        ui.set_width(ui.available_width() - 6.0);
+        let mut opening = None;
+        for section in sections {
+            if !section.panel.applies_to(simulation) {
+                continue;
+            }
+            // With two runs side by side most panels describe the one that was clicked on last.
+            let (described, of) = match simulation.twin() {
+                Some(_) if section.panel.describes_one_run() => {
+                    let of = format!(" · {}", view.focus.label());
+                    (simulation.half(view.focus), of)
+                }
+                _ => (simulation, String::new()),
+            };
+            let name = section.panel.title();
+            let title = RichText::new(format!("{name}{of}")).strong().size(17.0);
+            let is_wanted = std::mem::take(&mut section.is_wanted);
+            let summoned = section.panel.wants_open(view) || is_wanted;
+            // In another kind of scene it is another panel, open or not.
+            let comes_first = section.panel.comes_first(described);
+            let shown = CollapsingHeader::new(title)
+                .id_salt((name, comes_first))
+                .default_open(section.open_at_first || comes_first)
+                .open(summoned.then_some(true))
+                .show_unindented(ui, |ui| section.panel.ui(ui, described, view, out));
+            if is_wanted {
+                shown.header_response.request_focus();
+            }
+            if shown.openness > section.openness || is_wanted {
+                opening = Some(whole(&shown));
+            }
+            section.openness = shown.openness;
+        }
+        // The last wish to scroll counts: a panel that opens has its title focused too.
+        match opening {
+            Some(panel) => show_whole(ui, panel),
+            None => follow_focus(ui),
+        }
+    });
+}
+
+/// The place of a panel's title and of as much of it as is open.
+fn whole<R>(panel: &egui::CollapsingResponse<R>) -> egui::Rect {
+    let title = panel.header_response.rect;
+    let body = panel.body_response.as_ref();
+    body.map_or(title, |body| title.union(body.rect))
+}
+
+/// Scrolls as far as it takes to see all of a panel that opens, or its upper part where it is
+/// higher than the window.
+fn show_whole(ui: &egui::Ui, panel: egui::Rect) {
+    let is_higher = panel.height() > ui.clip_rect().height();
+    ui.scroll_to_rect(panel, is_higher.then_some(egui::Align::Min));
+}

@@ -1,0 +1,7 @@
+//! Controls that several panels use.
+
+pub mod combo;
+pub mod field;
+pub mod focus;
+pub mod value_row;
+pub mod value_table;

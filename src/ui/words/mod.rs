@@ -1,0 +1,5 @@
+//! What the panels say, as text.
+
+pub mod number;
+pub mod run_names;
+pub mod symbol;

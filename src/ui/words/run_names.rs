@@ -1,0 +1,38 @@
+//! What people call a parameter, a value of it, and each of two runs side by side.
+//!
+//! In: the simulation. Out: text for panels, plots and the picture.
+
+use crate::simulation::{Half, Parameter, Simulation, Twin};
+use crate::ui::words::number;
+
+/// What people call `parameter`.
+pub fn parameter_name(parameter: &Parameter, simulation: &Simulation) -> String {
+    let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
+    info.map_or_else(|| parameter.to_string(), |info| info.label.clone())
+}
+
+/// A value of `parameter` with the unit that people think in.
+pub fn value_in_words(parameter: &Parameter, value: f64) -> String {
+    let unit = parameter.display().name;
+    let space = if unit.is_empty() { "" } else { " " };
+    format!("{}{space}{unit}", bare_value(parameter, value))
+}
+
+/// A value of `parameter` in the unit that people think in, without that unit.
+pub fn bare_value(parameter: &Parameter, value: f64) -> String {
+    match (parameter, value) {
+        (Parameter::BridgeLaw, 0.0) => "as printed".into(),
+        (Parameter::BridgeLaw, _) => "as coded".into(),
+        _ => number::trimmed(value * parameter.display().factor),
+    }
+}
+
+/// What tells one of two runs from the other: `viscosity 1.01 mPa s`.
+pub fn half_title(simulation: &Simulation, half: Half) -> String {
+    let Some(parameter) = simulation.twin().map(Twin::parameter) else {
+        return String::new();
+    };
+    let value = simulation.half(half).value(parameter);
+    let name = parameter_name(parameter, simulation);
+    format!("{name} {}", value_in_words(parameter, value))
+}

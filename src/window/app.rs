@@ -1,0 +1,194 @@
+//! The app of the window: Bevy with simulation, view and panels, before a person or for one
+//! picture.
+//!
+//! In: a [`Job`]. Out: the laboratory, until somebody closes it, or a picture.
+
+use crate::scene::Scene;
+use crate::simulation::{Simulation, SimulationPlugin};
+use crate::ui::{Dock, UiPlugin, UserMemory, first_speed};
+use crate::view::{ViewPlugin, ViewSettings};
+use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
+use crate::window::environment::{Missing, adapters, display};
+use crate::window::job::{Job, Opened, PictureJob, WindowError};
+use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
+use crate::window::screenshot_job::{Failure, ScreenshotJobs, ScreenshotPlugin};
+use bevy::app::ScheduleRunnerPlugin;
+use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{CameraOutputMode, ClearColorConfig};
+use bevy::log::{Level, LogPlugin};
+use bevy::math::UVec2;
+use bevy::prelude::*;
+use bevy::render::RenderPlugin;
+use bevy::render::render_resource::BlendState;
+use bevy::window::PrimaryWindow;
+use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::time::Duration;
+
+/// Least time between two updates without a display, so that the solver has the cores.
+const FRAME: Duration = Duration::from_millis(16);
+
+/// Opens the laboratory and returns when it is closed.
+///
+/// # Errors
+/// Where display or driver are missing, or a picture that was asked for could not be taken.
+pub fn run(job: Job) -> Result<(), WindowError> {
+    let offscreen = (job.picture.as_ref()).is_some_and(|picture| picture.offscreen);
+    if !offscreen {
+        display()?;
+    }
+    let adapters = adapters();
+    if adapters.is_empty() {
+        return Err(Missing::Driver.into());
+    }
+    let software = adapters.iter().all(|adapter| adapter.software);
+    let failure = Failure::default();
+    let mut app = quietly(|| build(job, software, failure.clone())).map_err(Missing::Libraries)?;
+    let exit = app.run();
+    failure.result()?;
+    exit.is_success().then_some(()).ok_or(WindowError::Ended)
+}
+
+/// The app, not yet running.
+fn build(mut job: Job, software: bool, failure: Failure) -> App {
+    let mut app = App::new();
+    // A person begins by looking; a picture is taken of a run that goes to its moment as fast as it
+    // can.
+    job.options.autoplay = job.picture.is_some();
+    job.options.speed = match job.picture {
+        Some(_) => f64::INFINITY,
+        None => first_speed(job.opened.scene().duration),
+    };
+    let title = title(job.opened.scene());
+    match &job.picture {
+        Some(picture) if picture.offscreen => app.add_plugins((
+            offscreen_plugins().set(log()),
+            CanvasPlugin(picture.size),
+            ScheduleRunnerPlugin::run_loop(FRAME),
+        )),
+        picture => app.add_plugins(window_plugins(title, picture.as_ref())),
+    };
+    app.add_plugins(EguiPlugin::default())
+        .insert_resource(EguiGlobalSettings {
+            auto_create_primary_context: false,
+            ..default()
+        })
+        .insert_resource(ViewSettings {
+            show_overlay: !job.picture.as_ref().is_some_and(|picture| picture.plain),
+            // Several samples a pixel are the processor's work where there is no graphics card.
+            smooth_edges: !software || job.picture.is_some(),
+            ..default()
+        })
+        .add_plugins((
+            SimulationPlugin,
+            ViewPlugin,
+            ScreenshotPlugin,
+            UiPlugin {
+                options: job.options.clone(),
+            },
+        ))
+        .add_systems(Startup, spawn_panel_camera)
+        .add_systems(Update, follow_title);
+    let mut dock = app.world_mut().resource_mut::<Dock>();
+    if job.picture.is_none() {
+        dock.remember(UserMemory::user());
+    }
+    match &job.opened {
+        Opened::Scene(_) => dock.scene_opened(&job.name),
+        Opened::Session(_) => dock.session_opened(&job.name),
+    }
+    dock.is_hidden = job.picture.as_ref().is_some_and(|picture| picture.plain);
+    app.insert_resource(job.opened.run(job.options))
+        .insert_resource(OpeningComparison {
+            wanted: job.compared,
+            refused: None,
+        })
+        .add_systems(Update, begin_comparison);
+    if let Some(picture) = job.picture {
+        let mut jobs = app.world_mut().resource_mut::<ScreenshotJobs>();
+        jobs.add_for_command_line(&picture, failure);
+    }
+    app
+}
+
+fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGroup {
+    let size = picture.map_or(UVec2::new(1440, 860), |picture| picture.size);
+    DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: Some(Window {
+                title,
+                name: Some("grainfall".to_owned()),
+                resolution: size.into(),
+                ..default()
+            }),
+            // Work that is in no file is asked about first.
+            close_when_requested: false,
+            ..default()
+        })
+        .set(RenderPlugin {
+            // A picture must not be taken while a pipeline is still missing.
+            synchronous_pipeline_compilation: picture.is_some(),
+            ..default()
+        })
+        .set(log())
+}
+
+/// Only what a person can act on; `RUST_LOG` shows more.
+fn log() -> LogPlugin {
+    LogPlugin {
+        level: Level::WARN,
+        filter: "wgpu=error,naga=error,bevy_render::renderer=error,winit=error,bevy_egui=error"
+            .to_owned(),
+        ..default()
+    }
+}
+
+fn title(scene: &Scene) -> String {
+    format!("{} – Grainfall", scene.title)
+}
+
+/// Keeps the window's title that of the scene.
+fn follow_title(
+    simulation: Option<Res<Simulation>>,
+    window: Option<Single<&mut Window, With<PrimaryWindow>>>,
+) {
+    if let (Some(simulation), Some(mut window)) = (simulation, window) {
+        let title = title(simulation.scene());
+        if window.title != title {
+            window.title = title;
+        }
+    }
+}
+
+/// The camera that draws the panels over everything.
+fn spawn_panel_camera(mut commands: Commands) {
+    commands.spawn((
+        PrimaryEguiContext,
+        Camera2d,
+        RenderLayers::none(),
+        Msaa::Off,
+        Camera {
+            // After those of both halves of the picture.
+            order: 2,
+            output_mode: CameraOutputMode::Write {
+                blend_state: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                clear_color: ClearColorConfig::None,
+            },
+            clear_color: ClearColorConfig::Custom(Color::NONE),
+            ..default()
+        },
+    ));
+}
+
+/// Does `work`; if it panics, says what the panic said instead of printing it.
+fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    let hook = take_hook();
+    set_hook(Box::new(|_| {}));
+    let result = catch_unwind(AssertUnwindSafe(work));
+    set_hook(hook);
+    result.map_err(|panic| {
+        let text = panic.downcast_ref::<String>().cloned();
+        let text = text.or_else(|| panic.downcast_ref::<&str>().map(ToString::to_string));
+        text.unwrap_or_else(|| "the window system's libraries failed".to_owned())
+    })
+}

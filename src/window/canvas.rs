@@ -1,0 +1,80 @@
+//! Pictures with a window or without one.
+//!
+//! In: an app whose cameras draw. Out: an image of given size that they draw into
+//! ([`CanvasPlugin`]), and the request for a picture of it or of the window. When a picture is
+//! taken is not decided here.
+
+use bevy::app::{PluginGroupBuilder, PluginsState};
+use bevy::asset::RenderAssetUsages;
+use bevy::camera::RenderTarget;
+use bevy::math::UVec2;
+use bevy::prelude::*;
+use bevy::render::RenderPlugin;
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
+use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::view::screenshot::Screenshot;
+use bevy::window::ExitCondition;
+use bevy::winit::WinitPlugin;
+
+/// Frames to draw before a picture is whole: pipelines, textures and panels' sizes need a few.
+pub const WARM_UP: u32 = 6;
+
+/// Bevy's plugins for drawing where there is no display.
+pub fn offscreen_plugins() -> PluginGroupBuilder {
+    DefaultPlugins
+        .build()
+        .disable::<WinitPlugin>()
+        .disable::<PipelinedRenderingPlugin>()
+        .set(WindowPlugin {
+            primary_window: None,
+            exit_condition: ExitCondition::DontExit,
+            ..default()
+        })
+        .set(RenderPlugin {
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+}
+
+/// Finishes the plugins of an app that is updated by hand: the graphics device takes a moment.
+pub fn make_ready(app: &mut App) {
+    while app.plugins_state() == PluginsState::Adding {
+        bevy::tasks::tick_global_task_pools_on_main_thread();
+    }
+    app.finish();
+    app.cleanup();
+}
+
+/// Lets every camera draw into one image of this size [pixels]; add it after [`offscreen_plugins`].
+pub struct CanvasPlugin(pub UVec2);
+
+/// The image that cameras draw into.
+#[derive(Resource, Clone)]
+pub struct Canvas(Handle<Image>);
+
+impl Plugin for CanvasPlugin {
+    fn build(&self, app: &mut App) {
+        let mut image =
+            Image::new_target_texture(self.0.x, self.0.y, TextureFormat::Rgba8UnormSrgb, None);
+        image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+        image.asset_usage = RenderAssetUsages::default();
+        let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+        app.insert_resource(Canvas(image)).add_observer(redirect);
+    }
+}
+
+/// A camera that is added draws into the canvas.
+fn redirect(added: On<Add, Camera>, canvas: Res<Canvas>, mut commands: Commands) {
+    commands
+        .entity(added.entity)
+        .insert(RenderTarget::Image(canvas.0.clone().into()));
+}
+
+/// Asks for a picture of the canvas where there is one, of the window otherwise; observe
+/// [`ScreenshotCaptured`](bevy::render::view::screenshot::ScreenshotCaptured) on the entity it is
+/// spawned on.
+pub fn screenshot(canvas: Option<&Canvas>) -> Screenshot {
+    canvas.map_or_else(Screenshot::primary_window, |canvas| {
+        Screenshot::image(canvas.0.clone())
+    })
+}

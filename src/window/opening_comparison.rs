@@ -1,0 +1,34 @@
+//! The second run that a window opens with, beside the first.
+//!
+//! In: a live parameter and its value, from the command line. Out: both runs side by side as soon
+//! as the first one stands, or the reason why not.
+
+use crate::simulation::{Parameter, Simulation};
+use crate::ui::Dock;
+use bevy::prelude::*;
+
+/// A second run that the window opens with.
+#[derive(Resource)]
+pub(super) struct OpeningComparison {
+    /// What to begin with; none once it has begun.
+    pub(super) wanted: Option<(Parameter, f64)>,
+    /// Why there is none.
+    pub(super) refused: Option<String>,
+}
+
+/// Begins the second run as soon as the first one stands.
+pub(super) fn begin_comparison(
+    mut comparison: ResMut<OpeningComparison>,
+    simulation: Option<ResMut<Simulation>>,
+    mut dock: ResMut<Dock>,
+) {
+    let Some(mut simulation) = simulation.filter(|simulation| simulation.can_start_twin()) else {
+        return;
+    };
+    if let Some((parameter, value)) = comparison.bypass_change_detection().wanted.take()
+        && let Err(reason) = simulation.start_twin(&parameter, value)
+    {
+        dock.notify(reason.as_str());
+        comparison.refused = Some(reason);
+    }
+}
