@@ -1,5 +1,6 @@
 //! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
 
+mod architecture;
 mod headless;
 mod measure;
 mod run;
