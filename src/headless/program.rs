@@ -4,7 +4,7 @@ use super::progress::{Progress, spoken};
 use super::recorder::Recorder;
 use super::report::report;
 use super::{Ending, HeadlessError, Job};
-use crate::simulation::{DriverKind, Options, Simulation, SimulationPlugin, Status};
+use crate::simulation::{DriverKind, LabCommand, Options, Simulation, SimulationPlugin, Status};
 use crate::world::World;
 use bevy::MinimalPlugins;
 use bevy::app::{App, PluginGroup, TaskPoolOptions, TaskPoolPlugin};
@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// A [`HeadlessError`] when the input asks for something that cannot be, or a file cannot be written.
 pub fn run(job: &Job, interrupted: &AtomicBool) -> Result<Ending, HeadlessError> {
     let mut simulation = Simulation::open(job.scene.clone(), options(job));
-    simulation.hold_at(Some(0));
+    simulation.send(LabCommand::Hold(Some(0)));
     let mut recorder = Recorder::open(job, &simulation)?;
     let mut app = app(simulation);
     let mut progress = Progress::new();
@@ -89,7 +89,7 @@ fn follow(
     if recorder.record(simulation, &world)? {
         return Ok(Some(Ending::Done));
     }
-    simulation.hold_at(Some(recorder.next_stop(&world.clock)));
+    simulation.send(LabCommand::Hold(Some(recorder.next_stop(&world.clock))));
     Ok(None)
 }
 

@@ -1,10 +1,12 @@
 //! Who moves the engine: the caller, or a thread of its own.
 //!
-//! In: [`Order`]s. Out: [`Update`]s. Inline, the work is done within [`Driver::tick`]. On a thread, a tick hands the next
-//! slice over and returns at once; while the last one is being worked on, nothing new is handed over, so a machine slower
-//! than real time slows simulated time down and never the caller. Dropping the driver ends the thread within a piece.
+//! In: [`Message`]s. Out: [`Update`]s. Inline, the work is done within [`Driver::tick`]. On a thread, a tick grants the
+//! wall-clock time that has passed and returns at once; while the time granted before is being worked on, nothing more is
+//! granted, so a machine slower than real time slows simulated time down and never the caller. Dropping the driver ends
+//! the thread within a piece. A driver decides nothing about the runs.
 
-use super::engine::{Engine, Order, Update};
+use super::engine::{Engine, Message};
+use super::update::Update;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,7 +20,7 @@ const INLINE_WORKING_TIME: Duration = Duration::from_millis(50);
 /// Longest time between two updates of an inline run that is busy.
 const INLINE_PUBLISHING_TIME: Duration = Duration::from_millis(250);
 /// Most wall-clock time that ticks can save up while a thread is busy.
-const LONGEST_DEBT: Duration = Duration::from_millis(100);
+const MOST_SAVED_UP: Duration = Duration::from_millis(100);
 
 /// Who moves the engine.
 pub enum Driver {
@@ -35,10 +37,11 @@ pub enum Driver {
 
 /// The caller's end of an engine on a thread.
 pub struct Threaded {
-    orders: Option<Sender<Order>>,
+    messages: Option<Sender<Message>>,
     exchange: Arc<Exchange>,
     thread: Option<JoinHandle<()>>,
-    owed: Duration,
+    /// Wall-clock time that has passed and is not granted yet.
+    accumulator: Duration,
 }
 
 /// What both ends share.
@@ -69,18 +72,18 @@ impl Driver {
             .name("solver".into())
             .spawn(move || run_thread(&mut make(), &receiver, &shared))?;
         Ok(Self::Thread(Threaded {
-            orders: Some(sender),
+            messages: Some(sender),
             exchange,
             thread: Some(thread),
-            owed: Duration::ZERO,
+            accumulator: Duration::ZERO,
         }))
     }
 
-    /// Passes `order` on.
-    pub fn order(&mut self, order: Order) {
+    /// Passes `message` on to the engine.
+    pub fn send(&mut self, message: Message) {
         match self {
-            Self::Inline { engine, .. } => engine.order(order),
-            Self::Thread(threaded) => threaded.order(order),
+            Self::Inline { engine, .. } => engine.take(message),
+            Self::Thread(threaded) => threaded.send(message),
         }
     }
 
@@ -88,7 +91,7 @@ impl Driver {
     pub fn tick(&mut self, passed: Duration) -> Option<Update> {
         match self {
             Self::Inline { engine, published } => {
-                engine.order(Order::Tick(passed));
+                engine.take(Message::Tick(passed));
                 let started = Instant::now();
                 while engine.is_busy() && started.elapsed() < INLINE_WORKING_TIME {
                     engine.work();
@@ -113,16 +116,18 @@ impl Driver {
 }
 
 impl Threaded {
-    fn order(&self, order: Order) {
-        // A thread that ended hears nothing; `has_died` tells so.
-        let _ = self.orders.as_ref().map(|orders| orders.send(order));
+    fn send(&self, message: Message) {
+        if let Some(messages) = &self.messages {
+            // Dropped where the thread has ended by a mistake, which `Driver::has_died` reports.
+            drop(messages.send(message));
+        }
     }
 
     fn tick(&mut self, passed: Duration) -> Option<Update> {
-        self.owed = (self.owed + passed).min(LONGEST_DEBT);
+        self.accumulator = (self.accumulator + passed).min(MOST_SAVED_UP);
         if !self.exchange.busy.swap(true, Ordering::AcqRel) {
-            let granted = std::mem::take(&mut self.owed);
-            self.order(Order::Tick(granted));
+            let granted = std::mem::take(&mut self.accumulator);
+            self.send(Message::Tick(granted));
         }
         self.exchange.lock().take()
     }
@@ -130,10 +135,10 @@ impl Threaded {
 
 impl Drop for Threaded {
     fn drop(&mut self) {
-        self.orders = None;
+        self.messages = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has told so on its own.
-            let _ = thread.join();
+            // Dropped because a thread that panicked has printed its panic, and there is nobody left to tell.
+            drop(thread.join());
         }
     }
 }
@@ -153,7 +158,7 @@ impl Exchange {
 }
 
 /// Works until the caller's end is gone.
-fn run_thread(engine: &mut Engine, orders: &Receiver<Order>, exchange: &Exchange) {
+fn run_thread(engine: &mut Engine, messages: &Receiver<Message>, exchange: &Exchange) {
     let mut published = Instant::now();
     loop {
         if engine.is_busy() {
@@ -161,14 +166,14 @@ fn run_thread(engine: &mut Engine, orders: &Receiver<Order>, exchange: &Exchange
         } else {
             exchange.publish(engine.take_update());
             exchange.busy.store(false, Ordering::Release);
-            match orders.recv() {
-                Ok(order) => engine.order(order),
+            match messages.recv() {
+                Ok(message) => engine.take(message),
                 Err(_) => return,
             }
         }
         loop {
-            match orders.try_recv() {
-                Ok(order) => engine.order(order),
+            match messages.try_recv() {
+                Ok(message) => engine.take(message),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => return,
             }

@@ -1,278 +1,122 @@
-//! What either driver moves on: a preparation that becomes a run, and the player's state.
+//! What a driver moves: a preparation that becomes a run, the runs of a lab, and their clock.
 //!
-//! In: [`Order`]s. Out: [`Update`]s. [`Engine::work`] does one short piece at a time, so that orders are answered quickly;
-//! how the pieces fall does not show in the trajectory.
+//! In: [`Message`]s, which are commands and ticks. Out: [`Update`]s. [`Engine::work`] does one short piece at a time, so
+//! that commands are answered quickly; how the pieces fall does not show in a trajectory. On which thread it is moved is
+//! up to the driver.
 
-use super::{Half, Status};
-use crate::measure::{FlowHistory, Sample};
+use super::clock::{Clock, Mode};
+use super::command::LabCommand;
+use super::runs::Runs;
+use super::update::{SavedFile, Update};
+use super::{Half, Options, Status};
 use crate::run::{
-    Command, CommandError, Parameter, ParameterInfo, Past, Preparation, Prepared, Record, Run,
-    Script, ScriptedCommand, Session, Snapshot, StampedCommand, Timeline,
+    Command, CommandError, Parameter, Preparation, Prepared, Run, Script, ScriptedCommand, Session,
+    Timeline,
 };
 use crate::scene::Scene;
-use crate::solver::{Fault, Profile};
-use crate::world::World;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What the front asks of the engine.
-pub enum Order {
+/// What the outside tells the engine.
+pub enum Message {
     /// Carry this out.
-    Command(Command),
-    /// Carry this change of a pair of runs out; answered as a command is.
-    Change(PairChange),
-    /// A tick of this much wall-clock time has passed.
+    Command(LabCommand),
+    /// So much wall-clock time has passed.
     Tick(Duration),
-    /// Go no further than this step for now.
-    Hold(Option<u64>),
-    /// Write the whole session to a file.
-    Save(SaveOrder),
-    /// Start afresh at time zero with these values; answered as a command is.
-    Restart(Vec<(Parameter, f64)>),
-    /// Keep this run beside the present one, or go on with it.
-    Adopt(Box<Beside>, Half),
-    /// Work on so many threads from now on.
-    Threads(usize),
-}
-
-/// A session that is to be written.
-pub struct SaveOrder {
-    /// To this file.
-    pub path: PathBuf,
-    /// The scene as it was opened, before what acts from the next start on was changed.
-    pub original: Arc<Scene>,
-    /// A run that goes on beside this one, to be kept as one that was left.
-    pub beside: Option<Box<Beside>>,
-}
-
-/// A change of two runs side by side, or of one of them.
-#[derive(Clone)]
-pub struct PairChange {
-    /// The change.
-    pub command: Command,
-    /// Whether it is part of the change before it.
-    pub joins: bool,
-    /// Whether it changes this run; one of the other run alone is noted in this one, so that an undo is of both.
-    pub is_here: bool,
-}
-
-/// A run of the same scene from the same bed that another engine computed.
-pub struct Beside {
-    /// What is known of it.
-    pub record: Record,
-    /// The state at its end, where that is at hand.
-    pub end: Option<Snapshot>,
-}
-
-/// What became of a file that was to be written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SavedFile {
-    /// The file.
-    pub path: PathBuf,
-    /// Why it could not be written, if it could not.
-    pub outcome: Result<(), String>,
-}
-
-/// News from the engine since the last update was taken.
-#[derive(Default)]
-pub struct Update {
-    /// The state now, where it is another one.
-    pub world: Option<Arc<World>>,
-    /// The run's live parameters, once it stands at time zero.
-    pub parameters: Option<Arc<[ParameterInfo]>>,
-    /// The state at time zero, before any command, once the run stands there.
-    pub bed: Option<Arc<World>>,
-    /// Whether another run is the present one, so that samples and commands start afresh.
-    pub switched: bool,
-    /// Samples taken.
-    pub samples: Vec<Sample>,
-    /// The flowing layer up to the last of them.
-    pub flow: Option<Arc<FlowHistory>>,
-    /// Commands carried out.
-    pub commands: Vec<StampedCommand>,
-    /// What lies behind and ahead of the state.
-    pub past: Option<Past>,
-    /// How many orders that are answered, as [`Order::Command`] is, were taken up since the engine was made.
-    pub answered: u64,
-    /// What the engine does.
-    pub status: Option<Status>,
-    /// The solver's profile of the last half second or so.
-    pub profile: Option<Profile>,
-    /// What people should know, in sentences.
-    pub warnings: Vec<String>,
-    /// Files that were to be written.
-    pub saved: Vec<SavedFile>,
-}
-
-impl Update {
-    /// Adds what came `later`.
-    pub fn absorb(&mut self, later: Self) {
-        if later.switched {
-            self.samples.clear();
-            self.commands.clear();
-            self.switched = true;
-        }
-        self.world = later.world.or(self.world.take());
-        self.parameters = later.parameters.or(self.parameters.take());
-        self.bed = later.bed.or(self.bed.take());
-        self.samples.extend(later.samples);
-        self.flow = later.flow.or(self.flow.take());
-        self.commands.extend(later.commands);
-        self.past = later.past.or(self.past.take());
-        self.answered = later.answered;
-        self.status = later.status.or(self.status.take());
-        self.profile = later.profile.or(self.profile.take());
-        self.warnings.extend(later.warnings);
-        self.saved.extend(later.saved);
-    }
+    /// The scene was made of this one; a session holds both.
+    MadeOf(Arc<Scene>),
 }
 
 /// Wall-clock time over which a profile is gathered.
 const PROFILE_TIME: Duration = Duration::from_millis(500);
 
-/// Wall-clock time a piece of work should take: orders wait for it.
+/// Wall-clock time a piece of work should take: commands wait for it.
 const PIECE_TIME: Duration = Duration::from_millis(10);
 /// Steps that a piece has at least: taking a state in and giving it back costs as much as a dozen of them.
 const LEAST_STEPS: u64 = 50;
 
-/// Commands that come sooner after each other belong to one change: a drag, or a button that sets several parameters.
+/// Values that are set sooner after each other belong to one change: a drag, or a button that sets several parameters.
 const ONE_CHANGE: Duration = Duration::from_millis(400);
 
-/// When a parameter was last set, to tell which commands belong to one change.
-#[derive(Default)]
-pub struct Drag(Option<Instant>);
+/// Why branches are not taken up while two runs are compared.
+const OF_ONE_RUN: &str =
+    "A branch would take the place of one of the two runs: end the comparison first.";
 
-impl Drag {
-    /// Whether a command that sets a parameter now is part of the change before it.
-    pub fn joins(&mut self) -> bool {
-        let last = self.0.replace(Instant::now());
-        last.is_some_and(|last| last.elapsed() < ONE_CHANGE)
-    }
-}
-
-/// A preparation that becomes a run, and the player's state.
+/// A preparation that becomes a run, the runs of a lab, and their clock.
 pub struct Engine {
     stage: Stage,
-    mode: Mode,
-    speed: f64,
-    /// Simulated time granted by ticks and not yet spent on whole steps [s].
-    owed: f64,
-    target: u64,
-    hold: u64,
+    clock: Clock,
+    /// The scene as it was opened.
+    original: Arc<Scene>,
+    threads: usize,
+    /// Memory for keyframes [bytes].
+    memory: usize,
     /// Steps of a piece.
     piece: u64,
     script: Vec<ScriptedCommand>,
-    /// Memory for keyframes [bytes].
-    memory: usize,
-    /// Orders that come before the run stands, or while it is on the way to another moment.
-    waiting: Vec<Order>,
-    drag: Drag,
-    fault: Option<Fault>,
+    /// Commands that come before there is a run, or while one is on the way to another moment.
+    waiting: Vec<LabCommand>,
+    /// When a value was last set.
+    last_set: Option<Instant>,
+    answered: u64,
     news: Update,
-    told: Told,
     profiled: Instant,
 }
 
 enum Stage {
     Preparing(Box<Preparation>),
-    Ready(Box<Timeline>),
+    Ready(Runs),
     /// There is no run, as the status says.
     Failed(Status),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Mode {
-    Paused,
-    Running,
-    Stepping { until: u64 },
-}
-
-/// What updates have told so far.
-#[derive(Default)]
-struct Told {
-    step: Option<u64>,
-    samples: usize,
-    commands: usize,
-}
-
 impl Engine {
-    /// An engine that makes a run of `preparation`, carries out `script` by itself and holds keyframes in `memory` bytes.
-    pub fn new(
-        preparation: Preparation,
-        script: Vec<ScriptedCommand>,
-        memory: usize,
-        autoplay: bool,
-        speed: f64,
-    ) -> Self {
-        let stage = Stage::Preparing(Box::new(preparation));
-        Self {
-            script,
-            memory,
-            ..Self::at(stage, autoplay, speed)
-        }
+    /// An engine that prepares a run of `scene`, with steps of `time_step` [s], and goes on with it.
+    pub fn open(scene: Arc<Scene>, time_step: f64, options: Options) -> Self {
+        let original = scene.clone();
+        let preparation = Preparation::new(scene, time_step, options.threads, options.beds.clone());
+        Self::at(Stage::Preparing(Box::new(preparation)), original, options)
     }
 
-    /// An engine that goes on with `timeline`.
-    pub fn resume(timeline: Timeline, autoplay: bool, speed: f64) -> Self {
-        let (parameters, bed) = (
-            timeline.run().parameters().clone(),
-            timeline.run().bed().clone(),
-        );
-        let mut engine = Self::at(Stage::Ready(Box::new(timeline)), autoplay, speed);
-        engine.news.parameters = Some(parameters);
-        engine.news.bed = Some(bed);
-        engine
+    /// An engine that goes on with `session` at the moment that was shown.
+    pub fn resume(session: Session, options: Options) -> Self {
+        let original = Arc::new(session.original().clone());
+        let timeline = session.into_timeline(options.threads, options.memory);
+        Self::at(Stage::Ready(Runs::new(timeline)), original, options)
     }
 
-    fn at(stage: Stage, autoplay: bool, speed: f64) -> Self {
+    fn at(stage: Stage, original: Arc<Scene>, options: Options) -> Self {
         Self {
             stage,
-            mode: if autoplay {
-                Mode::Running
-            } else {
-                Mode::Paused
-            },
-            speed,
-            owed: 0.0,
-            target: 0,
-            hold: u64::MAX,
+            clock: Clock::new(options.autoplay, options.speed),
+            original,
+            threads: options.threads,
+            memory: options.memory,
             piece: 8,
-            script: Vec::new(),
-            memory: 0,
+            script: options.script,
             waiting: Vec::new(),
-            drag: Drag::default(),
-            fault: None,
+            last_set: None,
+            answered: 0,
             news: Update::default(),
-            told: Told::default(),
             profiled: Instant::now(),
         }
     }
 
-    /// Carries out `order`, or keeps it until the run stands.
-    pub fn order(&mut self, order: Order) {
-        match order {
-            Order::Tick(passed) => self.grant(passed),
-            Order::Hold(step) => self.hold = step.unwrap_or(u64::MAX),
-            order if self.must_wait(&order) => self.waiting.push(order),
-            Order::Command(command) => self.carry_out(command),
-            Order::Change(change) => self.change_in_pair(change),
-            Order::Save(order) => self.save(order),
-            Order::Restart(values) => self.restart(&values),
-            Order::Adopt(beside, shown) => self.adopt(*beside, shown),
-            Order::Threads(threads) => {
-                if let Stage::Ready(timeline) = &mut self.stage {
-                    timeline.use_threads(threads);
-                }
-            }
+    /// Carries out what `message` says, or keeps it until that can be done.
+    pub fn take(&mut self, message: Message) {
+        match message {
+            Message::Tick(passed) => self.tick(passed),
+            Message::MadeOf(original) => self.original = original,
+            Message::Command(command) => self.dispatch(command),
         }
     }
 
-    /// Whether there is work to do without another order.
+    /// Whether there is work to do without another message.
     pub fn is_busy(&self) -> bool {
         match &self.stage {
             Stage::Preparing(_) => true,
-            Stage::Ready(timeline) => timeline.run().world().clock.step < self.goal(timeline),
+            Stage::Ready(runs) => runs.have_work(&self.clock),
             Stage::Failed(_) => false,
         }
     }
@@ -286,9 +130,16 @@ impl Engine {
                     let warnings = preparation.warnings().to_vec();
                     self.begin(*run, warnings);
                 }
-                Err(fault) => self.stage = Stage::Failed(Status::Faulted(fault)),
+                Err(fault) => self.fail(Status::Faulted(fault)),
             },
-            Stage::Ready(_) => self.advance_run(),
+            Stage::Ready(runs) => {
+                let started = Instant::now();
+                let piece = runs.advance(&mut self.clock, self.piece);
+                self.adapt(piece.steps, started.elapsed());
+                if piece.arrived {
+                    self.dispatch_waiting();
+                }
+            }
             Stage::Failed(_) => {}
         }
     }
@@ -296,270 +147,228 @@ impl Engine {
     /// What is new since this was last called.
     pub fn take_update(&mut self) -> Update {
         let mut update = std::mem::take(&mut self.news);
-        self.news.answered = update.answered;
         update.status = Some(self.status());
-        let Stage::Ready(timeline) = &mut self.stage else {
-            return update;
-        };
-        let news = timeline.take_news();
-        if news.switched {
-            update.switched = true;
-            self.told = Told::default();
-        }
-        let record = timeline.record();
-        let (series, commands) = (&record.series, record.history.commands());
-        update.samples = (self.told.samples..series.len())
-            .filter_map(|index| series.get(index))
-            .collect();
-        let flowed = news.arrived || !update.samples.is_empty();
-        update.flow = flowed.then(|| record.flow.clone());
-        update.commands = commands[self.told.commands..].to_vec();
-        let world = timeline.run().world();
-        let step = world.clock.step;
-        let moved = self.told.step != Some(step) || !update.commands.is_empty();
-        let on_the_way = timeline.destination().is_some();
-        if news.switched || news.arrived || (moved && !on_the_way) {
-            update.world = Some(Arc::new(world.clone()));
-            self.told.step = Some(step);
-        }
-        self.told.samples = series.len();
-        self.told.commands = commands.len();
-        update.past = Some(timeline.past());
-        if self.profiled.elapsed() > PROFILE_TIME {
-            self.profiled = Instant::now();
-            update.profile = Some(timeline.take_profile()).filter(|profile| profile.steps > 0);
+        update.answered = Some(self.answered);
+        if let Stage::Ready(runs) = &mut self.stage {
+            if self.profiled.elapsed() > PROFILE_TIME {
+                self.profiled = Instant::now();
+                runs.renew_profiles();
+            }
+            update.runs = runs.news();
+            update.answered = update.answered.filter(|_| update.runs.is_some());
         }
         update
     }
 
     fn status(&self) -> Status {
-        match (&self.stage, &self.fault) {
-            (Stage::Failed(status), _) => status.clone(),
-            (Stage::Preparing(preparation), _) => Status::Preparing {
-                stage: preparation.name().into(),
-                progress: preparation.progress(),
-            },
-            (Stage::Ready(timeline), _) if timeline.destination().is_some() => Status::Seeking {
-                progress: timeline.progress(),
-            },
-            (Stage::Ready(_), Some(fault)) => Status::Faulted(fault.clone()),
-            (Stage::Ready(_), None) if self.mode == Mode::Paused => Status::Paused,
-            (Stage::Ready(_), None) => Status::Running,
-        }
-    }
-
-    /// The step to reach before the next order.
-    fn goal(&self, timeline: &Timeline) -> u64 {
-        let goal = match (timeline.destination(), self.mode) {
-            (Some(destination), _) => destination,
-            (None, Mode::Paused) => 0,
-            (None, Mode::Running) => self.target,
-            (None, Mode::Stepping { until }) => until,
-        };
-        goal.min(self.hold)
-    }
-
-    /// Whether `order` has no meaning before the run stands where it was asked to go.
-    fn must_wait(&self, order: &Order) -> bool {
-        match &self.stage {
-            Stage::Preparing(_) => true,
-            Stage::Ready(timeline) => {
-                let acts_on_the_moment = matches!(
-                    order,
-                    Order::Save(..)
-                        | Order::Change(_)
-                        | Order::Command(Command::Play | Command::Step(_) | Command::Set { .. })
-                );
-                timeline.destination().is_some() && acts_on_the_moment
+        let runs = match &self.stage {
+            Stage::Failed(status) => return status.clone(),
+            Stage::Preparing(preparation) => {
+                return Status::Preparing {
+                    stage: preparation.name().into(),
+                    progress: preparation.progress(),
+                };
             }
-            Stage::Failed(_) => false,
-        }
-    }
-
-    /// Lets the run go on by what `passed` wall-clock time is worth.
-    fn grant(&mut self, passed: Duration) {
-        let (Stage::Ready(timeline), Mode::Running) = (&mut self.stage, self.mode) else {
-            return;
+            Stage::Ready(runs) => runs,
         };
-        let clock = timeline.run().world().clock;
-        if self.speed.is_infinite() {
-            self.target = u64::MAX;
-            return;
-        }
-        self.owed += self.speed * passed.as_secs_f64();
-        let steps = (self.owed / clock.time_step).floor();
-        self.owed -= steps * clock.time_step;
-        self.target = clock.step + steps as u64;
-        if timeline.destination().is_none() {
-            timeline.skip_towards(self.target);
+        match runs.fault() {
+            Some(fault) => Status::Faulted(fault.clone()),
+            None if runs.are_on_the_way() => Status::Seeking {
+                progress: runs.progress(),
+            },
+            None if self.clock.mode() == Mode::Paused => Status::Paused,
+            None => Status::Running,
         }
     }
 
+    /// Makes what the preparation came to the run of the lab.
     fn begin(&mut self, run: Run, warnings: Vec<String>) {
         self.news.warnings.extend(warnings);
         let script = std::mem::take(&mut self.script);
         let clock = run.world().clock;
-        self.news.parameters = Some(run.parameters().clone());
-        self.news.bed = Some(run.bed().clone());
         let mut timeline = Timeline::new(run, self.memory);
         let scheduled = Script::new(&script, &clock)
             .map_err(|error| error.to_string())
             .and_then(|script| timeline.schedule(script).map_err(|error| error.to_string()));
-        if let Err(reason) = scheduled {
-            self.stage = Stage::Failed(Status::Failed(reason));
+        match scheduled {
+            Ok(()) => {
+                self.stage = Stage::Ready(Runs::new(timeline));
+                self.dispatch_waiting();
+            }
+            Err(reason) => self.fail(Status::Failed(reason)),
+        }
+    }
+
+    /// Ends without a run; what waited for one is answered.
+    fn fail(&mut self, status: Status) {
+        self.stage = Stage::Failed(status);
+        self.dispatch_waiting();
+    }
+
+    /// Lets the runs go on by what `passed` wall-clock time is worth.
+    fn tick(&mut self, passed: Duration) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            self.clock.tick(passed, runs.now());
+            if let Some(step) = self.clock.due() {
+                runs.skip_towards(step);
+            }
+        }
+    }
+
+    /// Carries `command` out, or keeps it until there is a run that stands where it was asked to go.
+    fn dispatch(&mut self, command: LabCommand) {
+        if self.must_wait(&command) {
+            self.waiting.push(command);
             return;
         }
-        self.stage = Stage::Ready(Box::new(timeline));
-        self.carry_out_waiting();
-    }
-
-    /// Carries out what waited, as far as it need not wait on.
-    fn carry_out_waiting(&mut self) {
-        for order in std::mem::take(&mut self.waiting) {
-            self.order(order);
+        self.answered += 1;
+        if ends_a_change(&command) {
+            self.last_set = None;
+        }
+        match command {
+            LabCommand::Hold(step) => self.clock.hold_at(step),
+            LabCommand::Threads(threads) => self.use_threads(threads),
+            LabCommand::Save(path) => self.save(path),
+            LabCommand::SetIn {
+                half,
+                parameter,
+                value,
+            } => self.change(&Command::Set { parameter, value }, Some(half)),
+            LabCommand::Compare { parameter, value } => self.compare(parameter, value),
+            LabCommand::EndComparison { keep } => self.end_comparison(keep),
+            LabCommand::All(command) => self.dispatch_to_all(command),
         }
     }
 
-    /// Writes the whole session, on the way from one piece of work to the next.
-    fn save(&mut self, order: SaveOrder) {
-        let SaveOrder {
-            path,
-            original,
-            beside,
-        } = order;
-        let outcome = match &mut self.stage {
-            Stage::Ready(timeline) => {
-                let beside = beside.map(|beside| timeline.adopt(beside.record, beside.end));
-                let title = &timeline.run().scene().title;
-                let session = Session::of(title, timeline).of_original(&original);
-                if beside.is_some() {
-                    timeline.forget(timeline.kept().len() - 1);
-                }
-                session.write(&path).map_err(|error| error.to_string())
-            }
-            Stage::Preparing(_) | Stage::Failed(_) => Err("there is no run".into()),
-        };
-        self.news.saved.push(SavedFile { path, outcome });
-    }
-
-    fn restart(&mut self, values: &[(Parameter, f64)]) {
-        self.news.answered += 1;
-        if let Stage::Ready(timeline) = &mut self.stage {
-            timeline.restart(values);
-            self.play(self.mode);
-        }
-    }
-
-    /// Keeps the run `beside`; goes on with it where the right one is to be `shown`.
-    fn adopt(&mut self, beside: Beside, shown: Half) {
-        if let Stage::Ready(timeline) = &mut self.stage {
-            timeline.adopt(beside.record, beside.end);
-            let newest = timeline.kept().len() - 1;
-            if shown == Half::Right {
-                self.travel(|timeline| timeline.take_up(newest));
-            }
-        }
-    }
-
-    fn carry_out(&mut self, command: Command) {
-        self.news.answered += 1;
-        let Stage::Ready(timeline) = &mut self.stage else {
+    /// Carries out a `command` that is for every run.
+    fn dispatch_to_all(&mut self, command: Command) {
+        let Stage::Ready(runs) = &mut self.stage else {
             return;
         };
         match command {
             Command::Play => self.play(Mode::Running),
             Command::Pause => {
-                timeline.stop();
-                self.carry_out_waiting();
+                runs.stop();
+                self.dispatch_waiting();
                 self.play(Mode::Paused);
             }
             Command::Step(steps) => {
-                let until = timeline.run().world().clock.step.saturating_add(steps);
+                let until = runs.now().step.saturating_add(steps);
                 self.play(Mode::Stepping { until });
             }
             Command::Speed(speed) => {
-                self.speed = speed;
-                self.play(self.mode);
+                self.clock.set_speed(speed);
+                runs.forget_faults();
             }
             Command::Reset => {
-                timeline.reset();
-                let mode = match self.mode {
-                    Mode::Running if self.fault.is_none() => Mode::Running,
-                    _ => Mode::Paused,
-                };
-                self.play(mode);
+                runs.reset();
+                let goes_on = self.clock.mode() == Mode::Running && runs.fault().is_none();
+                self.play(if goes_on { Mode::Running } else { Mode::Paused });
             }
-            Command::Set { .. } => {
-                let refused = timeline.change(command, self.drag.joins()).err();
-                self.tell(refused);
-            }
-            Command::Seek(step) => self.travel(|timeline| timeline.seek(step)),
-            Command::Undo => self.travel(Timeline::undo),
-            Command::Redo => self.travel(Timeline::redo),
-            Command::Return(index) => self.travel(|timeline| timeline.take_up(index)),
-            Command::Forget(index) => timeline.forget(index),
+            Command::Set { .. } => self.change(&command, None),
+            Command::Seek(step) => self.travel(|runs| runs.seek(step)),
+            Command::Undo => self.travel(Runs::undo),
+            Command::Redo => self.travel(Runs::redo),
+            Command::Return(_) if runs.is_pair() => self.news.warnings.push(OF_ONE_RUN.into()),
+            Command::Return(index) => self.travel(|runs| runs.take_up(index)),
+            Command::Forget(index) => runs.forget(index),
         }
     }
 
-    fn change_in_pair(&mut self, change: PairChange) {
-        self.news.answered += 1;
-        if let Stage::Ready(timeline) = &mut self.stage {
-            if change.is_here {
-                let refused = timeline.change(change.command, change.joins).err();
-                self.tell(refused);
-            } else {
-                // What is refused here is refused there too, and told by that run.
-                let _ = timeline.note_beside(&change.command, change.joins);
+    /// Starts a second run beside the first, or says why not.
+    fn compare(&mut self, parameter: Parameter, value: f64) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            match runs.compare(parameter, value, self.memory / 2) {
+                Ok(()) => self.begin_anew(),
+                Err(reason) => self.news.warnings.push(reason),
             }
         }
     }
 
-    /// Says why a command was refused.
-    fn tell(&mut self, refused: Option<CommandError>) {
-        let refusal = refused.map(|refusal| refusal.to_string());
-        self.news.warnings.extend(refusal);
+    /// Goes on with one of two runs.
+    fn end_comparison(&mut self, keep: Half) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            runs.end_comparison(keep);
+            self.begin_anew();
+        }
+    }
+
+    /// Goes on as before with another number of runs.
+    fn begin_anew(&mut self) {
+        self.play(self.clock.mode());
+        self.use_threads(self.threads);
+    }
+
+    /// Whether `command` has no meaning before there is a run, or before it stands where it was asked to go.
+    fn must_wait(&self, command: &LabCommand) -> bool {
+        let acts_at_once = matches!(
+            command,
+            LabCommand::Hold(_)
+                | LabCommand::Threads(_)
+                | LabCommand::All(Command::Seek(_) | Command::Pause | Command::Speed(_))
+        );
+        match &self.stage {
+            Stage::Preparing(_) => !matches!(command, LabCommand::Hold(_)),
+            Stage::Ready(runs) if !runs.are_on_the_way() || acts_at_once => false,
+            // What takes a lone run elsewhere need not wait until it has come to the place before.
+            Stage::Ready(runs) => {
+                let moves =
+                    matches!(command, LabCommand::All(command) if command.moving().is_some());
+                runs.is_pair() || !moves
+            }
+            Stage::Failed(_) => false,
+        }
+    }
+
+    /// Dispatches what waited, as far as it need not wait on.
+    fn dispatch_waiting(&mut self) {
+        for command in std::mem::take(&mut self.waiting) {
+            self.dispatch(command);
+        }
+    }
+
+    /// Writes the whole session, on the way from one piece of work to the next.
+    fn save(&mut self, path: PathBuf) {
+        let outcome = match &mut self.stage {
+            Stage::Ready(runs) => runs
+                .save(&path, &self.original)
+                .map_err(|error| error.to_string()),
+            Stage::Preparing(_) | Stage::Failed(_) => Err("there is no run".into()),
+        };
+        self.news.saved.push(SavedFile { path, outcome });
+    }
+
+    fn use_threads(&mut self, threads: usize) {
+        self.threads = threads;
+        if let Stage::Ready(runs) = &mut self.stage {
+            runs.use_threads(threads);
+        }
+    }
+
+    /// Changes all runs, or one of them; says why where that is refused.
+    fn change(&mut self, change: &Command, half: Option<Half>) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            let last = self.last_set.replace(Instant::now());
+            let joins = last.is_some_and(|last| last.elapsed() < ONE_CHANGE);
+            let refused: Option<CommandError> = runs.change(change, half, joins).err();
+            let refused = refused.map(|refusal| refusal.to_string());
+            self.news.warnings.extend(refused);
+        }
     }
 
     /// Sets out for another moment and holds there.
-    fn travel(&mut self, set_out: impl FnOnce(&mut Timeline)) {
-        if let Stage::Ready(timeline) = &mut self.stage {
-            set_out(timeline);
+    fn travel(&mut self, set_out: impl FnOnce(&mut Runs)) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            set_out(runs);
         }
-        self.drag = Drag::default();
         self.play(Mode::Paused);
     }
 
     /// Goes on in `mode` from here, forgetting what earlier ticks granted and what went wrong.
     fn play(&mut self, mode: Mode) {
-        self.mode = mode;
-        self.target = 0;
-        self.owed = 0.0;
-        self.fault = None;
-    }
-
-    fn advance_run(&mut self) {
-        let Stage::Ready(timeline) = &self.stage else {
-            return;
-        };
-        let goal = self.goal(timeline);
-        let Stage::Ready(timeline) = &mut self.stage else {
-            return;
-        };
-        let from = timeline.run().world().clock.step;
-        let to = goal.min(from.saturating_add(self.piece));
-        let travelled = timeline.destination().is_some();
-        let started = Instant::now();
-        let outcome = timeline.advance_to(to);
-        let arrived = travelled && timeline.destination().is_none();
-        self.adapt(to.saturating_sub(from), started.elapsed());
-        if let Err(fault) = outcome {
-            self.mode = Mode::Paused;
-            self.fault = Some(fault);
-        } else if matches!(self.mode, Mode::Stepping { until } if until <= to) {
-            self.mode = Mode::Paused;
-        }
-        if arrived {
-            self.carry_out_waiting();
+        self.clock.set_mode(mode);
+        if let Stage::Ready(runs) = &mut self.stage {
+            runs.forget_faults();
         }
     }
 
@@ -571,5 +380,14 @@ impl Engine {
         let fitting = steps as f64 * PIECE_TIME.as_secs_f64() / time.as_secs_f64().max(1e-9);
         let most = 4 * self.piece.max(steps);
         self.piece = (fitting as u64).min(most).max(LEAST_STEPS);
+    }
+}
+
+/// Whether what is set after `command` is another change than what was set before it.
+fn ends_a_change(command: &LabCommand) -> bool {
+    match command {
+        LabCommand::All(command) => !matches!(command, Command::Set { .. }),
+        LabCommand::SetIn { .. } | LabCommand::Hold(_) | LabCommand::Threads(_) => false,
+        LabCommand::Compare { .. } | LabCommand::EndComparison { .. } | LabCommand::Save(_) => true,
     }
 }

@@ -121,9 +121,11 @@ pub struct Record {
     /// Which of all runs it is, counted from 1.
     pub number: u32,
     /// What was changed.
-    pub history: History,
+    #[serde(with = "super::shared")]
+    pub history: Arc<History>,
     /// The samples taken.
-    pub series: Series,
+    #[serde(with = "super::shared")]
+    pub series: Arc<Series>,
     /// The flowing layer.
     #[serde(with = "super::shared")]
     pub flow: Arc<FlowHistory>,
@@ -156,12 +158,19 @@ impl Record {
     /// Takes in what is new of `run`, which is at the record's end or beyond; new commands are part of the last change
     /// where they `join`.
     pub fn follow(&mut self, run: &Run, join: bool) {
-        for command in &run.commands()[self.history.commands.len()..] {
-            self.history.push(command.clone(), join);
+        let known = self.history.commands.len();
+        if run.commands().len() > known {
+            let history = Arc::make_mut(&mut self.history);
+            for command in &run.commands()[known..] {
+                history.push(command.clone(), join);
+            }
         }
-        let samples = run.series();
-        for sample in (self.series.len()..samples.len()).filter_map(|index| samples.get(index)) {
-            self.series.push(sample);
+        let (samples, known) = (run.series(), self.series.len());
+        if samples.len() > known {
+            let series = Arc::make_mut(&mut self.series);
+            for sample in (known..samples.len()).filter_map(|index| samples.get(index)) {
+                series.push(sample);
+            }
         }
         self.flow.clone_from(run.flow());
         self.end = Moment::of(run);
@@ -173,9 +182,9 @@ impl Record {
     pub fn until(&self, commands: usize, end: Moment, number: u32) -> Self {
         let mut record = self.clone();
         record.number = number;
-        record.history.truncate(commands);
+        Arc::make_mut(&mut record.history).truncate(commands);
         let samples = (record.series.steps()).partition_point(|step| *step <= end.step);
-        record.series.truncate(samples);
+        Arc::make_mut(&mut record.series).truncate(samples);
         record.end = end;
         record
     }

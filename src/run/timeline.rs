@@ -82,8 +82,6 @@ pub struct Past {
     pub number: u32,
     /// The last moment of the present run so far.
     pub end: Moment,
-    /// Index of the first command of each change.
-    pub changes: Vec<usize>,
     /// What an undo would take back.
     pub undo: Option<Changed>,
     /// What a redo would bring back.
@@ -234,6 +232,21 @@ impl Timeline {
         &self.record
     }
 
+    /// Steps taken and commands carried out at the moment shown.
+    pub(crate) fn position(&self) -> (u64, usize) {
+        (self.step(), self.run.commands().len())
+    }
+
+    /// The state at the end of the present run, where that is at hand.
+    pub(crate) fn end(&self) -> Option<Snapshot> {
+        if self.is_at_end() {
+            return Some(self.run.snapshot());
+        }
+        let (history, end) = (&self.record.history, self.record.end.step);
+        let nearest = self.keyframes.nearest(history, end)?;
+        (nearest.step() == end).then(|| (**nearest).clone())
+    }
+
     /// Runs that were left for others, the oldest first.
     pub fn kept(&self) -> &[Arc<Record>] {
         &self.kept
@@ -245,7 +258,6 @@ impl Timeline {
         Past {
             number: self.record.number,
             end: self.record.end,
-            changes: self.record.history.changes().to_vec(),
             undo: what(&self.undo),
             redo: what(&self.redo),
             kept: self.kept.clone(),
@@ -439,8 +451,8 @@ impl Timeline {
     }
 
     /// Keeps the run of `record`, which began from the same bed, beside the present one, with the state at its `end`
-    /// where that is known.
-    pub(crate) fn adopt(&mut self, mut record: Record, end: Option<Snapshot>) {
+    /// where that is known; returns its index.
+    pub(crate) fn adopt(&mut self, mut record: Record, end: Option<Snapshot>) -> usize {
         record.number = self.next_number();
         if let Some(end) = end {
             let place = record.history.place(end.commands(), end.step());
@@ -450,6 +462,7 @@ impl Timeline {
         if self.kept.len() > MOST_KEPT {
             self.kept.remove(0);
         }
+        self.kept.len() - 1
     }
 
     /// Goes on with `threads` threads.

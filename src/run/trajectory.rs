@@ -43,26 +43,6 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// The state `world` at the end of a run that had these `commands` and `samples` and this `flow`.
-    pub(crate) fn of_end(
-        world: &World,
-        commands: usize,
-        samples: usize,
-        flow: Arc<FlowHistory>,
-    ) -> Self {
-        let mut next_sample = samples as u64;
-        while sample_step(world, next_sample) <= world.clock.step {
-            next_sample += 1;
-        }
-        Self {
-            world: world.clone(),
-            commands,
-            samples,
-            flow,
-            next_sample,
-        }
-    }
-
     /// Steps taken then.
     pub fn step(&self) -> u64 {
         self.world.clock.step
@@ -329,15 +309,19 @@ impl Run {
         });
     }
 
-    /// Back to the bed with the present values.
-    pub(crate) fn reset(&mut self) {
+    /// Present values of the parameters.
+    pub(crate) fn values(&self) -> Vec<(Parameter, f64)> {
         let parameters = self.parameters.iter().map(|info| info.parameter.clone());
-        let present = parameters.filter_map(|parameter| {
+        let values = parameters.filter_map(|parameter| {
             let value = parameter.read(&self.world)?;
             Some((parameter, value))
         });
-        let present: Vec<_> = present.collect();
-        self.restart_with(&present);
+        values.collect()
+    }
+
+    /// Back to the bed with the present values.
+    pub(crate) fn reset(&mut self) {
+        self.restart_with(&self.values());
     }
 
     /// Back to the bed. Those of the `values` that differ from the bed's become commands at step zero.

@@ -6,8 +6,8 @@
 
 use crate::scene::Scene;
 use crate::simulation::{
-    Claim, Command, Half, Options, Parameter, SavedFile, ScriptedCommand, Session, SessionError,
-    Simulation,
+    Claim, Command, Half, LabCommand, Options, Parameter, SavedFile, ScriptedCommand, Session,
+    SessionError, Simulation,
 };
 use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
@@ -79,14 +79,22 @@ fn fulfil(
 ) {
     match (request, simulation) {
         (Request::Command(command), Some(simulation)) => simulation.send(command),
-        (Request::StartTwin(parameter, value), Some(simulation)) => {
-            start_pair(simulation, &parameter, value, dock, &mut opener.view);
+        (Request::StartComparison(parameter, value), Some(simulation)) => {
+            compare(simulation, parameter, value, dock, &mut opener.view);
         }
-        (Request::TwinValue(value), Some(simulation)) => simulation.set_twin(value),
-        (Request::EndTwin(half), Some(simulation)) => {
-            end_pair(simulation, half, dock, &mut opener.view);
+        (Request::SetIn(half, parameter, value), Some(simulation)) => {
+            simulation.send(LabCommand::SetIn {
+                half,
+                parameter,
+                value,
+            });
         }
-        (Request::SaveSession(path), Some(simulation)) => simulation.save(path),
+        (Request::EndComparison(half), Some(simulation)) => {
+            end_comparison(simulation, half, dock, &mut opener.view);
+        }
+        (Request::SaveSession(path), Some(simulation)) => {
+            simulation.send(LabCommand::Save(path));
+        }
         (Request::SaveChanges(path), Some(simulation)) => {
             let saved = save_changes(simulation, &path);
             dock.notify(said("The list of changes", &path, saved));
@@ -117,9 +125,9 @@ fn fulfil(
         // Without a run there is nothing to change; what leaves a session was taken apart before.
         (
             Request::Command(_)
-            | Request::StartTwin(..)
-            | Request::TwinValue(_)
-            | Request::EndTwin(_)
+            | Request::StartComparison(..)
+            | Request::SetIn(..)
+            | Request::EndComparison(_)
             | Request::SaveSession(_)
             | Request::SaveChanges(_),
             None,
@@ -131,28 +139,34 @@ fn fulfil(
 /// Saves the session to the file it has, or lets the person choose one.
 fn save(simulation: Option<&mut Simulation>, dock: &mut Dock) {
     match (simulation, dock.session.clone()) {
-        (Some(simulation), Some(path)) => simulation.save(path),
+        (Some(simulation), Some(path)) => simulation.send(LabCommand::Save(path)),
         _ => dock.path_dialog.ask(Purpose::Session),
     }
 }
 
 /// Begins a run beside the present one, or says why not.
-fn start_pair(
+fn compare(
     simulation: &mut Simulation,
-    parameter: &Parameter,
+    parameter: Parameter,
     value: f64,
     dock: &mut Dock,
     view: &mut ViewSettings,
 ) {
-    if let Err(reason) = simulation.start_twin(parameter, value) {
-        dock.notify(reason);
+    match simulation.check_comparison(&parameter, value) {
+        Ok(()) => simulation.send(LabCommand::Compare { parameter, value }),
+        Err(reason) => dock.notify(reason),
     }
     view.focus = Half::Left;
 }
 
 /// Goes on with the run in `half` alone.
-fn end_pair(simulation: &mut Simulation, half: Half, dock: &mut Dock, view: &mut ViewSettings) {
-    simulation.end_twin(half);
+fn end_comparison(
+    simulation: &mut Simulation,
+    half: Half,
+    dock: &mut Dock,
+    view: &mut ViewSettings,
+) {
+    simulation.send(LabCommand::EndComparison { keep: half });
     dock.notify(format!(
         "The {} run goes on; the other one stays on the plots and in the list of runs",
         half.label()
@@ -274,7 +288,7 @@ impl Opener<'_, '_> {
     fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>) {
         let script = simulation.map_or_else(Vec::new, present);
         let original = simulation.map(|simulation| simulation.original().clone());
-        let speed = simulation.map_or(1.0, Simulation::speed);
+        let speed = simulation.map_or(1.0, |simulation| simulation.speed());
         self.start(scene, script, original, speed);
     }
 

@@ -4,7 +4,7 @@
 //! panels tell apart stands here too. Which panels there are is the dock's business.
 
 use crate::measure::Measure;
-use crate::simulation::{Parameter, Simulation};
+use crate::simulation::{Parameter, RunView, Simulation};
 use crate::ui::request::Request;
 use crate::view::ViewSettings;
 use crate::world::{Shape, World};
@@ -31,7 +31,7 @@ pub trait Panel: Send + Sync + 'static {
         false
     }
 
-    /// Whether it describes one run only, and knows nothing of a twin.
+    /// Whether it describes one of two runs only: the one that was clicked on last.
     fn describes_one_run(&self) -> bool {
         false
     }
@@ -50,13 +50,13 @@ pub trait Panel: Send + Sync + 'static {
 }
 
 /// Whether a column collapses in this simulation.
-pub fn is_column(simulation: &Simulation) -> bool {
+pub fn is_column(simulation: &RunView) -> bool {
     let column = |world: &World| matches!(world.container.shape, Shape::Column { .. });
     simulation.world().is_some_and(|world| column(world))
 }
 
 /// Whether grains lie in a bed, whose surface is measured.
-pub fn has_bed(simulation: &Simulation) -> bool {
+pub fn has_bed(simulation: &RunView) -> bool {
     let world = simulation.world();
     world.is_some_and(|world| Measure::SurfaceAngle.concerns(world))
 }

@@ -3,7 +3,7 @@
 //! In: the simulation as it is. Out: a command or a request where it means something now, nothing
 //! elsewhere. Buttons, keys and plots ask here, so that all of them follow the same rule.
 
-use crate::simulation::{Command, SAMPLE_INTERVAL, Simulation, Status};
+use crate::simulation::{Command, RunView, SAMPLE_INTERVAL, Simulation, Status};
 use crate::ui::request::Request;
 
 /// Speeds to choose from, in simulated seconds per second.
@@ -84,7 +84,7 @@ pub enum Way {
 
 /// The request to show the start of the avalanche before or after the moment shown, where there is
 /// one.
-pub fn to_avalanche(simulation: &Simulation, way: Way) -> Option<Request> {
+pub fn to_avalanche(simulation: &RunView, way: Way) -> Option<Request> {
     let time_step = simulation.world()?.clock.time_step;
     let now = simulation.step() as f64 * time_step;
     // A start that is shown already is neither before nor after.
@@ -100,7 +100,7 @@ pub fn to_avalanche(simulation: &Simulation, way: Way) -> Option<Request> {
 }
 
 /// The moment shown [s], where it is not the newest.
-pub fn moment_shown(simulation: &Simulation) -> Option<f64> {
+pub fn moment_shown(simulation: &RunView) -> Option<f64> {
     let time_step = simulation.world()?.clock.time_step;
     simulation
         .looks_back()
@@ -108,7 +108,7 @@ pub fn moment_shown(simulation: &Simulation) -> Option<f64> {
 }
 
 /// The request to show the moment at `time` [s].
-pub fn seek(simulation: &Simulation, time: f64) -> Option<Request> {
+pub fn seek(simulation: &RunView, time: f64) -> Option<Request> {
     let time_step = simulation.world()?.clock.time_step;
     let step = (time.max(0.0) / time_step).round() as u64;
     Some(Request::Command(Command::Seek(step)))

@@ -3,7 +3,7 @@
 //! In: Bevy's app. Out: its systems. What is drawn is the dock's business, what a request does is
 //! `dispatch`'s.
 
-use crate::simulation::{Half, Options, Simulation};
+use crate::simulation::{Half, Options, RunView, Simulation};
 use crate::ui::bars::film_bar::film_bar_ui;
 use crate::ui::dispatch::{OpenWith, Opening, finish_opening, fulfil_requests};
 use crate::ui::dock::Dock;
@@ -122,18 +122,19 @@ fn captions(simulation: Option<&Simulation>, is_filmed: bool) -> Vec<Caption<'_>
         Some(simulation) if !is_filmed => simulation.real_time_factor(),
         _ => 0.0,
     };
-    let is_pair = |simulation: &&Simulation| {
-        (simulation.twin()).is_some_and(|twin| twin.run().world().is_some())
-    };
+    let is_pair = |simulation: &&Simulation| simulation.comparison().is_some();
     match simulation.filter(is_pair) {
-        None => vec![caption(simulation, factor, None)],
+        None => {
+            let run = simulation.map(|simulation| simulation.half(Half::Left));
+            vec![caption(run, factor, None)]
+        }
         Some(pair) => Half::ALL
             .map(|half| caption(Some(pair.half(half)), factor, Some(half_title(pair, half))))
             .into(),
     }
 }
 
-fn caption(run: Option<&Simulation>, factor: f64, title: Option<String>) -> Caption<'_> {
+fn caption(run: Option<&RunView>, factor: f64, title: Option<String>) -> Caption<'_> {
     Caption {
         world: run.and_then(|run| run.world().map(AsRef::as_ref)),
         real_time_factor: (factor > 0.0).then_some(factor),

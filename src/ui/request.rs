@@ -17,11 +17,11 @@ pub enum Request {
     /// Show the panel where two values are compared: of this parameter, where one is given.
     Compare(Option<Parameter>),
     /// Begin a run beside the present one, with another value of a parameter.
-    StartTwin(Parameter, f64),
-    /// Another value for the run beside the first.
-    TwinValue(f64),
-    /// Go on with one of two runs, and keep the other beside it.
-    EndTwin(Half),
+    StartComparison(Parameter, f64),
+    /// Another value of a parameter in one of two runs.
+    SetIn(Half, Parameter, f64),
+    /// Go on with one of two runs, and keep the other as a branch of it.
+    EndComparison(Half),
     /// Draw the trail of the selected grain, or no longer.
     Trail,
     /// Draw no trails.

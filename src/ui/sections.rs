@@ -48,24 +48,23 @@ pub fn sections_ui(
                 continue;
             }
             // With two runs side by side most panels describe the one that was clicked on last.
-            let (described, of) = match simulation.twin() {
+            let of = match simulation.comparison() {
                 Some(_) if section.panel.describes_one_run() => {
-                    let of = format!(" · {}", view.focus.label());
-                    (simulation.half(view.focus), of)
+                    format!(" · {}", view.focus.label())
                 }
-                _ => (simulation, String::new()),
+                _ => String::new(),
             };
             let name = section.panel.title();
             let title = RichText::new(format!("{name}{of}")).strong().size(17.0);
             let is_wanted = std::mem::take(&mut section.is_wanted);
             let summoned = section.panel.wants_open(view) || is_wanted;
             // In another kind of scene it is another panel, open or not.
-            let comes_first = section.panel.comes_first(described);
+            let comes_first = section.panel.comes_first(simulation);
             let shown = CollapsingHeader::new(title)
                 .id_salt((name, comes_first))
                 .default_open(section.open_at_first || comes_first)
                 .open(summoned.then_some(true))
-                .show_unindented(ui, |ui| section.panel.ui(ui, described, view, out));
+                .show_unindented(ui, |ui| section.panel.ui(ui, simulation, view, out));
             if is_wanted {
                 shown.header_response.request_focus();
             }

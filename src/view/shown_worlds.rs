@@ -78,11 +78,11 @@ pub(super) fn layers(half: Half) -> RenderLayers {
     RenderLayers::layer(half.index())
 }
 
-/// Shows the newest states that the simulation and its twin have published. Two states are never at
+/// Shows the newest states that the simulation's runs have published. Two states are never at
 /// the same address while one of them is shown.
 pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<ShownWorlds>) {
     let Some(simulation) = simulation else { return };
-    let right = simulation.twin().and_then(|twin| twin.run().world());
+    let right = (simulation.comparison()).and_then(|comparison| comparison.right.world());
     let newest = [simulation.world(), right];
     let is_shown = |half: Half| match (newest[half.index()], &shown.halves[half.index()]) {
         (Some(newest), Some(shown)) => Arc::ptr_eq(newest, shown),

@@ -3,7 +3,7 @@
 //! In: a live parameter and its value, from the command line. Out: both runs side by side as soon
 //! as the first one stands, or the reason why not.
 
-use crate::simulation::{Parameter, Simulation};
+use crate::simulation::{LabCommand, Parameter, Simulation};
 use crate::ui::Dock;
 use bevy::prelude::*;
 
@@ -22,13 +22,16 @@ pub(super) fn begin_comparison(
     simulation: Option<ResMut<Simulation>>,
     mut dock: ResMut<Dock>,
 ) {
-    let Some(mut simulation) = simulation.filter(|simulation| simulation.can_start_twin()) else {
+    let Some(mut simulation) = simulation.filter(|simulation| simulation.can_compare()) else {
         return;
     };
-    if let Some((parameter, value)) = comparison.bypass_change_detection().wanted.take()
-        && let Err(reason) = simulation.start_twin(&parameter, value)
-    {
-        dock.notify(reason.as_str());
-        comparison.refused = Some(reason);
+    if let Some((parameter, value)) = comparison.bypass_change_detection().wanted.take() {
+        match simulation.check_comparison(&parameter, value) {
+            Ok(()) => simulation.send(LabCommand::Compare { parameter, value }),
+            Err(reason) => {
+                dock.notify(reason.as_str());
+                comparison.refused = Some(reason);
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! due, and what becomes of it once it is taken: a PNG file, or the next picture of a film. When
 //! the picture is taken is the job's business.
 
-use crate::simulation::{Command, Half, Provenance, Simulation, Status};
+use crate::simulation::{Command, Half, LabCommand, Provenance, RunView, Simulation, Status};
 use crate::view::{FILM_RATE, Film, FilmKind, ViewSettings, save_png};
 use crate::window::canvas::WARM_UP;
 use bevy::math::URect;
@@ -168,10 +168,14 @@ impl SinglePicture {
         let Some(step) = *aim else {
             *aim = (simulation.world()).map(|world| world.clock.step_at(*time));
             // Until there is a run it holds where it begins.
-            simulation.hold_at(aim.or(Some(0)));
+            simulation.send(LabCommand::Hold(aim.or(Some(0))));
             return false;
         };
-        let is_there = |run: &Simulation| run.world().is_some_and(|w| w.clock.step >= step);
+        // A comparison that was asked for starts both runs afresh.
+        if !simulation.has_answered() {
+            return false;
+        }
+        let is_there = |run: &RunView| run.world().is_some_and(|w| w.clock.step >= step);
         let halves = Half::ALL.into_iter();
         let are_there = halves
             .map(|half| is_there(simulation.half(half)))
@@ -201,7 +205,7 @@ impl FilmReel {
         let from = Provenance::of_scene(simulation.scene());
         let film = Film::begin(path.clone(), kind, from)
             .map_err(|reason| format!("{}: {reason}", path.display()))?;
-        simulation.hold_at(Some(step));
+        simulation.send(LabCommand::Hold(Some(step)));
         Ok(Self {
             film,
             path,
@@ -231,7 +235,7 @@ impl FilmReel {
     /// There is no further picture: the run may go on.
     pub(super) fn finish(&mut self, simulation: &mut Simulation) {
         self.film.finish();
-        simulation.hold_at(None);
+        simulation.send(LabCommand::Hold(None));
     }
 
     /// Leaves nothing behind.
@@ -252,7 +256,7 @@ impl FilmReel {
     /// The next picture is that of `step`; the run goes no further until it is taken.
     fn aim_at(&mut self, step: u64, simulation: &mut Simulation) {
         self.next = step;
-        simulation.hold_at(Some(step));
+        simulation.send(LabCommand::Hold(Some(step)));
     }
 
     fn add(&mut self, image: Image, settings: &ViewSettings, simulation: &mut Simulation) {

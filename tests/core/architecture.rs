@@ -14,7 +14,6 @@ use std::path::Path;
 /// Folders that still have circles among what stands in them.
 const CIRCLES_LEFT: &[&str] = &[
     "src/headless",
-    "src/lab",
     "src/measure",
     "src/run",
     "src/scene",

@@ -4,8 +4,8 @@ use glam::DVec3;
 use grainfall::measure::{EnergyLedger, Series};
 use grainfall::scene::{LIQUID_CASES, Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
 use grainfall::simulation::{
-    BedStore, Command, CommandError, DriverKind, Options, Parameter, Preparation, Prepared, Run,
-    SAMPLE_INTERVAL, Script, ScriptError, ScriptedCommand, Simulation, Status,
+    BedStore, Command, CommandError, DriverKind, Lab, LabCommand, Options, Parameter, Preparation,
+    Prepared, Run, SAMPLE_INTERVAL, Script, ScriptError, ScriptedCommand, Status,
 };
 use grainfall::solver::advise;
 use std::sync::Arc;
@@ -397,7 +397,7 @@ fn bed_that_cannot_be_kept_is_a_warning() {
     assert_eq!(run.world().clock.step, 0);
 }
 
-fn opened(scene: Scene, driver: DriverKind) -> Simulation {
+fn opened(scene: Scene, driver: DriverKind) -> Lab {
     let options = Options {
         driver,
         threads: 1,
@@ -407,11 +407,11 @@ fn opened(scene: Scene, driver: DriverKind) -> Simulation {
         script: Vec::new(),
         memory: 0,
     };
-    Simulation::open(scene, options)
+    Lab::open(scene, options)
 }
 
 /// Ticks until `done`, a minute of ticks at most.
-fn tick_until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
+fn tick_until(simulation: &mut Lab, done: impl Fn(&Lab) -> bool) {
     for _ in 0..60_000 {
         if done(simulation) {
             return;
@@ -422,12 +422,12 @@ fn tick_until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
     panic!("still {:?} after a minute", simulation.status());
 }
 
-fn step(simulation: &Simulation) -> Option<u64> {
+fn step(simulation: &Lab) -> Option<u64> {
     simulation.world().map(|world| world.clock.step)
 }
 
-fn held_at(simulation: &mut Simulation, at: u64) {
-    simulation.hold_at(Some(at));
+fn held_at(simulation: &mut Lab, at: u64) {
+    simulation.send(LabCommand::Hold(Some(at)));
     tick_until(simulation, |simulation| step(simulation) == Some(at));
 }
 
@@ -453,7 +453,7 @@ fn player_pauses_steps_and_goes_on() {
         let mut simulation = opened(scene("small-drum"), driver);
         held_at(&mut simulation, 10);
         simulation.send(Command::Pause);
-        simulation.hold_at(None);
+        simulation.send(LabCommand::Hold(None));
         tick_until(&mut simulation, |s| *s.status() == Status::Paused);
         let held = step(&simulation).unwrap();
         simulation.send(Command::Step(3));
@@ -489,7 +489,7 @@ fn simulated_time_follows_the_clock_at_the_speed_asked_for() {
     let mut simulation = opened(scene("small-drum"), DriverKind::Inline);
     held_at(&mut simulation, 0);
     simulation.send(Command::Speed(0.5));
-    simulation.hold_at(None);
+    simulation.send(LabCommand::Hold(None));
     let ticks = 20;
     for _ in 0..ticks {
         simulation.tick(TICK);

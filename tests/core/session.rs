@@ -1,11 +1,11 @@
 //! Claims about sessions in files: they reopen to the same bits, and a file that cannot is refused in words.
 
 use crate::run::{bits, prepared, set};
-use crate::timeline::{Lab, arrive, change, column_lab, go_on, hash, wet_lab};
+use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
 use grainfall::headless::Verdict;
 use grainfall::scene::{Scene, StoredCells};
 use grainfall::simulation::{
-    BedStore, Claim, Command, DriverKind, Options, Parameter, Session, Simulation, Status,
+    BedStore, Claim, Command, DriverKind, Lab, LabCommand, Options, Parameter, Session, Status,
     Timeline, VERSION,
 };
 use grainfall::world::Packing;
@@ -28,7 +28,7 @@ fn reopened(path: &Path, memory: usize) -> Timeline {
 
 /// A run with changes, a branch from its middle that goes on, a change there that was taken back, and a moment of the
 /// branch that is not its newest.
-fn explored(lab: &Lab) -> Timeline {
+fn explored(lab: &Explored) -> Timeline {
     let (mut timeline, _) = lab.recorded(PLENTY);
     lab.seek(&mut timeline, 7);
     change(&mut timeline, lab.last_change());
@@ -51,7 +51,7 @@ const NEXT: [fn(&mut Timeline); 5] = [
     |timeline| change(timeline, set(Parameter::Gravity, 7.0)),
 ];
 
-fn reopens_to_the_same_bits(lab: &Lab) {
+fn reopens_to_the_same_bits(lab: &Explored) {
     let (_folder, path) = place();
     let mut timeline = explored(lab);
     Session::of("explored", &timeline).write(&path).unwrap();
@@ -67,10 +67,11 @@ fn reopens_to_the_same_bits(lab: &Lab) {
         assert_eq!(bits(&same.record().series), bits(&timeline.record().series));
         assert_eq!(bits(same.run().series()), bits(timeline.run().series()));
         assert_eq!(same.run().commands(), timeline.run().commands());
+        let changes = |timeline: &Timeline| timeline.record().history.changes().to_vec();
+        assert_eq!(changes(&same), changes(&timeline));
         let (past, before) = (same.past(), timeline.past());
         assert_eq!((past.number, past.end), (before.number, before.end));
-        assert_eq!((past.changes, past.undo), (before.changes, before.undo));
-        assert_eq!(past.redo, before.redo);
+        assert_eq!((past.undo, past.redo), (before.undo, before.redo));
         let kept = |timeline: &Timeline| -> Vec<_> {
             let series = timeline.kept().iter().map(|record| bits(&record.series));
             series.collect()
@@ -236,7 +237,7 @@ fn state_is_checked_by_its_hash() {
     assert!(error.contains("another hash"), "{error}");
 }
 
-fn options(lab: &Lab, driver: DriverKind) -> Options {
+fn options(lab: &Explored, driver: DriverKind) -> Options {
     Options {
         driver,
         threads: 1,
@@ -246,7 +247,7 @@ fn options(lab: &Lab, driver: DriverKind) -> Options {
     }
 }
 
-fn tick_until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
+fn tick_until(simulation: &mut Lab, done: impl Fn(&Lab) -> bool) {
     for _ in 0..60_000 {
         simulation.tick(Duration::from_millis(2));
         if done(simulation) {
@@ -258,8 +259,8 @@ fn tick_until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
 }
 
 /// Saves, waits for the file, and says why there is none, if there is none.
-fn saved(simulation: &mut Simulation, path: &Path) -> Option<String> {
-    simulation.save(path.to_owned());
+fn saved(simulation: &mut Lab, path: &Path) -> Option<String> {
+    simulation.send(LabCommand::Save(path.to_owned()));
     for _ in 0..60_000 {
         simulation.tick(Duration::from_millis(2));
         if let Some(file) = simulation.take_saved().pop() {
@@ -278,11 +279,11 @@ fn simulation_knows_what_no_file_holds_and_reopens_as_it_was() {
         let (_folder, path) = place();
         let mut original = lab.scene.clone();
         original.seed += 1;
-        let simulation = Simulation::open(lab.scene.clone(), options(&lab, driver));
+        let simulation = Lab::open(lab.scene.clone(), options(&lab, driver));
         let mut simulation = simulation.made_of(original.clone().into());
         tick_until(&mut simulation, |s| *s.status() == Status::Paused);
         assert!(!simulation.is_unsaved());
-        let held = |s: &Simulation| s.has_answered() && *s.status() == Status::Paused;
+        let held = |s: &Lab| s.has_answered() && *s.status() == Status::Paused;
         simulation.send(Command::Step(300));
         tick_until(&mut simulation, held);
         assert!(!simulation.is_unsaved(), "that is done again by playing");
@@ -302,11 +303,11 @@ fn simulation_knows_what_no_file_holds_and_reopens_as_it_was() {
 
         let session = Session::read(&path).unwrap();
         assert_eq!(*session.original(), original);
-        let mut same = Simulation::resume(session, options(&lab, driver));
+        let mut same = Lab::resume(session, options(&lab, driver));
         assert_eq!(**same.original(), original);
         tick_until(&mut same, |s| s.world().is_some());
         assert_eq!(*same.status(), Status::Paused);
-        let state = |s: &Simulation| s.world().map(|world| world.hash());
+        let state = |s: &Lab| s.world().map(|world| world.hash());
         assert_eq!(state(&same), state(&simulation));
         assert_eq!(bits(same.series()), bits(simulation.series()));
         assert_eq!(same.commands(), simulation.commands());
@@ -323,8 +324,8 @@ fn run_that_is_still_prepared_has_nothing_to_save_yet_and_waits() {
     let lab = column_lab();
     let (_folder, path) = place();
     let options = options(&lab, DriverKind::Inline);
-    let mut simulation = Simulation::open(lab.scene.clone(), options);
-    simulation.save(path.clone());
+    let mut simulation = Lab::open(lab.scene.clone(), options);
+    simulation.send(LabCommand::Save(path.clone()));
     assert!(simulation.world().is_none());
     tick_until(&mut simulation, |s| s.world().is_some());
     simulation.tick(Duration::ZERO);

@@ -23,7 +23,7 @@ fn wet() -> Scene {
 }
 
 /// A scene to explore: how far apart the places are that are looked at, and what is changed at some of them.
-pub struct Lab {
+pub struct Explored {
     pub scene: Scene,
     pub beds: BedStore,
     /// Steps from one place to the next.
@@ -32,8 +32,8 @@ pub struct Lab {
 }
 
 /// The wet drum, looked at every 30 ms.
-pub fn wet_lab() -> Lab {
-    Lab {
+pub fn wet_lab() -> Explored {
+    Explored {
         scene: wet(),
         beds: shared_beds(),
         unit: unit(),
@@ -46,7 +46,7 @@ pub fn wet_lab() -> Lab {
 }
 
 /// A column of about a hundred Voronoi grains that falls, looked at every 8 ms: within a tenth of a second it has spread.
-pub fn column_lab() -> Lab {
+pub fn column_lab() -> Explored {
     let mut scene = Scene::open("small-column").unwrap();
     scene.set("radius", "12mm").unwrap();
     scene.set("height", "18mm").unwrap();
@@ -56,7 +56,7 @@ pub fn column_lab() -> Lab {
     };
     let beds = BedStore::none();
     let run = prepared(&scene, 1, beds.clone()).0;
-    Lab {
+    Explored {
         unit: run.world().clock.step_at(8e-3),
         scene,
         beds,
@@ -68,7 +68,7 @@ pub fn column_lab() -> Lab {
     }
 }
 
-impl Lab {
+impl Explored {
     fn run(&self) -> Run {
         prepared(&self.scene, 1, self.beds.clone()).0
     }
@@ -342,7 +342,7 @@ fn drag_is_one_change() {
         go_on(&mut timeline, 210 + 10 * index as u64);
     }
     let (step, end) = (timeline.run().world().clock.step, hash(&timeline));
-    assert_eq!(timeline.past().changes, [0]);
+    assert_eq!(timeline.record().history.changes(), [0]);
     undo(&mut timeline);
     assert_eq!(
         (hash(&timeline), timeline.run().commands().len()),

@@ -1,11 +1,11 @@
 //! Claims about two runs side by side: always shown at the same step, each the run that it would be by itself.
 
 use crate::run::{bits, prepared, set};
-use crate::timeline::{Lab, column_lab, wet_lab};
+use crate::timeline::{Explored, column_lab, wet_lab};
 use grainfall::scene::{Scene, TimeStep};
 use grainfall::simulation::{
-    BedStore, Command, DriverKind, Half, Options, Parameter, Session, Simulation, StampedCommand,
-    Status,
+    BedStore, Command, DriverKind, Half, Lab, LabCommand, Options, Parameter, RunView, Session,
+    StampedCommand, Status,
 };
 use grainfall::world::World;
 use std::sync::Arc;
@@ -13,11 +13,11 @@ use std::time::Duration;
 
 const TICK: Duration = Duration::from_micros(15_625);
 
-fn opened(lab: &Lab, driver: DriverKind) -> Simulation {
+fn opened(lab: &Explored, driver: DriverKind) -> Lab {
     open(lab.scene.clone(), lab.beds.clone(), driver)
 }
 
-fn open(scene: Scene, beds: BedStore, driver: DriverKind) -> Simulation {
+fn open(scene: Scene, beds: BedStore, driver: DriverKind) -> Lab {
     let options = Options {
         driver,
         threads: 2,
@@ -27,16 +27,16 @@ fn open(scene: Scene, beds: BedStore, driver: DriverKind) -> Simulation {
         script: Vec::new(),
         memory: 1 << 28,
     };
-    let mut simulation = Simulation::open(scene, options);
+    let mut simulation = Lab::open(scene, options);
     until(&mut simulation, |s| *s.status() == Status::Paused);
     simulation
 }
 
 /// Ticks until `done`; what is shown of both runs is of the same step all the way.
-fn until(simulation: &mut Simulation, done: impl Fn(&Simulation) -> bool) {
+fn until(simulation: &mut Lab, done: impl Fn(&Lab) -> bool) {
     for _ in 0..60_000 {
         simulation.tick(TICK);
-        let right = (simulation.twin()).and_then(|twin| twin.run().world().map(step_of));
+        let right = (simulation.comparison()).and_then(|pair| pair.right.world().map(step_of));
         if let Some(right) = right {
             assert_eq!(simulation.world().map(step_of), Some(right));
         }
@@ -52,23 +52,39 @@ fn step_of(world: &Arc<World>) -> u64 {
     world.clock.step
 }
 
-fn carry_out(simulation: &mut Simulation, command: Command) {
+fn carry_out(simulation: &mut Lab, command: impl Into<LabCommand>) {
     simulation.send(command);
     until(simulation, |s| {
         s.has_answered() && *s.status() == Status::Paused
     });
 }
 
-fn start(simulation: &mut Simulation, parameter: &Parameter, value: f64) {
-    simulation.start_twin(parameter, value).unwrap();
+fn compare(parameter: &Parameter, value: f64) -> LabCommand {
+    LabCommand::Compare {
+        parameter: parameter.clone(),
+        value,
+    }
+}
+
+/// Another value for the right run.
+fn set_right(parameter: &Parameter, value: f64) -> LabCommand {
+    LabCommand::SetIn {
+        half: Half::Right,
+        parameter: parameter.clone(),
+        value,
+    }
+}
+
+fn start(simulation: &mut Lab, parameter: &Parameter, value: f64) {
+    simulation.check_comparison(parameter, value).unwrap();
+    simulation.send(compare(parameter, value));
     until(simulation, |s| {
-        let twin = s.twin().unwrap().run();
-        twin.world().is_some() && *s.status() == Status::Paused
+        s.comparison().is_some() && *s.status() == Status::Paused
     });
     assert_eq!(simulation.world().map(step_of), Some(0));
 }
 
-/// What was changed, but for the twin's own parameter.
+/// What was changed, but for the parameter that is compared.
 fn common(commands: &[StampedCommand], parameter: &Parameter) -> Vec<(u64, Command)> {
     let others = commands
         .iter()
@@ -77,7 +93,7 @@ fn common(commands: &[StampedCommand], parameter: &Parameter) -> Vec<(u64, Comma
 }
 
 /// Claims that `simulation` is what a run by itself becomes that has these `values` at its start and is changed as it was.
-fn is_a_lone_run(simulation: &Simulation, lab: &Lab, values: &[Command]) {
+fn is_a_lone_run(simulation: &RunView, lab: &Explored, values: &[Command]) {
     let world = simulation.world().unwrap();
     let mut alone = prepared(&lab.scene, 1, lab.beds.clone()).0;
     for value in values {
@@ -94,7 +110,7 @@ fn is_a_lone_run(simulation: &Simulation, lab: &Lab, values: &[Command]) {
 
 /// Both halves of a pair that runs, is changed on the way, goes back and branches.
 fn goes_its_own_way(
-    lab: &Lab,
+    lab: &Explored,
     parameter: &Parameter,
     values: [f64; 2],
     change: &Command,
@@ -110,7 +126,7 @@ fn goes_its_own_way(
     assert_eq!(simulation.half(Half::Right).value(parameter), values[1]);
 
     // Changed while both go on, at a step that nobody chose.
-    simulation.hold_at(Some(12 * lab.unit));
+    simulation.send(LabCommand::Hold(Some(12 * lab.unit)));
     simulation.send(Command::Play);
     until(&mut simulation, |s| {
         s.world().is_some_and(|w| step_of(w) > 4 * lab.unit)
@@ -133,10 +149,10 @@ fn goes_its_own_way(
     );
 
     // Back, and another way on from there; the ways that were left stay beside both.
-    simulation.hold_at(None);
+    simulation.send(LabCommand::Hold(None));
     carry_out(&mut simulation, Command::Seek(2 * lab.unit));
     carry_out(&mut simulation, set(Parameter::Gravity, 12.0));
-    simulation.set_twin(0.5 * (values[0] + values[1]));
+    simulation.send(set_right(parameter, 0.5 * (values[0] + values[1])));
     carry_out(&mut simulation, Command::Step(3 * lab.unit));
     assert_eq!(simulation.world().map(step_of), Some(5 * lab.unit));
     let right = simulation.half(Half::Right);
@@ -177,7 +193,7 @@ fn halves_of_polyhedra_are_the_runs_that_they_would_be_alone() {
 }
 
 /// Hashes of both states.
-fn hashes(simulation: &Simulation) -> [String; 2] {
+fn hashes(simulation: &Lab) -> [String; 2] {
     Half::ALL.map(|half| {
         let world = simulation.half(half).world();
         world.unwrap().hash().to_string()
@@ -185,25 +201,25 @@ fn hashes(simulation: &Simulation) -> [String; 2] {
 }
 
 /// A change of both halves and one of each alone, taken back one after the other and brought back again.
-fn is_taken_back_in_both(lab: &Lab, parameter: &Parameter, values: [f64; 4]) {
+fn is_taken_back_in_both(lab: &Explored, parameter: &Parameter, values: [f64; 4]) {
     let mut simulation = opened(lab, DriverKind::Thread);
     carry_out(&mut simulation, Command::Step(lab.unit));
     carry_out(&mut simulation, set(parameter.clone(), values[0]));
     start(&mut simulation, parameter, values[1]);
     assert_eq!(
-        simulation.turns(),
+        simulation.undo_and_redo(),
         [None; 2],
         "the pair begins with nothing"
     );
-    let after_a_while = |simulation: &mut Simulation| {
+    let after_a_while = |simulation: &mut Lab| {
         carry_out(simulation, Command::Step(2 * lab.unit));
         hashes(simulation)
     };
     let mut states = vec![after_a_while(&mut simulation)];
-    let changes: [&dyn Fn(&mut Simulation); 3] = [
+    let changes: [&dyn Fn(&mut Lab); 3] = [
         &|simulation| simulation.send(set(Parameter::Gravity, 11.0)),
         &|simulation| simulation.send(set(parameter.clone(), values[2])),
-        &|simulation| simulation.set_twin(values[3]),
+        &|simulation| simulation.send(set_right(parameter, values[3])),
     ];
     for change in changes {
         change(&mut simulation);
@@ -211,11 +227,11 @@ fn is_taken_back_in_both(lab: &Lab, parameter: &Parameter, values: [f64; 4]) {
     }
     let end = states.pop().unwrap();
     for state in states.iter().rev() {
-        assert!(simulation.turns()[0].is_some());
+        assert!(simulation.undo_and_redo()[0].is_some());
         carry_out(&mut simulation, Command::Undo);
         assert_eq!(hashes(&simulation), *state);
     }
-    assert_eq!(simulation.turns()[0], None);
+    assert_eq!(simulation.undo_and_redo()[0], None);
     carry_out(&mut simulation, Command::Undo);
     assert_eq!(hashes(&simulation), states[0], "nothing more to undo");
     assert_eq!(simulation.value(parameter), values[0]);
@@ -226,7 +242,7 @@ fn is_taken_back_in_both(lab: &Lab, parameter: &Parameter, values: [f64; 4]) {
         carry_out(&mut simulation, Command::Redo);
         assert_eq!(hashes(&simulation), *state);
     }
-    assert_eq!(simulation.turns()[1], None);
+    assert_eq!(simulation.undo_and_redo()[1], None);
     assert_eq!(simulation.half(Half::Right).value(parameter), values[3]);
     let start = |value| [set(parameter.clone(), value)];
     is_a_lone_run(&simulation, lab, &start(values[0]));
@@ -250,7 +266,7 @@ fn a_change_of_one_half_in_the_past_begins_another_run_in_both() {
     carry_out(&mut simulation, Command::Step(2 * lab.unit));
     let left_behind = hashes(&simulation);
     carry_out(&mut simulation, Command::Seek(lab.unit));
-    simulation.set_twin(0.5);
+    simulation.send(set_right(&Parameter::Viscosity, 0.5));
     carry_out(&mut simulation, Command::Step(3 * lab.unit));
     // What came after in one of them alone would be a second difference.
     for half in Half::ALL {
@@ -278,16 +294,16 @@ fn values_that_follow_each_other_at_once_are_one_change_of_both() {
     let before = hashes(&simulation);
     for gravity in [9.0, 8.0, 7.0] {
         simulation.send(set(Parameter::Gravity, gravity));
-        simulation.set_twin(0.1 * gravity);
+        simulation.send(set_right(&Parameter::Viscosity, 0.1 * gravity));
     }
     // What is refused changes nothing, in neither of them.
     simulation.send(set(Parameter::Gravity, -1.0));
-    simulation.set_twin(f64::NAN);
+    simulation.send(set_right(&Parameter::Viscosity, f64::NAN));
     carry_out(&mut simulation, Command::Step(lab.unit));
     assert_eq!(simulation.value(&Parameter::Gravity), 7.0);
     carry_out(&mut simulation, Command::Undo);
     assert_eq!(hashes(&simulation), before);
-    assert_eq!(simulation.turns()[0], None);
+    assert_eq!(simulation.undo_and_redo()[0], None);
 }
 
 #[test]
@@ -301,7 +317,7 @@ fn a_half_that_meets_a_fault_stops_the_other_where_it_stands() {
     until(&mut simulation, |s| {
         matches!(s.status(), Status::Faulted(_))
     });
-    until(&mut simulation, Simulation::has_answered);
+    until(&mut simulation, |s| s.has_answered());
     let steps = Half::ALL.map(|half| simulation.half(half).world().map(step_of));
     assert_eq!(steps[0], steps[1]);
     carry_out(&mut simulation, Command::Seek(5));
@@ -326,7 +342,7 @@ fn stopping_on_the_way_to_a_moment_stops_both_at_one() {
 }
 
 /// The same of a pair that does not show the end of what was recorded.
-fn is_a_lone_run_so_far(simulation: &Simulation, lab: &Lab) {
+fn is_a_lone_run_so_far(simulation: &RunView, lab: &Explored) {
     let world = simulation.world().unwrap();
     let mut alone = prepared(&lab.scene, 1, lab.beds.clone()).0;
     alone.advance_to(step_of(world)).unwrap();
@@ -341,12 +357,12 @@ fn the_half_that_is_not_gone_on_with_stays_beside_the_other() {
         start(&mut simulation, &Parameter::Viscosity, 1.41);
         carry_out(&mut simulation, Command::Step(4 * lab.unit));
         let hashes = Half::ALL.map(|half| simulation.half(half).world().unwrap().hash());
-        simulation.end_twin(keep);
+        simulation.send(LabCommand::EndComparison { keep });
         until(&mut simulation, |s| {
             s.has_answered() && s.past().kept.len() == 1 && *s.status() == Status::Paused
         });
-        assert!(simulation.twin().is_none());
-        let state = |s: &Simulation| s.world().unwrap().hash();
+        assert!(simulation.comparison().is_none());
+        let state = |s: &Lab| s.world().unwrap().hash();
         assert_eq!(state(&simulation), hashes[keep.index()]);
         // The other one can be taken up again, and both go on as ever.
         carry_out(&mut simulation, Command::Return(0));
@@ -362,7 +378,7 @@ fn the_half_that_is_not_gone_on_with_stays_beside_the_other() {
 }
 
 #[test]
-fn a_session_saved_with_a_twin_holds_both_runs() {
+fn a_session_saved_in_a_comparison_holds_both_runs() {
     let lab = wet_lab();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pair.grainfall");
@@ -370,7 +386,7 @@ fn a_session_saved_with_a_twin_holds_both_runs() {
     start(&mut simulation, &Parameter::Viscosity, 1.41);
     carry_out(&mut simulation, Command::Step(4 * lab.unit));
     for _ in 0..2 {
-        simulation.save(path.clone());
+        simulation.send(LabCommand::Save(path.clone()));
         until(&mut simulation, |s| !s.is_saving());
     }
     assert!(
@@ -393,22 +409,26 @@ fn a_session_saved_with_a_twin_holds_both_runs() {
 fn what_a_pair_cannot_do_is_refused_in_words() {
     let lab = wet_lab();
     let mut simulation = opened(&lab, DriverKind::Inline);
-    let refused = simulation
-        .start_twin(&Parameter::Viscosity, 1e9)
-        .unwrap_err();
+    let viscosity = Parameter::Viscosity;
+    let refused = simulation.check_comparison(&viscosity, 1e9).unwrap_err();
     assert!(refused.contains("viscosity"), "{refused}");
-    start(&mut simulation, &Parameter::Viscosity, 1.41);
-    assert!(simulation.start_twin(&Parameter::Viscosity, 0.5).is_err());
     let before = simulation.warnings().len();
+    carry_out(&mut simulation, compare(&viscosity, 1e9));
+    assert_eq!(simulation.warnings()[before], refused);
+    assert!(simulation.comparison().is_none());
+    start(&mut simulation, &viscosity, 1.41);
+    let refused = simulation.check_comparison(&viscosity, 0.5).unwrap_err();
+    carry_out(&mut simulation, compare(&viscosity, 0.5));
+    assert_eq!(simulation.warnings()[before + 1], refused);
     carry_out(&mut simulation, Command::Return(0));
-    assert!(simulation.warnings()[before].contains("end the twin"));
+    assert!(simulation.warnings()[before + 2].contains("end the comparison"));
     let preparing = Options {
         driver: DriverKind::Inline,
         beds: BedStore::none(),
         ..Options::window()
     };
-    let mut early = Simulation::open(lab.scene.clone(), preparing);
-    assert!(early.start_twin(&Parameter::Viscosity, 1.41).is_err());
+    let early = Lab::open(lab.scene.clone(), preparing);
+    assert!(early.check_comparison(&viscosity, 1.41).is_err());
 }
 
 #[test]

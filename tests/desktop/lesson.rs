@@ -26,9 +26,9 @@ fn hash(app: &App) -> StateHash {
 /// Takes a picture and checks where the grain is drawn in each half.
 fn look(app: &mut App, moment: &str) {
     let picture = photographed(app, &format!("lesson-{moment}"));
-    let twin = simulation(app).twin().is_some();
-    for half in Half::ALL.into_iter().take(if twin { 2 } else { 1 }) {
-        let at = if twin {
+    let is_pair = simulation(app).comparison().is_some();
+    for half in Half::ALL.into_iter().take(if is_pair { 2 } else { 1 }) {
+        let at = if is_pair {
             place(app, &picture, half)
         } else {
             let centre = simulation(app).world().unwrap().grains.position[0].as_vec3();
@@ -85,20 +85,22 @@ fn a_lesson_from_play_to_verify() {
     assert_eq!(hash(&app), changed);
 
     // Two side by side; a change of both is taken back in both.
-    let stands = |s: &Simulation| s.twin().is_some_and(|twin| twin.run().world().is_some());
-    let twin = Request::StartTwin(Parameter::Gravity, 0.0);
-    ask(&mut app, twin, stands);
+    let stands = |s: &Simulation| s.comparison().is_some();
+    let compare = Request::StartComparison(Parameter::Gravity, 0.0);
+    ask(&mut app, compare, stands);
     command(&mut app, Command::Step(early), |s| s.step() == early);
     look(&mut app, "side by side");
     let both = |app: &App| Half::ALL.map(|half| simulation(app).half(half).world().unwrap().hash());
     let before = both(&app);
-    command(&mut app, at_gravity(20.0), |s| s.turns()[0].is_some());
+    command(&mut app, at_gravity(20.0), |s| {
+        s.undo_and_redo()[0].is_some()
+    });
     command(&mut app, Command::Step(early), |s| s.step() == 2 * early);
     look(&mut app, "changed side by side");
     command(&mut app, Command::Undo, |s| s.step() == early);
     assert_eq!(both(&app), before);
-    ask(&mut app, Request::EndTwin(Half::Left), |s| {
-        s.twin().is_none()
+    ask(&mut app, Request::EndComparison(Half::Left), |s| {
+        s.comparison().is_none()
     });
     look(&mut app, "alone again");
 

@@ -9,8 +9,8 @@ use egui_kittest::{Harness, Node};
 use grainfall::measure::{Avalanche, GrainQuantity, Measure, Sample, Series};
 use grainfall::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, built_in};
 use grainfall::simulation::{
-    BedStore, Command, DisplayUnit, DriverKind, Options, Parameter, ParameterInfo, Simulation,
-    Status,
+    BedStore, Command, DisplayUnit, DriverKind, LabCommand, Options, Parameter, ParameterInfo,
+    Simulation, Status,
 };
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{
@@ -1152,7 +1152,7 @@ fn velocities_are_seen_from_the_laboratory_and_from_the_drum() {
 /// `simulation` after `time` of its run.
 fn after(mut simulation: Simulation, time: f64) -> Simulation {
     let step = simulation.world().unwrap().clock.step_at(time);
-    simulation.hold_at(Some(step));
+    simulation.send(LabCommand::Hold(Some(step)));
     simulation.send(Command::Speed(f64::INFINITY));
     simulation.send(Command::Play);
     for _ in 0..100_000 {

@@ -217,17 +217,19 @@ fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
         theta_m: 0.45,
         theta_r: 0.40,
     };
-    let mut left = Record {
-        number: 1,
-        ..Record::default()
-    };
+    let mut measured = Series::default();
     for sample in 0..100 {
-        left.series.push(Sample {
+        measured.push(Sample {
             step: sample,
             time: 0.1 * sample as f64,
             values: [0.3; Measure::COUNT],
         });
     }
+    let left = Record {
+        number: 1,
+        series: Arc::new(measured),
+        ..Record::default()
+    };
     let kept = [("Run 1".to_owned(), Arc::new(left))];
     let (series, kept) = (&series, &kept);
     let mut plots = AvalanchePlots::default();

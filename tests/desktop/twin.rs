@@ -11,21 +11,28 @@ use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::measure::{GrainQuantity, Series};
-use grainfall::simulation::{Command, DriverKind, Half, Options, Parameter, Simulation, Status};
+use grainfall::simulation::{
+    Command, DriverKind, Half, LabCommand, Options, Parameter, Simulation, Status,
+};
 use grainfall::ui::{AvalanchePlots, Curves, Dock, DockPlugin, Request, Requests};
 use grainfall::view::{ColourBy, OrbitCamera, ViewSettings};
 use std::time::Duration;
 
+/// Starts a second run with a friction of 0.9.
+fn compare(simulation: &mut Simulation) {
+    simulation.send(LabCommand::Compare {
+        parameter: friction(),
+        value: 0.9,
+    });
+    while simulation.comparison().is_none() {
+        simulation.tick(Duration::from_millis(16));
+    }
+}
+
 /// Three grains that fell, twice: with a friction of 0.4 on the left and of 0.9 on the right.
 fn pair() -> Simulation {
     let mut simulation = prepared();
-    simulation.start_twin(&friction(), 0.9).unwrap();
-    while simulation
-        .twin()
-        .is_some_and(|twin| twin.run().world().is_none())
-    {
-        simulation.tick(Duration::from_millis(16));
-    }
+    compare(&mut simulation);
     carried_out(&mut simulation, Command::Step(2000));
     simulation
 }
@@ -47,13 +54,19 @@ fn two_values_are_chosen_by_name_or_number_and_started() {
     harness.get_by_label("Left: 0.4, the present value");
     // The farthest named value stands there already.
     harness.get_by_label("Start side by side").click();
-    assert_eq!(asked(&mut harness), [Request::StartTwin(friction(), 0.8)]);
+    assert_eq!(
+        asked(&mut harness),
+        [Request::StartComparison(friction(), 0.8)]
+    );
     type_number(&mut harness, "value on the right", "0.4");
     harness.get_by_label("Start side by side").click();
     assert!(asked(&mut harness).is_empty(), "both values are the same");
     type_number(&mut harness, "value on the right", "0.85");
     harness.get_by_label("Start side by side").click();
-    assert_eq!(asked(&mut harness), [Request::StartTwin(friction(), 0.85)]);
+    assert_eq!(
+        asked(&mut harness),
+        [Request::StartComparison(friction(), 0.85)]
+    );
     harness
         .get_by_role_and_label(Role::ComboBox, "Parameter to compare")
         .click();
@@ -77,19 +90,22 @@ fn a_key_leads_to_the_panel() {
 fn each_half_has_its_own_row_and_the_comparison_its_ends() {
     let mut harness = Window::of(pair());
     type_number(&mut harness, "friction glass – glass, right", "0.7");
-    assert_eq!(asked(&mut harness), [Request::TwinValue(0.7)]);
+    assert_eq!(
+        asked(&mut harness),
+        [Request::SetIn(Half::Right, friction(), 0.7)]
+    );
     type_number(&mut harness, "friction glass – glass, left", "0.2");
     assert_eq!(
         asked(&mut harness),
-        [Request::Command(set(friction(), 0.2))]
+        [Request::SetIn(Half::Left, friction(), 0.2)]
     );
     open_panel(&mut harness);
     harness.get_by_label("Left: friction glass – glass 0.4");
     harness.get_by_label("Right: friction glass – glass 0.9");
     harness.get_by_label("End it, keep the left run").click();
-    assert_eq!(asked(&mut harness), [Request::EndTwin(Half::Left)]);
+    assert_eq!(asked(&mut harness), [Request::EndComparison(Half::Left)]);
     harness.get_by_label("End it, keep the right run").click();
-    assert_eq!(asked(&mut harness), [Request::EndTwin(Half::Right)]);
+    assert_eq!(asked(&mut harness), [Request::EndComparison(Half::Right)]);
 }
 
 #[test]
@@ -97,13 +113,7 @@ fn what_belongs_to_one_run_cannot_be_pressed() {
     let mut simulation = prepared();
     carried_out(&mut simulation, Command::Step(100));
     carried_out(&mut simulation, set(friction(), 0.3));
-    simulation.start_twin(&friction(), 0.9).unwrap();
-    while simulation
-        .twin()
-        .is_some_and(|twin| twin.run().world().is_none())
-    {
-        simulation.tick(Duration::from_millis(16));
-    }
+    compare(&mut simulation);
     assert!(
         simulation.past().undo.is_some(),
         "what the left run alone could take back"
@@ -119,7 +129,11 @@ fn what_belongs_to_one_run_cannot_be_pressed() {
 #[test]
 fn changes_of_either_half_are_listed_and_taken_back_in_both() {
     let mut simulation = pair();
-    simulation.set_twin(0.5);
+    simulation.send(LabCommand::SetIn {
+        half: Half::Right,
+        parameter: friction(),
+        value: 0.5,
+    });
     carried_out(&mut simulation, Command::Step(500));
     let mut harness = Window::of(simulation);
     harness.get_by_label_contains("right: friction glass – glass 0.9 → 0.5");
@@ -244,11 +258,11 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     let mut app = falling_from_the_front();
     app.world_mut().resource_mut::<ViewSettings>().colour_by =
         ColourBy::Quantity(GrainQuantity::Speed);
-    let has_twin = |s: &Simulation| s.twin().is_some_and(|twin| twin.run().world().is_some());
+    let has_two = |s: &Simulation| s.comparison().is_some();
     ask(
         &mut app,
-        Request::StartTwin(Parameter::Gravity, 0.0),
-        has_twin,
+        Request::StartComparison(Parameter::Gravity, 0.0),
+        has_two,
     );
     let start = photographed(&mut app, "twin-start");
     let [left, right] = Half::ALL.map(|half| place(&app, &start, half));
@@ -279,8 +293,8 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     assert!(fast[1] > still[1] + 60, "{fast:?} {still:?}");
 
     let state = simulation(&app).half(Half::Right).world().unwrap().hash();
-    ask(&mut app, Request::EndTwin(Half::Right), |s| {
-        s.twin().is_none() && s.world().is_some_and(|world| world.hash() == state)
+    ask(&mut app, Request::EndComparison(Half::Right), |s| {
+        s.comparison().is_none() && s.world().is_some_and(|world| world.hash() == state)
     });
     assert_eq!(simulation(&app).value(&Parameter::Gravity), 0.0);
     let alone = photographed(&mut app, "twin-ended");

@@ -4,7 +4,8 @@
 //! shows every number that was looked at, its limits and what to do.
 
 use crate::measure::{Measure, Sample};
-use crate::simulation::{Simulation, Status};
+use crate::simulation::{RunView, Simulation, Status};
+use crate::solver::Fault;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::world::{StateHash, World};
@@ -169,11 +170,11 @@ fn pace(simulation: &Simulation) -> String {
     }
 }
 
-/// All that is looked at, for the state shown and that of a twin; nothing before there is one.
+/// All that is looked at, for the state shown of each run; nothing before there is one.
 pub fn checks(simulation: &Simulation) -> Vec<Check> {
     let mut checks = checks_of(simulation);
-    if let Some(twin) = simulation.twin() {
-        let right = checks_of(twin.run()).into_iter().map(|check| Check {
+    if let Some(comparison) = simulation.comparison() {
+        let right = checks_of(comparison.right).into_iter().map(|check| Check {
             name: format!("{}, right", check.name).into(),
             ..check
         });
@@ -183,7 +184,7 @@ pub fn checks(simulation: &Simulation) -> Vec<Check> {
 }
 
 /// The same for one run.
-fn checks_of(simulation: &Simulation) -> Vec<Check> {
+fn checks_of(simulation: &RunView) -> Vec<Check> {
     let Some(world) = simulation.world() else {
         return Vec::new();
     };
@@ -191,7 +192,7 @@ fn checks_of(simulation: &Simulation) -> Vec<Check> {
     let of_sample =
         |check: fn(&Sample, &World) -> Check| sample.map(|sample| check(&sample, world));
     [
-        fault(simulation.status()),
+        simulation.fault().map(fault),
         Some(time_step(simulation)),
         of_sample(overlap),
         of_sample(residual),
@@ -202,19 +203,16 @@ fn checks_of(simulation: &Simulation) -> Vec<Check> {
     .collect()
 }
 
-fn fault(status: &Status) -> Option<Check> {
-    let Status::Faulted(fault) = status else {
-        return None;
-    };
-    Some(Check {
+fn fault(fault: &Fault) -> Check {
+    Check {
         name: "a fault".into(),
         level: Level::Bad,
         value: fault.to_string(),
         remedy: "Undo the last change, or give the scene a smaller time step.",
-    })
+    }
 }
 
-fn time_step(simulation: &Simulation) -> Check {
+fn time_step(simulation: &RunView) -> Check {
     let advice = simulation.advice();
     let shown = |time| number::short_time(time);
     let (level, value) = match advice.limits.first() {

@@ -71,10 +71,10 @@ fn file_ui(
 }
 
 fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Request>) {
-    let twin = simulation.and_then(Simulation::twin);
-    let [undo, redo] = simulation.map_or([None; 2], Simulation::turns);
-    let turns = [("Undo", Command::Undo, undo), ("Redo", Command::Redo, redo)];
-    for (name, command, what) in turns {
+    let comparison = simulation.and_then(|simulation| simulation.comparison());
+    let [undo, redo] = simulation.map_or([None; 2], |simulation| simulation.undo_and_redo());
+    let entries = [("Undo", Command::Undo, undo), ("Redo", Command::Redo, redo)];
+    for (name, command, what) in entries {
         let nothing = simulation.map_or("There is no run", why_no_undo);
         let why_not = what.is_none().then(|| number::capitalised(nothing));
         item_unless_ui(ui, name, Request::Command(command), why_not.as_deref(), out);
@@ -83,10 +83,10 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
     let why_not = simulation.is_none().then_some("There is no run to compare");
     let compare = Request::Compare(None);
     item_unless_ui(ui, "Compare two values…", compare, why_not, out);
-    let why_not = twin.is_none().then_some("There is one run only");
+    let why_not = comparison.is_none().then_some("There is one run only");
     for half in Half::ALL {
         let name = format!("End the comparison, keep the {} run", half.label());
-        item_unless_ui(ui, &name, Request::EndTwin(half), why_not, out);
+        item_unless_ui(ui, &name, Request::EndComparison(half), why_not, out);
     }
 }
 

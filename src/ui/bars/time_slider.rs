@@ -21,20 +21,20 @@ pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Req
         return;
     }
     ui.horizontal(|ui| {
-        turns_ui(ui, simulation, out);
+        undo_ui(ui, simulation, out);
         line_ui(ui, simulation, out);
         place_ui(ui, simulation, out);
     });
 }
 
 /// Undo and redo.
-fn turns_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let [undo, redo] = simulation.turns();
-    let turns = [
+fn undo_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let [undo, redo] = simulation.undo_and_redo();
+    let buttons = [
         ("⟲", "Undo", "Undo (Ctrl+Z)", undo, Command::Undo),
         ("⟳", "Redo", "Redo (Ctrl+Shift+Z)", redo, Command::Redo),
     ];
-    for (face, name, title, what, command) in turns {
+    for (face, name, title, what, command) in buttons {
         let enabled = what.is_some() && allows(simulation.status(), &command);
         let button = egui::Button::new(RichText::new(face).size(17.0)).min_size(vec2(32.0, 26.0));
         let mut response = ui.add_enabled(enabled, button);
@@ -56,7 +56,7 @@ fn turns_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) 
 
 /// Why there is no undo or redo.
 pub fn why_no_undo(simulation: &Simulation) -> &'static str {
-    match simulation.twin() {
+    match simulation.comparison() {
         Some(_) => "there is nothing to take back since the comparison began",
         None => "there is nothing to take back",
     }
@@ -106,7 +106,7 @@ fn marks_ui(ui: &egui::Ui, line: Rect, simulation: &Simulation, end: f64) {
     let place = |time: f64| egui::lerp(span, (time / end.max(f64::MIN_POSITIVE)).min(1.0) as f32);
     let mut drawn_until = f32::NEG_INFINITY;
     let commands = simulation.commands();
-    let changes = (simulation.past().changes.iter()).filter_map(|first| commands.get(*first));
+    let changes = (simulation.changes().iter()).filter_map(|first| commands.get(*first));
     for x in changes.map(|change| place(change.time)) {
         if x >= drawn_until {
             let mark = egui::Stroke::new(2.0, palette.change);

@@ -31,7 +31,7 @@ impl Transport {
                 warnings_ui(ui, simulation.warnings());
             });
         });
-        let can_undo = simulation.turns()[0].is_some();
+        let can_undo = simulation.undo_and_redo()[0].is_some();
         status_ui(ui, status, simulation.advice().time_step, can_undo, out);
     }
 }

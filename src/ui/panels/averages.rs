@@ -1,7 +1,7 @@
 //! Results of a run that goes on, taken anew now and then.
 
 use crate::measure::{Summary, results, summarise};
-use crate::simulation::{SMALLEST_DROP, Simulation};
+use crate::simulation::{RunView, SMALLEST_DROP};
 use crate::ui::panel::is_column;
 
 /// Averages are taken anew whenever this many samples have been added, half a simulated second;
@@ -26,7 +26,7 @@ struct Key {
 impl Averages {
     /// Averages over `simulation` from a time [s] on, or the results of its column, remade when
     /// enough has been added.
-    pub fn over(&mut self, simulation: &Simulation, from: f64) -> &Summary {
+    pub fn over(&mut self, simulation: &RunView, from: f64) -> &Summary {
         let series = simulation.series();
         let between = if is_column(simulation) {
             1

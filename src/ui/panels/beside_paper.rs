@@ -4,7 +4,7 @@
 //! In: the samples since the last change of a parameter. Out: one point on each plot that moves as the run goes on.
 
 use crate::measure::{drop_ratio_law, dry_drum, galilei_number};
-use crate::simulation::{Command, Parameter, Simulation};
+use crate::simulation::{Command, Parameter, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::panels::averages::Averages;
 use crate::ui::request::Request;
@@ -60,17 +60,18 @@ impl Panel for BesidePaper {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        let viscosity = simulation.value(&Parameter::Viscosity);
-        let Some(world) = simulation.world() else {
+        let run = simulation.half(view.focus);
+        let viscosity = run.value(&Parameter::Viscosity);
+        let Some(world) = run.world() else {
             ui.weak("The laws appear when the bed stands.");
             return;
         };
         let radius = world.grains.radius.first().copied().unwrap_or(0.0);
-        let from = last_change(simulation);
-        let summary = self.averages.over(simulation, from);
+        let from = last_change(run);
+        let summary = self.averages.over(run, from);
         let drop = summary.value("drop Δθ");
         let count = summary.value("avalanches").unwrap_or(0.0);
         let dry = dry_drum(radius).map(|drum| drum.drop);
@@ -119,8 +120,8 @@ impl Panel for BesidePaper {
 }
 
 /// When a parameter was last changed [s].
-fn last_change(simulation: &Simulation) -> f64 {
-    let mut commands = simulation.commands().iter().rev();
+fn last_change(run: &RunView) -> f64 {
+    let mut commands = run.commands().iter().rev();
     let change = commands.find(|stamped| matches!(stamped.command, Command::Set { .. }));
     change.map_or(0.0, |stamped| stamped.time)
 }

@@ -3,7 +3,7 @@
 //! In: the simulation. Out: requests to show a moment, to take up or to forget a run, to save the
 //! list.
 
-use crate::simulation::{Command, Half, Parameter, Record, Simulation};
+use crate::simulation::{Command, Half, Parameter, Record, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::plots::run_curves::line_sample_ui;
 use crate::ui::request::Request;
@@ -101,8 +101,10 @@ impl Changes {
 /// on the right.
 fn rows(simulation: &Simulation) -> Vec<ChangeRow> {
     let mut rows = rows_of(simulation, |_| true);
-    if let Some(twin) = simulation.twin() {
-        let own = rows_of(twin.run(), |parameter| parameter == twin.parameter());
+    if let Some(comparison) = simulation.comparison() {
+        let own = rows_of(comparison.right, |parameter| {
+            parameter == comparison.parameter
+        });
         rows.extend(own.into_iter().map(|row| ChangeRow {
             text: format!("{}: {}", Half::Right.label(), row.text),
             ..row
@@ -113,9 +115,9 @@ fn rows(simulation: &Simulation) -> Vec<ChangeRow> {
 }
 
 /// The changes of one run in words, as far as they are about parameters that are `listed`.
-fn rows_of(simulation: &Simulation, listed: impl Fn(&Parameter) -> bool) -> Vec<ChangeRow> {
+fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<ChangeRow> {
     let commands = simulation.commands();
-    let changes = &simulation.past().changes;
+    let changes = simulation.changes();
     let ends = changes.iter().skip(1).copied().chain([commands.len()]);
     let mut values: BTreeMap<&Parameter, f64> = BTreeMap::new();
     let mut rows = Vec::new();
@@ -148,7 +150,7 @@ fn rows_of(simulation: &Simulation, listed: impl Fn(&Parameter) -> bool) -> Vec<
 }
 
 /// `friction glass – glass 0.4 → 0.2`; from the scene's value where it had not been changed before.
-fn in_words(parameter: &Parameter, from: Option<f64>, to: f64, simulation: &Simulation) -> String {
+fn in_words(parameter: &Parameter, from: Option<f64>, to: f64, simulation: &RunView) -> String {
     let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
     let from = from.or(info.map(|info| info.default));
     let from = from.map_or(String::new(), |from| bare_value(parameter, from));
@@ -177,7 +179,7 @@ fn kept_runs_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Reques
                 ("Forget", "Keep this run no longer", Command::Forget(index)),
             ];
             for (verb, hint, command) in buttons {
-                let enabled = simulation.twin().is_none() || verb == "Forget";
+                let enabled = simulation.comparison().is_none() || verb == "Forget";
                 let button = egui::Button::new(verb).small();
                 let response = ui.add_enabled(enabled, button).on_hover_text(hint);
                 let response = response.on_disabled_hover_text(OF_ONE_RUN);
@@ -194,7 +196,7 @@ fn kept_runs_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Reques
 }
 
 /// The last change of a kept run, by which one knows it again.
-fn describe(record: &Record, simulation: &Simulation) -> String {
+fn describe(record: &Record, simulation: &RunView) -> String {
     let last = record.history.commands().last();
     let Some((stamped, Command::Set { parameter, value })) =
         last.map(|stamped| (stamped, &stamped.command))

@@ -131,7 +131,7 @@ struct Marks<'a> {
 }
 
 impl<'a> Marks<'a> {
-    /// Those of the run, not of its twin.
+    /// Those of the left run.
     fn of(curves: Curves<'a>, palette: Palette) -> Self {
         Self {
             palette,

@@ -41,11 +41,12 @@ impl Panel for ColumnBesidePaper {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        let column = simulation.world().and_then(|world| Column::of(world));
-        let collapse = Collapse::of(simulation.series());
+        let run = simulation.half(view.focus);
+        let column = run.world().and_then(|world| Column::of(world));
+        let collapse = Collapse::of(run.series());
         let Some((column, collapse)) = column.zip(collapse) else {
             ui.weak("The laws appear with the first sample.");
             return;

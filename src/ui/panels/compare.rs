@@ -1,7 +1,7 @@
 //! Two runs side by side that differ in one parameter: which one and by how much, and the end of
 //! it.
 //!
-//! In: the simulation, alone or with its twin. Out: requests to begin a twin and to end it.
+//! In: the simulation, with one run or two. Out: requests to begin a comparison and to end it.
 
 use crate::scene::LIQUID_CASES;
 use crate::simulation::{Half, Parameter, ParameterInfo, Simulation};
@@ -44,7 +44,7 @@ impl Panel for Compare {
         _view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        if simulation.twin().is_some() {
+        if simulation.comparison().is_some() {
             end_ui(ui, simulation, out);
         } else if simulation.parameters().is_empty() {
             ui.weak("There is something to compare when the bed stands.");
@@ -84,7 +84,7 @@ impl Compare {
                 .on_hover_text("Both start afresh at time zero. The run so far is kept.")
                 .on_disabled_hover_text(why_not.unwrap_or_default());
             if button.clicked() {
-                out.push(Request::StartTwin(parameter.clone(), other));
+                out.push(Request::StartComparison(parameter.clone(), other));
             }
         }
         self.chosen = Some((parameter, other));
@@ -93,7 +93,7 @@ impl Compare {
 
 /// Why two runs cannot start now.
 fn why_not(simulation: &Simulation, is_same: bool) -> Option<&'static str> {
-    if !simulation.can_start_twin() {
+    if !simulation.can_compare() {
         Some("Two runs start side by side only while the run stands or goes on")
     } else if is_same {
         Some("Both values are the same: change the right one")
@@ -196,7 +196,7 @@ fn end_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let text = format!("End it, keep the {} run", half.label());
         let hint = "It goes on alone. The other one stays on the plots and in the list of runs.";
         if ui.button(text).on_hover_text(hint).clicked() {
-            out.push(Request::EndTwin(half));
+            out.push(Request::EndComparison(half));
         }
     }
 }

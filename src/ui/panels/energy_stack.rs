@@ -4,7 +4,7 @@
 //! In: the samples. Out: the plot, its numbers at the moment shown, the moment that is clicked on.
 
 use crate::measure::{Measure, Series};
-use crate::simulation::Simulation;
+use crate::simulation::{RunView, Simulation};
 use crate::ui::panel::{Panel, has_bed, is_column};
 use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plots::axes::{fitting_plot, tick};
@@ -94,10 +94,11 @@ impl Panel for EnergyStack {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let series = simulation.series();
+        let run = simulation.half(view.focus);
+        let series = run.series();
         if series.is_empty() {
             ui.weak("There is nothing measured yet.");
             return;
@@ -124,7 +125,7 @@ impl Panel for EnergyStack {
                 let supplied: Vec<[f64; 2]> = points.map(|(t, e)| [*t, e * factor]).collect();
                 let line = Line::new("Start and work", supplied);
                 plot.line(line.color(palette.threshold).width(2.0));
-                if let Some(time) = moment_shown(simulation) {
+                if let Some(time) = moment_shown(run) {
                     moment_ui(plot, time, palette);
                 }
             });
@@ -133,9 +134,9 @@ impl Panel for EnergyStack {
         let pointer = response.interact_pointer_pos();
         if let Some(pointer) = pointer.filter(|_| response.clicked()) {
             let time = drawn.transform.value_from_position(pointer).x;
-            out.extend(seek(simulation, time));
+            out.extend(seek(run, time));
         }
-        numbers_ui(ui, simulation);
+        numbers_ui(ui, run);
     }
 }
 
@@ -169,8 +170,8 @@ fn cursor(hover: &HoverPosition, unit: &str) -> String {
 }
 
 /// The ledger at the moment shown, with a swatch for each layer.
-fn numbers_ui(ui: &mut egui::Ui, simulation: &Simulation) {
-    let Some(sample) = simulation.sample() else {
+fn numbers_ui(ui: &mut egui::Ui, run: &RunView) {
+    let Some(sample) = run.sample() else {
         return;
     };
     for (index, layer) in LAYERS.into_iter().enumerate() {

@@ -128,11 +128,15 @@ impl Explorer {
                 .color(palette.kept)
                 .style(LineStyle::Dashed { length })
         });
-        let twin = simulation.twin();
-        let name = if twin.is_some() { "left" } else { "this run" };
+        let comparison = simulation.comparison();
+        let name = if comparison.is_some() {
+            "left"
+        } else {
+            "this run"
+        };
         let own = Line::new(name, self.points(simulation.series(), columns));
-        let twin = twin.map(|twin| {
-            let points = self.points(twin.run().series(), columns);
+        let twin = comparison.map(|comparison| {
+            let points = self.points(comparison.right.series(), columns);
             twin_line("right", points, palette)
         });
         kept.chain([own.color(palette.angle).width(1.7)])
@@ -195,7 +199,7 @@ impl Explorer {
                 .map(|(x, y)| [*x, *y])
                 .collect(),
         };
-        let mut runs = match simulation.twin() {
+        let mut runs = match simulation.comparison() {
             None => vec![run("this run".to_owned(), simulation.series())],
             Some(_) => Half::ALL
                 .map(|half| {

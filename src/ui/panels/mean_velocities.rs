@@ -64,7 +64,8 @@ impl Panel for MeanVelocities {
         view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        let Some(world) = simulation.world() else {
+        let run = simulation.half(view.focus);
+        let Some(world) = run.world() else {
             ui.weak("The map appears when the bed stands.");
             return;
         };
@@ -75,7 +76,7 @@ impl Panel for MeanVelocities {
         let room = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), HIGHEST));
         // Out of sight it may be an old one.
         if self.latest.is_none() || ui.is_rect_visible(room) {
-            self.renew(world, simulation.generation());
+            self.renew(world, run.generation());
         }
         let Some(drawn) = &self.latest else {
             ui.weak("There are no grains.");

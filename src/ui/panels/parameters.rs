@@ -180,10 +180,9 @@ fn group_ui(
             }
             pair = Some(own);
         }
-        let twin = simulation
-            .twin()
-            .filter(|twin| *twin.parameter() == info.parameter);
-        if twin.is_none() {
+        let is_compared = (simulation.comparison())
+            .is_some_and(|comparison| *comparison.parameter == info.parameter);
+        if !is_compared {
             let (value, mut compared) = (simulation.value(&info.parameter), false);
             let wanted = row_ui(ui, info, value, detail, scene, |ui| {
                 compared = compare_ui(ui, info, simulation);
@@ -200,17 +199,16 @@ fn group_ui(
             ui.weak(number::capitalised(half.label()));
             let value = simulation.half(half).value(&info.parameter);
             let wanted = ui.push_id(half, |ui| row_ui(ui, &named, value, detail, scene, |_| ()));
-            out.extend(wanted.inner.map(|value| match half {
-                Half::Left => Request::Command(set(info, value)),
-                Half::Right => Request::TwinValue(value),
-            }));
+            let parameter = info.parameter.clone();
+            let set_in = |value| Request::SetIn(half, parameter, value);
+            out.extend(wanted.inner.map(set_in));
         }
     }
 }
 
 /// The button that leads to two values of a parameter side by side; whether it was pressed.
 fn compare_ui(ui: &mut egui::Ui, info: &ParameterInfo, simulation: &Simulation) -> bool {
-    let enabled = simulation.twin().is_none();
+    let enabled = simulation.comparison().is_none();
     let button = ui
         .add_enabled(enabled, egui::Button::new("⇄").frame(false))
         .on_hover_text("Compare two values of it side by side…")

@@ -1,7 +1,7 @@
 //! Measured numbers of the latest sample, averages over the run, and the energy ledger.
 
 use crate::measure::{Measure, Sample, Summary};
-use crate::simulation::Simulation;
+use crate::simulation::{RunView, Simulation};
 use crate::ui::panel::{Panel, is_column};
 use crate::ui::panels::averages::Averages;
 use crate::ui::request::Request;
@@ -102,24 +102,25 @@ impl Panel for Results {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        let Some(sample) = simulation.sample() else {
+        let run = simulation.half(view.focus);
+        let Some(sample) = run.sample() else {
             ui.weak("Numbers appear with the first sample.");
             return;
         };
         let concerns = |measure: Measure| {
-            let world = simulation.world();
+            let world = run.world();
             world.is_none_or(|world| measure.concerns(world))
         };
         latest_ui(ui, &sample, concerns);
         ui.add_space(6.0);
-        if is_column(simulation) {
+        if is_column(run) {
             ui.label(RichText::new("The collapse so far").strong());
-            summary_ui(ui, self.averages.over(simulation, 0.0), &COLLAPSE);
+            summary_ui(ui, self.averages.over(run, 0.0), &COLLAPSE);
         } else {
-            self.averages_ui(ui, simulation);
+            self.averages_ui(ui, run);
         }
         ui.add_space(6.0);
         energy_ui(ui, &sample, concerns);
@@ -127,7 +128,7 @@ impl Panel for Results {
 }
 
 impl Results {
-    fn averages_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+    fn averages_ui(&mut self, ui: &mut egui::Ui, run: &RunView) {
         let field = Field {
             label: "Averages from",
             range: 0.0..=f64::INFINITY,
@@ -143,7 +144,7 @@ impl Results {
         });
         let hint = "Only samples from this time on count. The paper leaves out the first 20 s.";
         slip_ui(ui, &typed.inner.on_hover_text(hint));
-        summary_ui(ui, self.averages.over(simulation, self.from), &AVERAGES);
+        summary_ui(ui, self.averages.over(run, self.from), &AVERAGES);
     }
 }
 

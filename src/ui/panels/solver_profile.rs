@@ -27,12 +27,13 @@ impl Panel for SolverProfile {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        profile_ui(ui, simulation.profile());
-        advice_ui(ui, simulation.advice());
-        let warnings = simulation.warnings();
+        let run = simulation.half(view.focus);
+        profile_ui(ui, run.profile());
+        advice_ui(ui, run.advice());
+        let warnings = run.warnings();
         if !warnings.is_empty() {
             ui.label(RichText::new("Warnings").strong());
         }

@@ -5,7 +5,7 @@
 //! two runs side by side.
 
 use crate::measure::{Avalanche, Series};
-use crate::simulation::{Half, Record, Simulation};
+use crate::simulation::{Half, Record, RunView, Simulation};
 use crate::ui::playback::moment_shown;
 use crate::ui::plots::decimate::decimate;
 use crate::ui::theme::{Palette, TWIN_DASH};
@@ -47,11 +47,11 @@ pub struct Lines {
 }
 
 impl<'a> Curves<'a> {
-    /// Those of `simulation` and its twin.
+    /// Those of all runs of `simulation`.
     pub fn of(simulation: &'a Simulation, changes: &'a [f64], kept: &'a [KeptRun]) -> Self {
         Self {
             series: simulation.series(),
-            twin: simulation.twin().map(|twin| twin.run().series()),
+            twin: (simulation.comparison()).map(|comparison| comparison.right.series()),
             avalanches: simulation.avalanches(),
             changes,
             kept,
@@ -105,32 +105,30 @@ impl Lines {
     }
 }
 
-/// The runs that were left for others by `simulation` and by its twin.
+/// The branches beside the runs of `simulation`.
 pub fn kept_runs(simulation: &Simulation) -> Vec<KeptRun> {
-    let of = |run: &Simulation, beside: &str| -> Vec<KeptRun> {
+    let of = |run: &RunView, beside: &str| -> Vec<KeptRun> {
         let named =
             |record: &Arc<Record>| (format!("Run {}{beside}", record.number), record.clone());
         run.past().kept.iter().map(named).collect()
     };
-    let twin = simulation.twin().map(|twin| of(twin.run(), ", right"));
     let mut kept = of(simulation, "");
-    kept.extend(twin.into_iter().flatten());
+    if let Some(comparison) = simulation.comparison() {
+        kept.extend(of(comparison.right, ", right"));
+    }
     kept
 }
 
 /// When parameters were changed [s], ascending: once for each change, however many values it took.
-pub fn change_times(simulation: &Simulation) -> Vec<f64> {
-    let (past, commands) = (simulation.past(), simulation.commands());
-    let times = past
-        .changes
-        .iter()
-        .filter_map(|first| Some(commands.get(*first)?.time));
+pub fn change_times(run: &RunView) -> Vec<f64> {
+    let commands = run.commands();
+    let times = (run.changes().iter()).filter_map(|first| Some(commands.get(*first)?.time));
     times.collect()
 }
 
 /// Which line is which of the two runs, where there are two.
 pub fn halves_ui(ui: &mut egui::Ui, simulation: &Simulation) {
-    if simulation.twin().is_none() {
+    if simulation.comparison().is_none() {
         return;
     }
     let palette = Palette::of(ui.visuals());

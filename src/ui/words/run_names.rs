@@ -2,11 +2,11 @@
 //!
 //! In: the simulation. Out: text for panels, plots and the picture.
 
-use crate::simulation::{Half, Parameter, Simulation, Twin};
+use crate::simulation::{Half, Parameter, RunView, Simulation};
 use crate::ui::words::number;
 
 /// What people call `parameter`.
-pub fn parameter_name(parameter: &Parameter, simulation: &Simulation) -> String {
+pub fn parameter_name(parameter: &Parameter, simulation: &RunView) -> String {
     let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
     info.map_or_else(|| parameter.to_string(), |info| info.label.clone())
 }
@@ -29,7 +29,7 @@ pub fn bare_value(parameter: &Parameter, value: f64) -> String {
 
 /// What tells one of two runs from the other: `viscosity 1.01 mPa s`.
 pub fn half_title(simulation: &Simulation, half: Half) -> String {
-    let Some(parameter) = simulation.twin().map(Twin::parameter) else {
+    let Some(parameter) = (simulation.comparison()).map(|comparison| comparison.parameter) else {
         return String::new();
     };
     let value = simulation.half(half).value(parameter);

@@ -71,7 +71,8 @@ impl Panel for Microscope {
         view: &mut ViewSettings,
         _out: &mut Vec<Request>,
     ) {
-        let Some(world) = simulation.world().filter(|world| !world.grains.is_empty()) else {
+        let run = simulation.half(view.focus);
+        let Some(world) = run.world().filter(|world| !world.grains.is_empty()) else {
             ui.weak("There are no grains yet.");
             return;
         };
@@ -100,7 +101,7 @@ impl Panel for Microscope {
         };
         let terms = force_terms(world, contact);
         table_ui(ui, term_rows(contact, &terms).into_iter());
-        self.follow(contact, &terms, simulation.generation());
+        self.follow(contact, &terms, run.generation());
         self.plot_ui(ui, world, contact, &terms);
     }
 }

@@ -1,0 +1,249 @@
+//! One run of a lab as panels and views see it: the newest state, what was changed and measured, what is asked for.
+//!
+//! In: the engine's news. Out: borrowed states, samples and commands; they are shared with the engine, so they may only be
+//! read. Changing a run goes by way of [`super::Lab::send`].
+
+use super::update::RunNews;
+use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
+use crate::run::{Command, Parameter, ParameterInfo, Past, Record, StampedCommand};
+use crate::scene::Scene;
+use crate::solver::{Fault, Profile, TimeStepAdvice};
+use crate::world::World;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Smallest drop of the surface that counts as an avalanche [rad], 1°.
+pub const SMALLEST_DROP: f64 = std::f64::consts::PI / 180.0;
+
+/// One run of a lab as the outside sees it.
+pub struct RunView {
+    id: u64,
+    scene: Arc<Scene>,
+    advice: TimeStepAdvice,
+    /// What the engine has told last; nothing while the run is prepared.
+    news: Option<RunNews>,
+    /// What was changed and measured; empty while the run is prepared.
+    record: Arc<Record>,
+    past: Past,
+    profile: Profile,
+    avalanches: Avalanches,
+    warnings: Vec<String>,
+    /// Values asked for and not yet carried out.
+    asked: BTreeMap<Parameter, f64>,
+    /// The step asked for and not yet reached.
+    sought: Option<u64>,
+    generation: u64,
+    revision: u64,
+}
+
+impl RunView {
+    /// A run of `scene` of which nothing is known yet.
+    pub(super) fn new(scene: Arc<Scene>, advice: TimeStepAdvice) -> Self {
+        Self {
+            id: next_number(),
+            scene,
+            warnings: advice.warning.iter().cloned().collect(),
+            advice,
+            news: None,
+            record: Arc::default(),
+            past: Past::default(),
+            profile: Profile::default(),
+            avalanches: Avalanches::default(),
+            asked: BTreeMap::new(),
+            sought: None,
+            generation: 0,
+            revision: 0,
+        }
+    }
+
+    /// Another run of the same scene of which nothing is known yet.
+    pub(super) fn sibling(&self) -> Self {
+        Self::new(self.scene.clone(), self.advice.clone())
+    }
+
+    /// What was asked for.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The newest state; none while the run is prepared.
+    pub fn world(&self) -> Option<&Arc<World>> {
+        self.news.as_ref().map(|news| &news.world)
+    }
+
+    /// What tells it from every other run that was ever shown.
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// Changes whenever [`RunView::world`] is another state, and is that of no other run.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// The samples of the present branch so far, one every [`crate::run::SAMPLE_INTERVAL`]; those after the state shown
+    /// too.
+    pub fn series(&self) -> &Series {
+        &self.record.series
+    }
+
+    /// The last sample at or before the state shown.
+    pub fn sample(&self) -> Option<Sample> {
+        let step = self.world()?.clock.step;
+        let steps = self.series().steps();
+        let samples = steps.partition_point(|&sampled| sampled <= step);
+        self.series().get(samples.checked_sub(1)?)
+    }
+
+    /// The flowing layer so far.
+    pub fn flow(&self) -> &FlowHistory {
+        &self.record.flow
+    }
+
+    /// The avalanches so far, of [`SMALLEST_DROP`] at least.
+    pub fn avalanches(&self) -> &[Avalanche] {
+        &self.avalanches.list
+    }
+
+    /// The commands carried out in the present branch since time zero; those after the state shown too.
+    pub fn commands(&self) -> &[StampedCommand] {
+        self.record.history.commands()
+    }
+
+    /// Index of the first command of each change: a drag or a button may take several.
+    pub fn changes(&self) -> &[usize] {
+        self.record.history.changes()
+    }
+
+    /// Changes whenever [`RunView::commands`] is another list.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// What lies behind and ahead of the state shown.
+    pub fn past(&self) -> &Past {
+        &self.past
+    }
+
+    /// The step that is shown, or the one that was asked for and is still on its way.
+    pub fn step(&self) -> u64 {
+        let shown = || self.world().map_or(0, |world| world.clock.step);
+        self.sought.unwrap_or_else(shown)
+    }
+
+    /// Whether the state shown is not the newest of the present branch.
+    pub fn looks_back(&self) -> bool {
+        self.step() < self.past.end.step
+    }
+
+    /// The parameters that can change while it goes on; none while the run is prepared.
+    pub fn parameters(&self) -> &[ParameterInfo] {
+        self.news.as_ref().map_or(&[], |news| &news.parameters)
+    }
+
+    /// Present value of `parameter` in SI units, or the value asked for where that is still to be carried out; NaN where
+    /// the scene has no such parameter.
+    pub fn value(&self, parameter: &Parameter) -> f64 {
+        let asked = self.asked.get(parameter).copied();
+        let present = || parameter.read(self.world()?);
+        asked.or_else(present).unwrap_or(f64::NAN)
+    }
+
+    /// What stopped it, if something did.
+    pub fn fault(&self) -> Option<&Fault> {
+        self.news.as_ref()?.fault.as_ref()
+    }
+
+    /// Where the solver's time went lately.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// The time step and its reasons.
+    pub fn advice(&self) -> &TimeStepAdvice {
+        &self.advice
+    }
+
+    /// What people should know, in sentences: refused commands, a bed that could not be kept …
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    pub(super) fn warn(&mut self, warnings: Vec<String>) {
+        self.warnings.extend(warnings);
+    }
+
+    /// Shows what `command` asks for until it is carried out.
+    pub(super) fn expect(&mut self, command: &Command) {
+        match command {
+            Command::Set { parameter, value } => {
+                self.asked.insert(parameter.clone(), *value);
+            }
+            Command::Seek(step) => self.sought = Some(*step),
+            _ => {}
+        }
+    }
+
+    /// Shows the values that there are: what was asked for is carried out or refused.
+    pub(super) fn forget_asked(&mut self) {
+        self.asked.clear();
+    }
+
+    /// Shows the step there is: the one that was asked for is reached, or given up.
+    pub(super) fn forget_sought(&mut self) {
+        self.sought = None;
+    }
+
+    /// Takes in what is new of it.
+    pub(super) fn take(&mut self, mut news: RunNews) {
+        let is_other = |known: &RunNews| !Arc::ptr_eq(&known.world, &news.world);
+        if self.news.as_ref().is_none_or(is_other) {
+            self.generation = next_number();
+        }
+        let count = |record: &Record| (record.number, record.history.commands().len());
+        if count(&self.record) != count(&news.record) {
+            self.revision = next_number();
+        }
+        if self.record.number != news.record.number {
+            self.avalanches = Avalanches::default();
+        }
+        self.record = news.record.clone();
+        self.avalanches.follow(&self.record.series);
+        self.past = std::mem::take(&mut news.past);
+        self.profile = std::mem::take(&mut news.profile);
+        self.news = Some(news);
+    }
+}
+
+/// A number that nobody else has, never zero.
+fn next_number() -> u64 {
+    static NUMBERS: AtomicU64 = AtomicU64::new(1);
+    NUMBERS.fetch_add(1, Ordering::Relaxed)
+}
+
+/// The avalanches of a growing series.
+#[derive(Default)]
+struct Avalanches {
+    list: Vec<Avalanche>,
+    samples: usize,
+    due: Option<Instant>,
+}
+
+impl Avalanches {
+    /// Looks through `series` again where it has grown, spending a twentieth of the time at most.
+    fn follow(&mut self, series: &Series) {
+        let started = Instant::now();
+        if series.len() == self.samples || self.due.is_some_and(|due| due > started) {
+            return;
+        }
+        self.list = avalanches(
+            series.time(),
+            series.column(Measure::SurfaceAngle),
+            SMALLEST_DROP,
+        );
+        self.samples = series.len();
+        self.due = Some(started + 20 * started.elapsed());
+    }
+}

@@ -1,0 +1,406 @@
+//! The runs of a lab, one or two, each with its timeline; two are kept at the same step.
+//!
+//! In: what is to be done in all of them or in one. Out: their states, all of the same step. Each run goes the way, to the
+//! bit, that it would go alone: the same change is made in both before the same step, and a change of one of them is noted
+//! in the other, so that undo and redo lead both to the same moment, and so does a branch.
+//!
+//! Two runs advance at the same time, each on its own threads, piece by piece to a common step. On the way to another
+//! moment each goes as fast as its keyframes let it; where one stops short, because of a fault or because it was told to,
+//! the one that is ahead goes back to it.
+
+use super::Half;
+use super::clock::Clock;
+use super::update::{RunNews, RunsNews};
+use crate::run::{Command, CommandError, Parameter, Run, Session, Snapshot, Timeline};
+use crate::scene::Scene;
+use crate::solver::{Fault, Profile};
+use crate::world::{self, World};
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The runs of a lab, one at least.
+pub struct Runs {
+    list: Vec<LabRun>,
+    /// What the two differ in, where there are two.
+    comparison: Option<Parameter>,
+    /// Whether another state is to be shown as soon as all are at the same step.
+    is_news: bool,
+}
+
+/// A run and what of it is shown.
+struct LabRun {
+    timeline: Timeline,
+    fault: Option<Fault>,
+    profile: Profile,
+    shown: Arc<World>,
+    /// Steps and commands carried out in the state shown.
+    shown_at: (u64, usize),
+}
+
+/// What came of a piece of work.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Piece {
+    /// The most steps that a run took.
+    pub steps: u64,
+    /// Whether all runs came to the moment that was asked for.
+    pub arrived: bool,
+}
+
+impl LabRun {
+    fn new(timeline: Timeline) -> Self {
+        Self {
+            shown: Arc::new(timeline.run().world().clone()),
+            shown_at: timeline.position(),
+            timeline,
+            fault: None,
+            profile: Profile::default(),
+        }
+    }
+
+    fn step(&self) -> u64 {
+        self.timeline.run().world().clock.step
+    }
+
+    fn news(&mut self, is_renewed: bool) -> RunNews {
+        if is_renewed {
+            self.shown = Arc::new(self.timeline.run().world().clone());
+            self.shown_at = self.timeline.position();
+        }
+        RunNews {
+            world: self.shown.clone(),
+            parameters: self.timeline.run().parameters().clone(),
+            record: Arc::new(self.timeline.record().clone()),
+            past: self.timeline.past(),
+            fault: self.fault.clone(),
+            profile: self.profile.clone(),
+        }
+    }
+}
+
+impl Runs {
+    /// One run, with its `timeline`.
+    pub fn new(timeline: Timeline) -> Self {
+        Self {
+            list: vec![LabRun::new(timeline)],
+            comparison: None,
+            is_news: true,
+        }
+    }
+
+    /// The left one, which is all there is without a comparison.
+    fn first(&self) -> &LabRun {
+        &self.list[0]
+    }
+
+    fn timelines(&mut self) -> impl Iterator<Item = &mut Timeline> {
+        self.list.iter_mut().map(|run| &mut run.timeline)
+    }
+
+    /// Whether there are two.
+    pub fn is_pair(&self) -> bool {
+        self.list.len() > 1
+    }
+
+    /// Steps taken and time step; of two runs on the way to a moment, of the left one.
+    pub fn now(&self) -> world::Clock {
+        self.first().timeline.run().world().clock
+    }
+
+    /// Whether all stand at the same step.
+    pub fn are_in_step(&self) -> bool {
+        let step = self.first().step();
+        self.list.iter().all(|run| run.step() == step)
+    }
+
+    /// Whether one of them is on the way to a moment that was asked for.
+    pub fn are_on_the_way(&self) -> bool {
+        (self.list.iter()).any(|run| run.timeline.destination().is_some())
+    }
+
+    /// How much of that way is done by the one that is last, 0 … 1.
+    pub fn progress(&self) -> f32 {
+        let ways = self.list.iter().map(|run| run.timeline.progress());
+        ways.fold(1.0, f32::min)
+    }
+
+    /// The first fault that stopped one of them.
+    pub fn fault(&self) -> Option<&Fault> {
+        self.list.iter().find_map(|run| run.fault.as_ref())
+    }
+
+    /// Forgets what stopped them.
+    pub fn forget_faults(&mut self) {
+        for run in &mut self.list {
+            run.fault = None;
+        }
+    }
+
+    /// The step that `run` is to come to before the next command. While one is on the way to a moment, the others wait.
+    fn goal(&self, run: &LabRun, clock: &Clock) -> u64 {
+        let destination = run.timeline.destination();
+        if destination.is_none() && self.are_on_the_way() {
+            return run.step();
+        }
+        clock.goal(destination)
+    }
+
+    /// Whether one of them is to go further.
+    pub fn have_work(&self, clock: &Clock) -> bool {
+        (self.list.iter()).any(|run| run.step() < self.goal(run, clock))
+    }
+
+    /// Lets each go at most `steps` steps towards its goal, all at the same time.
+    pub fn advance(&mut self, clock: &mut Clock, steps: u64) -> Piece {
+        let was_on_the_way = self.are_on_the_way();
+        let goals: Vec<u64> = (self.list.iter())
+            .map(|run| self.goal(run, clock).min(run.step().saturating_add(steps)))
+            .collect();
+        let ways = self.list.iter().zip(&goals);
+        let steps = ways.map(|(run, goal)| goal.saturating_sub(run.step()));
+        let steps = steps.max().unwrap_or(0);
+        if advance_all(&mut self.list, &goals) {
+            clock.stop();
+            self.align();
+        } else if !was_on_the_way {
+            clock.reach(goals[0]);
+        }
+        Piece {
+            steps,
+            arrived: was_on_the_way && !self.are_on_the_way(),
+        }
+    }
+
+    /// Sends those that are ahead back to the one that is last.
+    fn align(&mut self) {
+        let Some(last) = self.list.iter().map(LabRun::step).min() else {
+            return;
+        };
+        for run in self.list.iter_mut().filter(|run| run.step() > last) {
+            run.timeline.seek(last);
+        }
+    }
+
+    /// Shows what is recorded already up to `step` faster than it can be computed. Two runs have keyframes at different
+    /// steps, so they compute it.
+    pub fn skip_towards(&mut self, step: u64) {
+        if !self.is_pair() && !self.are_on_the_way() {
+            self.timelines()
+                .for_each(|timeline| timeline.skip_towards(step));
+        }
+    }
+
+    /// Stays where they are on the way to a moment; two of them where the one is that is last.
+    pub fn stop(&mut self) {
+        self.timelines().for_each(Timeline::stop);
+        self.align();
+    }
+
+    /// Goes to `step` in all, at most to the end of what is recorded.
+    pub fn seek(&mut self, step: u64) {
+        self.timelines().for_each(|timeline| timeline.seek(step));
+    }
+
+    /// Starts all afresh at time zero with their present values.
+    pub fn reset(&mut self) {
+        self.timelines().for_each(Timeline::reset);
+    }
+
+    /// Takes the last change back in all. What was changed before a comparison began is the left run's alone and stays.
+    pub fn undo(&mut self) {
+        if self
+            .list
+            .iter()
+            .all(|run| run.timeline.past().undo.is_some())
+        {
+            self.timelines().for_each(Timeline::undo);
+        }
+    }
+
+    /// Brings the change that was taken back last to all again.
+    pub fn redo(&mut self) {
+        if self
+            .list
+            .iter()
+            .all(|run| run.timeline.past().redo.is_some())
+        {
+            self.timelines().for_each(Timeline::redo);
+        }
+    }
+
+    /// Shows the branch of this index again.
+    pub fn take_up(&mut self, index: usize) {
+        self.list[0].timeline.take_up(index);
+    }
+
+    /// Keeps the branch of this index no longer.
+    pub fn forget(&mut self, index: usize) {
+        self.list[0].timeline.forget(index);
+    }
+
+    /// Works on `threads` threads in all from now on.
+    pub fn use_threads(&mut self, threads: usize) {
+        let share = (threads / self.list.len()).max(1);
+        self.timelines()
+            .for_each(|timeline| timeline.use_threads(share));
+    }
+
+    /// Makes `change` in all runs, or in one `half`: by itself where it is what the two differ in, in the left one.
+    /// It is part of the change before it where it `joins`.
+    ///
+    /// # Errors
+    /// As [`Run::apply`]; nothing is changed in any of them then.
+    pub fn change(
+        &mut self,
+        change: &Command,
+        half: Option<Half>,
+        joins: bool,
+    ) -> Result<(), CommandError> {
+        for run in &self.list {
+            run.timeline.run().check(change)?;
+        }
+        let differs = matches!(
+            (change, &self.comparison),
+            (Command::Set { parameter, .. }, Some(own)) if parameter == own
+        );
+        let half = half.or(differs.then_some(Half::Left));
+        for (index, timeline) in self.timelines().enumerate() {
+            if half.is_none_or(|half| half.index() == index) {
+                timeline.change(change.clone(), joins)?;
+            } else {
+                timeline.note_beside(change, joins)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Starts a second run beside the first, with keyframes in `memory` bytes: both at time zero, with the present values
+    /// of all parameters but `parameter`, which has this `value` in the right one.
+    ///
+    /// # Errors
+    /// Why there can be no second run now, in a sentence.
+    pub fn compare(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        memory: usize,
+    ) -> Result<(), String> {
+        if self.is_pair() {
+            return Err("Two runs are compared already: end that comparison first".into());
+        }
+        if self.fault().is_some() {
+            return Err("Two runs start side by side only while the run stands or goes on".into());
+        }
+        let first = &mut self.list[0].timeline;
+        let run = first.run();
+        let change = Command::Set {
+            parameter: parameter.clone(),
+            value,
+        };
+        run.check(&change).map_err(|refusal| refusal.to_string())?;
+        let mut values = run.values();
+        let second = Run::new(run.scene().clone(), run.bed().clone(), 1);
+        first.restart(&values);
+        for (own, present) in &mut values {
+            if *own == parameter {
+                *present = value;
+            }
+        }
+        let mut second = Timeline::new(second, memory);
+        second.restart(&values);
+        self.list.push(LabRun::new(second));
+        self.comparison = Some(parameter);
+        self.is_news = true;
+        Ok(())
+    }
+
+    /// Goes on with one of two runs and keeps the other as a branch.
+    pub fn end_comparison(&mut self, keep: Half) {
+        let Some(second) = self.list.drain(1..).next() else {
+            return;
+        };
+        self.comparison = None;
+        let first = &mut self.list[0].timeline;
+        let newest = first.adopt(second.timeline.record().clone(), second.timeline.end());
+        if keep == Half::Right {
+            first.take_up(newest);
+        }
+        self.is_news = true;
+    }
+
+    /// Writes the session of a scene that was opened as `original` to `path`; of two runs, the right one as a branch.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save(&mut self, path: &Path, original: &Scene) -> io::Result<()> {
+        let second: Option<(_, Option<Snapshot>)> = (self.list.get(1))
+            .map(|second| (second.timeline.record().clone(), second.timeline.end()));
+        let timeline = &mut self.list[0].timeline;
+        let kept = second.map(|(record, end)| timeline.adopt(record, end));
+        let title = &timeline.run().scene().title;
+        let session = Session::of(title, timeline).of_original(original);
+        if let Some(index) = kept {
+            timeline.forget(index);
+        }
+        session.write(path)
+    }
+
+    /// Takes what the solvers' time was spent on since this was last called.
+    pub fn renew_profiles(&mut self) {
+        for run in &mut self.list {
+            let profile = run.timeline.take_profile();
+            if profile.steps > 0 {
+                run.profile = profile;
+            }
+        }
+    }
+
+    /// All runs as they are to be shown, where all are at the same step.
+    pub fn news(&mut self) -> Option<RunsNews> {
+        for run in &mut self.list {
+            let news = run.timeline.take_news();
+            self.is_news |= news.switched || news.arrived;
+        }
+        if !self.are_in_step() {
+            return None;
+        }
+        let moved = (self.list.iter()).any(|run| run.shown_at != run.timeline.position());
+        let is_renewed = self.is_news || (moved && !self.are_on_the_way());
+        self.is_news = false;
+        Some(RunsNews {
+            comparison: self.comparison.clone(),
+            runs: (self.list.iter_mut())
+                .map(|run| run.news(is_renewed))
+                .collect(),
+        })
+    }
+}
+
+/// Lets each of the `runs` come to its goal: the first on this thread, others on threads of their own. Whether one of them
+/// met a fault on the way.
+fn advance_all(runs: &mut [LabRun], goals: &[u64]) -> bool {
+    let advance = |run: &mut LabRun, goal: u64| {
+        if run.step() >= goal {
+            return false;
+        }
+        run.fault = run.timeline.advance_to(goal).err();
+        run.fault.is_some()
+    };
+    let mut work = runs.iter_mut().zip(goals.iter().copied());
+    let Some((first, goal)) = work.next() else {
+        return false;
+    };
+    std::thread::scope(|scope| {
+        let others: Vec<_> = work
+            .map(|(run, goal)| scope.spawn(move || advance(run, goal)))
+            .collect();
+        let mut is_faulted = advance(first, goal);
+        for other in others {
+            match other.join() {
+                Ok(other) => is_faulted |= other,
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        is_faulted
+    })
+}

@@ -1,0 +1,71 @@
+//! What the engine tells the outside: news in an [`Update`], each replaced or continued by the next.
+//!
+//! In: nothing. Out: plain values that travel between threads. States, samples and commands are shared, not copied.
+
+use super::Status;
+use crate::run::{Parameter, ParameterInfo, Past, Record};
+use crate::solver::{Fault, Profile};
+use crate::world::World;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// News from the engine since the last update was taken.
+#[derive(Default)]
+pub struct Update {
+    /// The runs, where there are any and all are at the same step.
+    pub runs: Option<RunsNews>,
+    /// How many commands were dispatched since the engine was made. None while two runs are on the way to a common step:
+    /// what they become by then is told together.
+    pub answered: Option<u64>,
+    /// What the lab does.
+    pub status: Option<Status>,
+    /// What people should know, in sentences.
+    pub warnings: Vec<String>,
+    /// Files that were to be written.
+    pub saved: Vec<SavedFile>,
+}
+
+/// All runs of a lab, shown at the same step.
+pub struct RunsNews {
+    /// What the two differ in, where there are two.
+    pub comparison: Option<Parameter>,
+    /// The left run, then the right one.
+    pub runs: Vec<RunNews>,
+}
+
+/// A run as it is shown.
+#[derive(Clone)]
+pub struct RunNews {
+    /// The state.
+    pub world: Arc<World>,
+    /// The parameters that can change while it goes on.
+    pub parameters: Arc<[ParameterInfo]>,
+    /// What was changed and measured, up to its end.
+    pub record: Arc<Record>,
+    /// What lies behind and ahead of the state.
+    pub past: Past,
+    /// What stopped it, if something did.
+    pub fault: Option<Fault>,
+    /// The solver's profile of the last half second or so.
+    pub profile: Profile,
+}
+
+/// What became of a file that was to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SavedFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Why it could not be written, if it could not.
+    pub outcome: Result<(), String>,
+}
+
+impl Update {
+    /// Adds what came `later`.
+    pub fn absorb(&mut self, later: Self) {
+        self.runs = later.runs.or(self.runs.take());
+        self.answered = later.answered.or(self.answered);
+        self.status = later.status.or(self.status.take());
+        self.warnings.extend(later.warnings);
+        self.saved.extend(later.saved);
+    }
+}
