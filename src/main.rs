@@ -310,7 +310,7 @@ fn open_window(
     options: Options,
     picture: PictureArguments,
 ) -> Result<u8, HeadlessError> {
-    use grainfall::window::{Job, PictureJob, run};
+    use grainfall::window::{PictureJob, WindowJob, run};
     let compared = picture.compare.as_deref().map(compared_value).transpose()?;
     let picture = picture.screenshot.map(|path| PictureJob {
         path,
@@ -319,7 +319,7 @@ fn open_window(
         offscreen: picture.offscreen,
         plain: picture.plain,
     });
-    let job = Job {
+    let job = WindowJob {
         name,
         opened,
         options,

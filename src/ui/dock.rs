@@ -8,7 +8,7 @@ use crate::scene::built_in;
 use crate::simulation::{Command, Parameter, Simulation, Status};
 use crate::ui::bars::badge::Badge;
 use crate::ui::bars::menu::menu_ui;
-use crate::ui::bars::sides::{ROOM_FOR_BOTH, ROOM_FOR_ONE, Sides};
+use crate::ui::bars::sides::{OpenSides, ROOM_FOR_BOTH, ROOM_FOR_ONE};
 use crate::ui::bars::transport::Transport;
 use crate::ui::detail::Detail;
 use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
@@ -17,7 +17,7 @@ use crate::ui::dialogs::sheets::{open_error_ui, sheet_ui, unsaved_ui};
 use crate::ui::panels::about_scene::AboutScene;
 use crate::ui::panels::avalanche_plots::AvalanchePlots;
 use crate::ui::panels::beside_paper::BesidePaper;
-use crate::ui::panels::changes::Changes;
+use crate::ui::panels::changes::ChangeList;
 use crate::ui::panels::collapse_plots::CollapsePlots;
 use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
 use crate::ui::panels::compare::Compare;
@@ -52,7 +52,7 @@ pub struct Dock {
     right: Vec<Section>,
     transport: Transport,
     badge: Badge,
-    shown: Sides,
+    shown: OpenSides,
     /// The plot that a file is being chosen for.
     pub export: Option<Box<Export>>,
     gallery: Gallery,
@@ -83,7 +83,7 @@ fn left() -> Vec<Section> {
         section(AboutScene, true),
         section(Parameters::default(), true),
         section(Compare::default(), false),
-        section(Changes::default(), true),
+        section(ChangeList::default(), true),
         section(PictureSettings, false),
         section(SolverProfile, false),
     ]
@@ -111,7 +111,7 @@ impl Default for Dock {
             right: right(),
             transport: Transport,
             badge: Badge::default(),
-            shown: Sides {
+            shown: OpenSides {
                 left: true,
                 right: true,
             },
@@ -215,7 +215,7 @@ impl Dock {
             ctx.set_zoom_factor(look.scale);
             view.background = look.background;
         } else {
-            self.memory.wear(Look {
+            self.memory.keep_look(Look {
                 scale: ctx.zoom_factor(),
                 background: view.background,
             });

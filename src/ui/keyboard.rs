@@ -1,9 +1,8 @@
-//! Which of Shift, Ctrl and Alt were held when a key was pressed, told key by key.
+//! Which of Shift, Ctrl and Alt were held when each key was pressed.
 //!
-//! In: the keys of a frame in their order. Out: the same events for egui, each with what was held
-//! at its own moment. As they come, all have what is held at the end of the frame: where a frame
-//! takes long, Ctrl and a key that are pressed and let go within one would do what the key alone
-//! does.
+//! In: the keys of a frame, in order. Out: the same events for egui, each with the modifiers held
+//! at its own moment. Bevy gives all keys of a frame the modifiers that are held at the end of the
+//! frame. In a slow frame Ctrl+S, pressed and released, would then act like S alone.
 
 use bevy::input::keyboard::{Key, KeyboardFocusLost, KeyboardInput};
 use bevy::prelude::*;

@@ -15,12 +15,12 @@ pub trait Panel: Send + Sync + 'static {
     /// What stands over it.
     fn title(&self) -> &'static str;
 
-    /// Whether it has anything to say of this simulation; it is left out where it has not.
+    /// Whether it applies to this simulation; a panel that does not is left out.
     fn applies_to(&self, _simulation: &Simulation) -> bool {
         true
     }
 
-    /// Whether it is among what one looks at first in this simulation, so that it is open until a
+    /// Whether it is one of the first things to look at in this simulation: then it is open until a
     /// person closes it.
     fn comes_first(&self, _simulation: &Simulation) -> bool {
         false
@@ -31,12 +31,12 @@ pub trait Panel: Send + Sync + 'static {
         false
     }
 
-    /// Whether it describes one of two runs only: the one that was clicked on last.
+    /// Whether it describes one run: of two side by side, the one that was clicked on last.
     fn describes_one_run(&self) -> bool {
         false
     }
 
-    /// Lets it be about `parameter`, where it is about one.
+    /// Makes it show `parameter`, where the panel shows one parameter.
     fn take_up(&mut self, _parameter: &Parameter) {}
 
     /// Draws it; what is asked for goes into `out`.

@@ -95,6 +95,7 @@ impl Export {
     fn write_table(&self, path: &Path) -> io::Result<()> {
         let text = self.csv()?;
         write_whole(path, |file| file.write_all(text.as_bytes()))?;
+        // A path without a file's name could not have been written to.
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let beside = path.with_file_name(format!("{name}-metadata.json"));
         write_whole(&beside, |file| self.from.write_tables(&[&name], file))

@@ -1,5 +1,8 @@
-//! What each key does. One table: keys are read from it and the sheet of shortcuts is drawn from
-//! it.
+//! What each key does, in one table: keys are looked up in it, and the sheet of shortcuts and the
+//! menus show it.
+//!
+//! In: the keys pressed in a frame, the simulation. Out: requests that mean something now. While a
+//! text is typed or a dialog is open, no key counts.
 
 use crate::simulation::{Command, Simulation};
 use crate::ui::playback::{Way, allows, leap, play_or_pause, step_back, to_avalanche};
@@ -13,10 +16,10 @@ pub struct Shortcut {
     keys: &'static [KeyboardShortcut],
     /// What it does, in words.
     pub name: &'static str,
-    action: Action,
+    action: KeyAction,
 }
 
-enum Action {
+enum KeyAction {
     PlayOrPause,
     StepBack,
     Leap(Way),
@@ -41,8 +44,8 @@ const fn shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::SHIFT, key)
 }
 
-const fn look_from(side: Side) -> Action {
-    Action::Ask(Request::Camera(CameraRequest::From(side)))
+const fn look_from(side: Side) -> KeyAction {
+    KeyAction::Ask(Request::Camera(CameraRequest::From(side)))
 }
 
 /// Every shortcut, in the order of the sheet.
@@ -50,75 +53,75 @@ pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         keys: &[key(Key::Space)],
         name: "Play or pause",
-        action: Action::PlayOrPause,
+        action: KeyAction::PlayOrPause,
     },
     // Before the plain keys, which would take them.
     Shortcut {
         keys: &[shift(Key::ArrowRight)],
         name: "A fiftieth of a second on",
-        action: Action::Leap(Way::On),
+        action: KeyAction::Leap(Way::On),
     },
     Shortcut {
         keys: &[shift(Key::ArrowLeft)],
         name: "A fiftieth of a second back",
-        action: Action::Leap(Way::Back),
+        action: KeyAction::Leap(Way::Back),
     },
     Shortcut {
         keys: &[key(Key::Period), key(Key::ArrowRight)],
         name: "One time step",
-        action: Action::Ask(Request::Command(Command::Step(1))),
+        action: KeyAction::Ask(Request::Command(Command::Step(1))),
     },
     Shortcut {
         keys: &[key(Key::Comma), key(Key::ArrowLeft)],
         name: "One time step back",
-        action: Action::StepBack,
+        action: KeyAction::StepBack,
     },
     Shortcut {
         keys: &[key(Key::End)],
         name: "The newest state",
-        action: Action::ToTheNewest,
+        action: KeyAction::ToTheNewest,
     },
     // Before the shorter one, which would take its keys.
     Shortcut {
         keys: &[ctrl_shift(Key::Z), ctrl(Key::Y)],
         name: "Redo",
-        action: Action::Ask(Request::Command(Command::Redo)),
+        action: KeyAction::Ask(Request::Command(Command::Redo)),
     },
     Shortcut {
         keys: &[ctrl(Key::Z)],
         name: "Undo",
-        action: Action::Ask(Request::Command(Command::Undo)),
+        action: KeyAction::Ask(Request::Command(Command::Undo)),
     },
     Shortcut {
         keys: &[key(Key::R)],
         name: "Start afresh",
-        action: Action::Ask(Request::Command(Command::Reset)),
+        action: KeyAction::Ask(Request::Command(Command::Reset)),
     },
     Shortcut {
         keys: &[ctrl(Key::T)],
         name: "Compare two values side by side",
-        action: Action::Ask(Request::Compare(None)),
+        action: KeyAction::Ask(Request::Compare(None)),
     },
     // Before the plain key, which would take it.
     Shortcut {
         keys: &[shift(Key::T)],
         name: "No trails",
-        action: Action::Ask(Request::NoTrails),
+        action: KeyAction::Ask(Request::NoTrails),
     },
     Shortcut {
         keys: &[key(Key::T)],
         name: "Trail of the grain under the microscope",
-        action: Action::Ask(Request::Trail),
+        action: KeyAction::Ask(Request::Trail),
     },
     Shortcut {
         keys: &[key(Key::F)],
         name: "Everything in view",
-        action: Action::Ask(Request::Camera(CameraRequest::Fit)),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Fit)),
     },
     Shortcut {
         keys: &[key(Key::Home)],
         name: "The view a scene opens with",
-        action: Action::Ask(Request::Camera(CameraRequest::Home)),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Home)),
     },
     Shortcut {
         keys: &[key(Key::Num1)],
@@ -154,82 +157,82 @@ pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         keys: &[shift(Key::F5)],
         name: "Keep this view as view 1",
-        action: Action::Ask(Request::Camera(CameraRequest::Save(0))),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Save(0))),
     },
     Shortcut {
         keys: &[shift(Key::F6)],
         name: "Keep this view as view 2",
-        action: Action::Ask(Request::Camera(CameraRequest::Save(1))),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Save(1))),
     },
     Shortcut {
         keys: &[shift(Key::F7)],
         name: "Keep this view as view 3",
-        action: Action::Ask(Request::Camera(CameraRequest::Save(2))),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Save(2))),
     },
     Shortcut {
         keys: &[key(Key::F5)],
         name: "Show kept view 1",
-        action: Action::Ask(Request::Camera(CameraRequest::Recall(0))),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Recall(0))),
     },
     Shortcut {
         keys: &[key(Key::F6)],
         name: "Show kept view 2",
-        action: Action::Ask(Request::Camera(CameraRequest::Recall(1))),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Recall(1))),
     },
     Shortcut {
         keys: &[key(Key::F7)],
         name: "Show kept view 3",
-        action: Action::Ask(Request::Camera(CameraRequest::Recall(2))),
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Recall(2))),
     },
     Shortcut {
         keys: &[ctrl(Key::O)],
         name: "Open a scene or a session",
-        action: Action::Ask(Request::ChooseFile),
+        action: KeyAction::Ask(Request::ChooseFile),
     },
     Shortcut {
         keys: &[ctrl(Key::G)],
         name: "Scenes with their pictures",
-        action: Action::Ask(Request::ShowScenes),
+        action: KeyAction::Ask(Request::ShowScenes),
     },
     Shortcut {
         keys: &[ctrl_shift(Key::S)],
         name: "Save the session to another file",
-        action: Action::Ask(Request::ChooseSession),
+        action: KeyAction::Ask(Request::ChooseSession),
     },
     Shortcut {
         keys: &[ctrl(Key::S)],
         name: "Save the session",
-        action: Action::Ask(Request::Save),
+        action: KeyAction::Ask(Request::Save),
     },
     Shortcut {
         keys: &[ctrl(Key::P)],
         name: "Save a picture of the window",
-        action: Action::Ask(Request::ChoosePicture),
+        action: KeyAction::Ask(Request::ChoosePicture),
     },
     Shortcut {
         keys: &[ctrl(Key::R)],
         name: "Record a film of the picture",
-        action: Action::Ask(Request::ChooseFilm),
+        action: KeyAction::Ask(Request::ChooseFilm),
     },
     Shortcut {
         keys: &[key(Key::PageUp)],
         name: "The avalanche before",
-        action: Action::Avalanche(Way::Back),
+        action: KeyAction::Avalanche(Way::Back),
     },
     Shortcut {
         keys: &[key(Key::PageDown)],
         name: "The next avalanche",
-        action: Action::Avalanche(Way::On),
+        action: KeyAction::Avalanche(Way::On),
     },
     Shortcut {
         keys: &[key(Key::F1)],
         name: "These shortcuts",
-        action: Action::Ask(Request::Show(Sheet::Shortcuts)),
+        action: KeyAction::Ask(Request::Show(Sheet::Shortcuts)),
     },
     Shortcut {
         keys: &[ctrl(Key::Q)],
         name: "Quit",
-        action: Action::Ask(Request::Quit),
+        action: KeyAction::Ask(Request::Quit),
     },
 ];
 
@@ -267,7 +270,7 @@ impl Shortcut {
 
     /// Whether it asks for `request`.
     pub fn asks_for(&self, request: &Request) -> bool {
-        matches!(&self.action, Action::Ask(own) if own == request)
+        matches!(&self.action, KeyAction::Ask(own) if own == request)
     }
 
     /// Whether its keys work the control that has the keyboard's focus.
@@ -290,13 +293,13 @@ impl Shortcut {
     /// What it asks for, if `simulation` allows it now.
     fn request(&self, simulation: Option<&Simulation>) -> Option<Request> {
         let command = match &self.action {
-            Action::Ask(Request::Command(command)) => command.clone(),
-            Action::Ask(request) => return Some(request.clone()),
-            Action::PlayOrPause => play_or_pause(simulation?.status())?,
-            Action::StepBack => step_back(simulation?)?,
-            Action::Leap(way) => leap(simulation?, *way)?,
-            Action::Avalanche(way) => return to_avalanche(simulation?, *way),
-            Action::ToTheNewest => Command::Seek(simulation?.past().end.step),
+            KeyAction::Ask(Request::Command(command)) => command.clone(),
+            KeyAction::Ask(request) => return Some(request.clone()),
+            KeyAction::PlayOrPause => play_or_pause(simulation?.status())?,
+            KeyAction::StepBack => step_back(simulation?)?,
+            KeyAction::Leap(way) => leap(simulation?, *way)?,
+            KeyAction::Avalanche(way) => return to_avalanche(simulation?, *way),
+            KeyAction::ToTheNewest => Command::Seek(simulation?.past().end.step),
         };
         allows(simulation?.status(), &command).then_some(Request::Command(command))
     }

@@ -29,7 +29,7 @@ pub struct Palette {
     /// When somebody changed a parameter.
     pub change: Color32,
     /// The lines of the run beside the first.
-    pub twin: Color32,
+    pub compared: Color32,
     /// Runs that were left for another.
     pub kept: Color32,
     /// Lines behind a plot.
@@ -60,7 +60,7 @@ const DARK: Palette = Palette {
     maximum: Color32::from_rgb(0xFF, 0xD5, 0x7A),
     minimum: Color32::from_rgb(0x5F, 0xD3, 0xA8),
     change: Color32::from_rgb(0x8B, 0x7B, 0xC8),
-    twin: Color32::from_rgb(0xF2, 0xA9, 0xDC),
+    compared: Color32::from_rgb(0xF2, 0xA9, 0xDC),
     kept: Color32::from_rgb(0xB4, 0xBD, 0xC9),
     grid: Color32::from_rgb(0x3B, 0x45, 0x54),
     stages: [
@@ -82,7 +82,7 @@ const LIGHT: Palette = Palette {
     maximum: Color32::from_rgb(0xA8, 0x6B, 0x00),
     minimum: Color32::from_rgb(0x0B, 0x7D, 0x59),
     change: Color32::from_rgb(0x6A, 0x56, 0xB5),
-    twin: Color32::from_rgb(0x96, 0x25, 0x77),
+    compared: Color32::from_rgb(0x96, 0x25, 0x77),
     kept: Color32::from_rgb(0x6B, 0x74, 0x80),
     grid: Color32::from_rgb(0xC9, 0xD0, 0xD9),
     stages: [
@@ -105,7 +105,7 @@ pub fn dash(index: usize) -> f32 {
 }
 
 /// Length of the dashes of the run beside the first on plots, in points.
-pub const TWIN_DASH: f32 = 7.0;
+pub const COMPARED_DASH: f32 = 7.0;
 
 /// Surfaces and text of one of the two looks.
 struct Surfaces {

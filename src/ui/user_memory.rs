@@ -1,17 +1,19 @@
 //! What the program remembers of one person from start to start: files opened, how much the
 //! controls show, how large and on which background, how fast each scene ran on this machine.
 //!
-//! Kept in a small JSON file of the user's. A file that is missing, damaged or cannot be written
-//! does no harm: then less is remembered.
+//! In: a small JSON file of the user's. Out: the same file, written whenever something changes. A
+//! file that is damaged or cannot be written is reported once; then less is remembered, and nothing
+//! else is lost. Scenes and sessions are not kept here.
 
 use crate::files::write_whole;
 use crate::ui::detail::Detail;
 use crate::view::Background;
+use bevy::log::warn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// Recent files kept.
 const RECENT: usize = 8;
@@ -67,9 +69,12 @@ impl UserMemory {
 
     /// What the file at `path` holds, and from now on what is to be remembered.
     pub fn at(path: PathBuf) -> Self {
-        let text = fs::read_to_string(&path).unwrap_or_default();
+        let kept = read(&path).unwrap_or_else(|reason| {
+            warn!("{} is not read: {reason}", path.display());
+            Kept::default()
+        });
         Self {
-            kept: serde_json::from_str(&text).unwrap_or_default(),
+            kept,
             file: Some(path),
             is_new: true,
         }
@@ -120,14 +125,14 @@ impl UserMemory {
         }
     }
 
-    /// How everything looked the last time, when it is first asked; from then on the present look
+    /// How everything looked the last time: once, at the start. From then on the present look
     /// counts.
     pub fn last_look(&mut self) -> Option<Look> {
         std::mem::take(&mut self.is_new).then(|| self.look())
     }
 
-    /// Remembers how everything looks.
-    pub fn wear(&mut self, look: Look) {
+    /// Remembers `look` as the present one.
+    pub fn keep_look(&mut self, look: Look) {
         if look != self.look() {
             self.kept.look = look;
             self.write();
@@ -143,12 +148,31 @@ impl UserMemory {
         }
     }
 
-    fn write(&self) {
-        let (Some(path), Ok(text)) = (&self.file, serde_json::to_string_pretty(&self.kept)) else {
+    /// Writes the file. One that cannot be written is said to be once and left alone from then on:
+    /// nothing that a person does depends on it.
+    fn write(&mut self) {
+        let Some(path) = &self.file else {
             return;
         };
-        // Nothing that a person does depends on it.
-        let _ = write_whole(path, |file| file.write_all(text.as_bytes()));
+        let text = serde_json::to_string_pretty(&self.kept).map_err(io::Error::other);
+        let written =
+            text.and_then(|text| write_whole(path, |file| file.write_all(text.as_bytes())));
+        if let Err(reason) = written {
+            warn!("{} is not written: {reason}", path.display());
+            self.file = None;
+        }
+    }
+}
+
+/// What the file at `path` holds; nothing where there is none yet.
+///
+/// # Errors
+/// Where it cannot be read or holds something else.
+fn read(path: &Path) -> io::Result<Kept> {
+    match fs::read_to_string(path) {
+        Ok(text) => serde_json::from_str(&text).map_err(io::Error::other),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Kept::default()),
+        Err(error) => Err(error),
     }
 }
 
@@ -174,7 +198,7 @@ mod tests {
             scale: 1.5,
             background: Background::Light,
         };
-        memory.wear(look);
+        memory.keep_look(look);
         memory.ran("dry-r3", 2.0);
         memory.ran("dry-r3", 2.1);
         let again = UserMemory::at(path.clone());

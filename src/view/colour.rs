@@ -129,16 +129,15 @@ pub fn colours(
     }
 }
 
-/// How many grains or contacts a range is taken from, about: of more, evenly spaced ones.
+/// A range is taken from about this many grains or contacts, evenly spaced among all.
 const SAMPLED: usize = 4096;
 
-/// Of so many grains or contacts each how manieth is looked at.
+/// The step from one sampled grain or contact to the next, where there are `count` of them.
 pub(super) fn stride(count: usize) -> usize {
     count.div_ceil(SAMPLED).max(1)
 }
 
-/// The number that this share of `numbers` stays below, as far as these tell; none of none. Leaves
-/// them in another order.
+/// The quantile of `numbers` at this share; none of an empty list. Reorders them.
 pub(super) fn quantile(numbers: &mut [f64], share: f64) -> Option<f64> {
     let last = numbers.len().checked_sub(1)?;
     let rank = (share.clamp(0.0, 1.0) * last as f64) as usize;
@@ -161,7 +160,7 @@ fn values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
     values
 }
 
-/// Some of them evenly spaced, as far as they are numbers.
+/// A sample of them, evenly spaced; only finite numbers.
 fn sampled_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
     let values = values(worlds, quantity);
     let stride = stride(values.len());

@@ -10,10 +10,10 @@ use std::f32::consts::TAU;
 
 /// Breadth of a drum's hoops in its radius.
 pub(super) const HOOP_BREADTH: f32 = 0.045;
-/// Ways longer than this many times the size of what flies are followed no further, so that grains
-/// stay large enough to see.
+/// Grains in flight are kept in the picture for at most this many times the size of the group, so
+/// that they stay large enough to see.
 const FARTHEST: f64 = 30.0;
-/// How far grains may leave their straight way, over its length.
+/// Room beside a straight path for grains that swerve, as a share of its length.
 const SWERVE: f64 = 0.12;
 
 /// Points that a picture of `world` should hold: its container's, or, where that is unbounded,
@@ -67,8 +67,8 @@ pub(super) fn ring_distance(radius: f64) -> f64 {
     round_up(radius / 4.0)
 }
 
-/// The box round all grains and where they fly to in the `watched` seconds [s], with some room to
-/// swerve, and what they stand on.
+/// The box round all grains, their paths in the next `watched` seconds with room to swerve, and the
+/// planes below them.
 pub(super) fn surroundings(world: &World, watched: f64) -> Option<(DVec3, DVec3)> {
     let (mut min, mut max) = grain_box(world)?;
     let grains = &world.grains;

@@ -126,7 +126,8 @@ struct ColouredHalf {
     drawn: Vec<DrawnGrain>,
 }
 
-/// Rewrites the buffer when the world or the colouring is another, and while shadows follow.
+/// Rewrites the buffer when the world or the colouring has changed, and while shadows are still
+/// being computed.
 fn fill(
     shown: Res<ShownWorlds>,
     mut settings: ResMut<ViewSettings>,
@@ -169,7 +170,7 @@ fn fill(
 }
 
 impl GrainBuffer {
-    /// Whether all shadows fit the state shown; they follow within some frames.
+    /// Whether the shadows of the state shown are computed: they lag behind it by a few frames.
     pub fn is_whole(&self) -> bool {
         self.shadows_are_whole
     }
@@ -260,7 +261,7 @@ impl ColouredHalf {
     }
 }
 
-/// Which shapes the grains of a world have: what is made of them holds until they are others.
+/// The shapes of the grains of a world, kept to notice when they change.
 #[derive(Default)]
 pub(super) struct Forms {
     count: usize,
@@ -269,7 +270,7 @@ pub(super) struct Forms {
 }
 
 impl Forms {
-    /// Takes over those of `world`; whether they were others.
+    /// Takes over the shapes of `world`; true where they have changed.
     pub(super) fn renew(&mut self, world: &World) -> bool {
         let same_shapes = match (&self.shapes, &world.polyhedra) {
             (None, None) => true,

@@ -155,7 +155,7 @@ impl Link {
 /// The entity that draws all links of one half of the picture.
 #[derive(Component, Default)]
 struct Links {
-    /// How many its mesh and its buffer hold.
+    /// Capacity of its mesh and its buffer, in bars.
     room: usize,
     drawn: Vec<Link>,
 }
@@ -186,7 +186,7 @@ fn spawn(
 /// What decides the links beside the world.
 type Choice = (bool, bool, bool, Option<Cut>);
 
-/// Draws the links of the worlds shown when they or the choice are others.
+/// Redraws the links when the worlds shown or what is to be seen of them have changed.
 fn update(
     shown: Res<ShownWorlds>,
     mut settings: ResMut<ViewSettings>,
@@ -245,8 +245,8 @@ fn update(
     }
 }
 
-/// For how many of them a mesh and a buffer are made: those there are while neither too small nor
-/// much too large.
+/// Capacity of the mesh and the buffer for `count` bars: the present `room` while that is neither
+/// too small nor much too large.
 fn room_for(count: usize, room: usize) -> usize {
     if (count..=2 * count).contains(&room) {
         room

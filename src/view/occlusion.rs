@@ -58,7 +58,7 @@ impl Occlusion {
 #[derive(Default)]
 pub(super) struct Shadows {
     hidden: Vec<Occlusion>,
-    /// The spheres are others than those of the last round begun.
+    /// Whether the spheres have changed since the last round began.
     is_stale: bool,
     under_way: Option<Task<Round>>,
     /// What the last round leaves for the next one.
@@ -76,14 +76,14 @@ impl Shadows {
         !self.is_stale && self.under_way.is_none()
     }
 
-    /// The spheres or what is cut away are others from now on.
+    /// From now on the spheres or what is cut away have changed.
     pub(super) fn outdate(&mut self) {
         self.is_stale = true;
     }
 
-    /// Takes over a round that has ended, and begins one where the `spheres` (centre, radius) have
-    /// changed since; those for which `absent` holds hide nothing. Whether the shadows are others
-    /// now.
+    /// Takes over a finished round, and begins another where the `spheres` (centre, radius) have
+    /// changed since. Spheres for which `absent` holds hide nothing. True where the shadows have
+    /// changed.
     pub(super) fn follow(
         &mut self,
         spheres: &[(Vec3, f32)],
@@ -136,8 +136,8 @@ impl Round {
     }
 }
 
-/// What a sphere of radius `other` at a `gap` hides from one of radius `own`, in what a touching
-/// equal one does.
+/// Share of the sky that a sphere of radius `other` at a `gap` hides from one of radius `own`, over
+/// that of a touching equal one.
 fn strength(gap: f32, own: f32, other: f32) -> f32 {
     let fade = (1.0 - gap.max(0.0) / (RANGE * other)).max(0.0);
     // Seen from the surface, a sphere covers a share of the sky that goes with the square of radius

@@ -41,7 +41,7 @@ pub struct Caption<'a> {
 /// Where something is written: which half of the picture, and whether it has the left or the right
 /// edge of all of it.
 #[derive(Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct PicturePart {
     /// Which half.
     pub(super) half: Half,
     /// Whether it has the left edge of the whole picture.
@@ -55,7 +55,7 @@ pub(super) fn overlay(
     painter: &Painter,
     rect: Rect,
     caption: &Caption,
-    part: Part,
+    part: PicturePart,
     settings: &ViewSettings,
     camera: &OrbitCamera,
 ) {

@@ -4,7 +4,7 @@
 //! thousand grains each, made once for a scene, some a frame, so that no frame waits for all of
 //! them. A corner holds its place in the body frame and the grain's index; the shader finds where
 //! the body is in the buffer. Where something is cut away the shader meets each body's section with
-//! the planes of its faces. Twins have the same shapes, so both halves of a picture share the
+//! the planes of its faces. Two runs side by side have the same shapes, so both halves share the
 //! meshes.
 
 use crate::simulation::Half;

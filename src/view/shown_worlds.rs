@@ -39,7 +39,7 @@ impl ShownWorlds {
     }
 
     /// Shows these two from now on, side by side.
-    pub fn show_twins(&mut self, left: Arc<World>, right: Arc<World>) {
+    pub fn show_pair(&mut self, left: Arc<World>, right: Arc<World>) {
         self.replace([Some(left), Some(right)]);
     }
 
@@ -78,8 +78,8 @@ pub(super) fn layers(half: Half) -> RenderLayers {
     RenderLayers::layer(half.index())
 }
 
-/// Shows the newest states that the simulation's runs have published. Two states are never at
-/// the same address while one of them is shown.
+/// Shows the newest states of the simulation's runs. They are told apart by their addresses: while
+/// a state is shown, no other is at its address.
 pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<ShownWorlds>) {
     let Some(simulation) = simulation else { return };
     let right = (simulation.comparison()).and_then(|comparison| comparison.right.world());

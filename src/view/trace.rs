@@ -77,7 +77,7 @@ mod tests {
         let mut later = (*left).clone();
         later.clock.step += 10;
         ecs.resource_mut::<ShownWorlds>()
-            .show_twins(Arc::new(later), left);
+            .show_pair(Arc::new(later), left);
         let both = [(Half::Left, 2, 2), (Half::Right, 2, 1)];
         assert_eq!(follow_in(&mut ecs, &[2]), both);
         assert_eq!(follow_in(&mut ecs, &[]), []);

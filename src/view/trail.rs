@@ -22,8 +22,8 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// Adds where the grain is at `time` [s]. Places after that are forgotten: the run may take
-    /// another way.
+    /// Adds the grain's place at `time` [s]. Later places are dropped: the run may have been taken
+    /// back and go on differently.
     pub(super) fn add(&mut self, time: f64, place: Vec3) {
         let kept = self.places.partition_point(|(then, _)| *then < time);
         self.places.truncate(kept);

@@ -7,7 +7,7 @@
 use crate::simulation::Half;
 use crate::view::camera::{OrbitCamera, apply_response};
 use crate::view::halves::parts;
-use crate::view::overlay::{Caption, Part, overlay};
+use crate::view::overlay::{Caption, PicturePart, overlay};
 use crate::view::pick::pick;
 use crate::view::settings::ViewSettings;
 use bevy::math::Vec2;
@@ -38,7 +38,7 @@ pub fn viewport_ui(
         apply_response(&response, camera);
         click(&response, half, caption, settings, camera);
         if settings.show_overlay {
-            let part = Part {
+            let part = PicturePart {
                 half,
                 is_first: half == Half::Left,
                 is_last: half.index() + 1 == captions.len(),

@@ -34,7 +34,7 @@ pub(super) fn plugin(app: &mut App) {
 
 /// One drawn piece of the container.
 #[derive(Component, Clone, Copy, PartialEq)]
-enum Piece {
+enum WallPiece {
     /// Turns with the drum.
     Turning,
     /// Stays where it is.
@@ -91,7 +91,7 @@ fn rebuild(
     mut commands: Commands,
     shown: Res<ShownWorlds>,
     mut built: Local<Option<Built>>,
-    pieces: Query<Entity, With<Piece>>,
+    pieces: Query<Entity, With<WallPiece>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<WallMaterial>>,
 ) {
@@ -165,18 +165,18 @@ fn paint(
 }
 
 /// Turns and moves each piece with its wall.
-fn place(shown: Res<ShownWorlds>, mut pieces: Query<(&Half, &Piece, &mut Transform)>) {
+fn place(shown: Res<ShownWorlds>, mut pieces: Query<(&Half, &WallPiece, &mut Transform)>) {
     for (half, piece, mut transform) in &mut pieces {
         let Some(world) = shown.half(*half) else {
             continue;
         };
         transform.set_if_neq(match *piece {
-            Piece::Fixed => Transform::IDENTITY,
-            Piece::Turning => {
+            WallPiece::Fixed => Transform::IDENTITY,
+            WallPiece::Turning => {
                 Transform::from_rotation(Quat::from_rotation_z(world.container.angle as f32))
             }
-            Piece::Tube { wall } => tube_transform(&world.container, wall),
-            Piece::Plane { wall, near } => plane_transform(&world.container, wall, near),
+            WallPiece::Tube { wall } => tube_transform(&world.container, wall),
+            WallPiece::Plane { wall, near } => plane_transform(&world.container, wall, near),
         });
     }
 }
@@ -225,7 +225,7 @@ fn look(paint: Paint, settings: &ViewSettings) -> WallLook {
     }
 }
 
-fn build(world: &World, watched: f64) -> Vec<(Piece, Paint, Mesh)> {
+fn build(world: &World, watched: f64) -> Vec<(WallPiece, Paint, Mesh)> {
     let mut pieces = match world.container.shape {
         Shape::Drum { radius, width } => drum(radius as f32, width as f32),
         Shape::Box { min, max } => box_panes(min.as_vec3(), max.as_vec3()),
@@ -237,10 +237,10 @@ fn build(world: &World, watched: f64) -> Vec<(Piece, Paint, Mesh)> {
 }
 
 /// Both plates and the rim from inside, and a hoop at each end.
-fn drum(radius: f32, width: f32) -> Vec<(Piece, Paint, Mesh)> {
+fn drum(radius: f32, width: f32) -> Vec<(WallPiece, Paint, Mesh)> {
     let half = width / 2.0;
-    let pane = |pattern, mesh| (Piece::Turning, Paint::Pane(pattern), mesh);
-    let hoop = |mesh| (Piece::Turning, Paint::Frame(Pattern::Hoop), mesh);
+    let pane = |pattern, mesh| (WallPiece::Turning, Paint::Pane(pattern), mesh);
+    let hoop = |mesh| (WallPiece::Turning, Paint::Frame(Pattern::Hoop), mesh);
     vec![
         pane(Pattern::Plate, disc(radius, -half, 1.0)),
         pane(Pattern::Plate, disc(radius, half, -1.0)),
@@ -251,7 +251,7 @@ fn drum(radius: f32, width: f32) -> Vec<(Piece, Paint, Mesh)> {
 }
 
 /// The six sides from inside, with a grid, and the edges.
-fn box_panes(min: Vec3, max: Vec3) -> Vec<(Piece, Paint, Mesh)> {
+fn box_panes(min: Vec3, max: Vec3) -> Vec<(WallPiece, Paint, Mesh)> {
     let cell = round_up(f64::from((max - min).max_element()) / 20.0) as f32;
     let mut pieces = Vec::new();
     for axis in 0..3 {
@@ -269,15 +269,19 @@ fn box_panes(min: Vec3, max: Vec3) -> Vec<(Piece, Paint, Mesh)> {
                 builder.vertex(middle + a * u + b * v, normal, [a / cell, b / cell]);
             }
             builder.indices.extend([0, 1, 2, 2, 3, 0]);
-            pieces.push((Piece::Fixed, Paint::Pane(Pattern::Grid), builder.mesh()));
+            pieces.push((WallPiece::Fixed, Paint::Pane(Pattern::Grid), builder.mesh()));
         }
     }
-    pieces.push((Piece::Fixed, Paint::Frame(Pattern::Plain), edges(min, max)));
+    pieces.push((
+        WallPiece::Fixed,
+        Paint::Frame(Pattern::Plain),
+        edges(min, max),
+    ));
     pieces
 }
 
 /// A fading floor for each plane.
-fn planes(world: &World, watched: f64) -> Vec<(Piece, Paint, Mesh)> {
+fn planes(world: &World, watched: f64) -> Vec<(WallPiece, Paint, Mesh)> {
     let (min, max) = surroundings(world, watched).unwrap_or((DVec3::ZERO, DVec3::ONE));
     let cell = round_up((max - min).max_element() / 16.0);
     let paint = Paint::Floor {
@@ -289,7 +293,7 @@ fn planes(world: &World, watched: f64) -> Vec<(Piece, Paint, Mesh)> {
 }
 
 /// A floor with rings round the axis of a column, the one on which it stood marked.
-fn column_floors(world: &World, radius: f64, height: f64) -> Vec<(Piece, Paint, Mesh)> {
+fn column_floors(world: &World, radius: f64, height: f64) -> Vec<(WallPiece, Paint, Mesh)> {
     let cell = ring_distance(radius);
     let fade = (2.0 * expected_front(radius, height) / cell) as f32;
     let paint = Paint::Floor {
@@ -307,7 +311,7 @@ fn floors(
     cell: f64,
     half: f32,
     paint: Paint,
-) -> Vec<(Piece, Paint, Mesh)> {
+) -> Vec<(WallPiece, Paint, Mesh)> {
     let cell = cell as f32;
     let is_plane = |wall: &usize| {
         let surface = world.container.walls[*wall].surface;
@@ -322,13 +326,13 @@ fn floors(
                 builder.vertex(Vec3::new(x * cell, y * cell, 0.0), Vec3::Z, [x, y]);
             }
             builder.indices.extend([0, 1, 2, 2, 3, 0]);
-            (Piece::Plane { wall, near }, paint, builder.mesh())
+            (WallPiece::Plane { wall, near }, paint, builder.mesh())
         })
         .collect()
 }
 
 /// Each tube from inside, a little taller than what it holds, and a hoop at each end.
-fn tubes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
+fn tubes(world: &World) -> Vec<(WallPiece, Paint, Mesh)> {
     let height = match world.container.shape {
         Shape::Column { height, .. } => height,
         _ => grain_box(world).map_or(1.0, |(min, max)| max.y - min.y),
@@ -346,7 +350,7 @@ fn tubes(world: &World) -> Vec<(Piece, Paint, Mesh)> {
                 _ => None,
             })
     {
-        let piece = Piece::Tube { wall };
+        let piece = WallPiece::Tube { wall };
         let breadth = 0.5 * HOOP_BREADTH * radius;
         let hoop = Paint::Frame(Pattern::Plain);
         pieces.extend([

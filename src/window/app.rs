@@ -1,7 +1,7 @@
 //! The app of the window: Bevy with simulation, view and panels, before a person or for one
 //! picture.
 //!
-//! In: a [`Job`]. Out: the laboratory, until somebody closes it, or a picture.
+//! In: a [`WindowJob`]. Out: the laboratory, until somebody closes it, or a picture.
 
 use crate::scene::Scene;
 use crate::simulation::{Simulation, SimulationPlugin};
@@ -9,7 +9,7 @@ use crate::ui::{Dock, UiPlugin, UserMemory, first_speed};
 use crate::view::{ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
-use crate::window::job::{Job, Opened, PictureJob, WindowError};
+use crate::window::job::{Opened, PictureJob, WindowError, WindowJob};
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
 use crate::window::screenshot_job::{Failure, ScreenshotJobs, ScreenshotPlugin};
 use bevy::app::ScheduleRunnerPlugin;
@@ -32,7 +32,7 @@ const FRAME: Duration = Duration::from_millis(16);
 ///
 /// # Errors
 /// Where display or driver are missing, or a picture that was asked for could not be taken.
-pub fn run(job: Job) -> Result<(), WindowError> {
+pub fn run(job: WindowJob) -> Result<(), WindowError> {
     let offscreen = (job.picture.as_ref()).is_some_and(|picture| picture.offscreen);
     if !offscreen {
         display()?;
@@ -50,7 +50,7 @@ pub fn run(job: Job) -> Result<(), WindowError> {
 }
 
 /// The app, not yet running.
-fn build(mut job: Job, software: bool, failure: Failure) -> App {
+fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     let mut app = App::new();
     // A person begins by looking; a picture is taken of a run that goes to its moment as fast as it
     // can.

@@ -119,6 +119,7 @@ pub fn display() -> Result<(), Missing> {
     if cfg!(not(unix)) || cfg!(target_os = "macos") {
         return Ok(());
     }
+    // One that is no text names no display that could be asked.
     let variable = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
     let runtime = variable("XDG_RUNTIME_DIR").map(PathBuf::from);
     let mut tried = Vec::new();

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 /// What to open and how.
 #[derive(Clone)]
-pub struct Job {
+pub struct WindowJob {
     /// What people call it: a file or a built-in scene's name.
     pub name: String,
     /// The scene or the session.

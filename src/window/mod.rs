@@ -22,5 +22,5 @@ mod screenshot_job;
 mod screenshot_subject;
 
 pub use app::run;
-pub use job::{Job, Opened, PictureJob, WindowError};
+pub use job::{Opened, PictureJob, WindowError, WindowJob};
 pub use screenshot_job::ScreenshotPlugin;

@@ -27,13 +27,13 @@ pub(super) enum Subject {
 /// One picture of the whole window.
 pub(super) struct SinglePicture {
     path: PathBuf,
-    moment: Moment,
+    moment: PictureMoment,
     from: Option<Provenance>,
     saved: Option<io::Result<()>>,
 }
 
 /// Which moment a picture shows.
-enum Moment {
+enum PictureMoment {
     /// Whatever is in the window.
     Now,
     /// A simulated time [s], and its step once the run has begun.
@@ -75,8 +75,8 @@ impl Subject {
     pub(super) fn frames(&self) -> u32 {
         match self {
             Self::Picture(picture) => match picture.moment {
-                Moment::Now => 0,
-                Moment::At(..) => WARM_UP,
+                PictureMoment::Now => 0,
+                PictureMoment::At(..) => WARM_UP,
             },
             Self::Film(_) => UNTIL_DRAWN,
         }
@@ -87,7 +87,7 @@ impl Subject {
     pub(super) fn is_settled(&self, simulation: &Simulation, is_whole: bool) -> bool {
         match self {
             Self::Picture(SinglePicture {
-                moment: Moment::At(..),
+                moment: PictureMoment::At(..),
                 ..
             }) => {
                 let holds = simulation.has_answered() && *simulation.status() == Status::Paused;
@@ -144,15 +144,15 @@ impl Subject {
 impl SinglePicture {
     /// A picture of the window as it is.
     pub(super) fn now(path: PathBuf) -> Self {
-        Self::of(path, Moment::Now)
+        Self::of(path, PictureMoment::Now)
     }
 
     /// A picture of the window when the run is at `time` [s].
     pub(super) fn at(path: PathBuf, time: f64) -> Self {
-        Self::of(path, Moment::At(time, None))
+        Self::of(path, PictureMoment::At(time, None))
     }
 
-    fn of(path: PathBuf, moment: Moment) -> Self {
+    fn of(path: PathBuf, moment: PictureMoment) -> Self {
         Self {
             path,
             moment,
@@ -162,7 +162,7 @@ impl SinglePicture {
     }
 
     fn has_come(&mut self, simulation: &mut Simulation) -> bool {
-        let Moment::At(time, aim) = &mut self.moment else {
+        let PictureMoment::At(time, aim) = &mut self.moment else {
             return true;
         };
         let Some(step) = *aim else {

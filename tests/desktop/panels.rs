@@ -569,7 +569,7 @@ fn the_look_is_as_it_was_the_last_time() {
         scale: 1.25,
         background: Background::Light,
     };
-    UserMemory::at(path.clone()).wear(look);
+    UserMemory::at(path.clone()).keep_look(look);
     let mut harness = Window::of(prepared());
     harness
         .state_mut()
@@ -1057,7 +1057,7 @@ impl Sawtooth {
     fn curves(&self) -> Curves<'_> {
         Curves {
             series: &self.series,
-            twin: None,
+            compared: None,
             avalanches: &self.avalanches,
             changes: &[3.0, 3.01, 190.0],
             kept: &[],
@@ -1104,7 +1104,7 @@ fn plots_without_samples_draw_nothing_and_do_not_fail() {
     let mut harness = Harness::new_ui(move |ui| {
         let empty = Curves {
             series: &series,
-            twin: None,
+            compared: None,
             avalanches: &[],
             changes: &[],
             kept: &[],

@@ -66,7 +66,7 @@ fn the_numbers_beside_a_plot_are_those_of_the_moment_shown() {
     let mut harness = Harness::new_ui(move |ui| {
         let curves = Curves {
             series: &series,
-            twin: None,
+            compared: None,
             avalanches: &[],
             changes: &[],
             kept: &[],
@@ -237,7 +237,7 @@ fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
         move |ui, clicked: &mut Vec<f64>| {
             let curves = Curves {
                 series,
-                twin: None,
+                compared: None,
                 avalanches: std::slice::from_ref(&avalanche),
                 changes: &[],
                 kept,

@@ -163,7 +163,7 @@ fn plots_of_two(samples: u32, size: [f32; 2]) -> Harness<'static> {
     let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
         let curves = Curves {
             series: &left,
-            twin: Some(&right),
+            compared: Some(&right),
             avalanches: &[],
             changes: &[],
             kept: &[],

@@ -7,15 +7,15 @@ use crate::view::studio;
 use bevy::math::UVec2;
 use grainfall::scene::Scene;
 use grainfall::simulation::{Command, DriverKind, Options, Simulation};
-use grainfall::window::{Job, PictureJob, WindowError, run};
+use grainfall::window::{PictureJob, WindowError, WindowJob, run};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 /// A grain before a floor, listed one by one, so that nothing must settle.
-fn job(path: &Path) -> Job {
-    Job {
+fn job(path: &Path) -> WindowJob {
+    WindowJob {
         name: "bouncing-grain".to_owned(),
         opened: Scene::open("bouncing-grain").unwrap().into(),
         options: Options::window(),

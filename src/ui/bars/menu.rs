@@ -1,8 +1,11 @@
-//! The menu bar.
+//! The menu bar: files, undo and redo, the comparison of two runs, the view, help.
+//!
+//! In: the simulation, the files opened last, which sides are shown. Out: requests; an entry that
+//! cannot act now says why. What an entry does is not decided here.
 
 use crate::scene::built_in;
 use crate::simulation::{Command, Half, Simulation};
-use crate::ui::bars::sides::{Sides, why_not_both};
+use crate::ui::bars::sides::{OpenSides, why_not_both};
 use crate::ui::bars::time_slider::why_no_undo;
 use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::SHORTCUTS;
@@ -18,7 +21,7 @@ pub fn menu_ui(
     ui: &mut egui::Ui,
     simulation: Option<&Simulation>,
     recent: &[String],
-    shown: &mut Sides,
+    shown: &mut OpenSides,
     view: &mut ViewSettings,
     out: &mut Vec<Request>,
     rest: impl FnOnce(&mut egui::Ui),
@@ -90,7 +93,12 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
     }
 }
 
-fn view_ui(ui: &mut egui::Ui, shown: &mut Sides, view: &mut ViewSettings, out: &mut Vec<Request>) {
+fn view_ui(
+    ui: &mut egui::Ui,
+    shown: &mut OpenSides,
+    view: &mut ViewSettings,
+    out: &mut Vec<Request>,
+) {
     ui.set_width(VIEW_WIDTH);
     item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
     item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);

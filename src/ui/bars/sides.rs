@@ -20,7 +20,7 @@ pub fn why_not_both(width: f32) -> Option<&'static str> {
 
 /// Which of the side panels are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sides {
+pub struct OpenSides {
     /// Controls.
     pub left: bool,
     /// Plots and results.

@@ -1,8 +1,11 @@
 //! Choosing a file: the system's own dialog, and a field to type a path into where there is none.
 //!
+//! In: what a path is wanted for. Out: the request that was waiting for the path. Nothing is read
+//! or written here.
+//!
 //! The system's dialog runs on a thread of its own and may fail to appear (no D-Bus session, no
-//! portal); then, or when it is asked for again while it has not answered, the field appears.
-//! Nothing here waits.
+//! portal). Then the field appears, and also when the person asks again before the dialog has
+//! answered. Nothing here waits.
 
 use crate::simulation::SESSION_EXTENSION;
 use crate::ui::request::Request;
@@ -55,24 +58,24 @@ impl Purpose {
 /// A choice of a file, if one is being made.
 #[derive(Default)]
 pub struct PathDialog {
-    asked: Option<Asked>,
-    typed: Option<Typed>,
+    asked: Option<SystemDialog>,
+    typed: Option<TypedPath>,
 }
 
 /// A system dialog that has not answered yet.
-struct Asked {
+struct SystemDialog {
     purpose: Purpose,
-    answer: Task<Answered>,
+    answer: Task<DialogAnswer>,
 }
 
 /// What a system dialog was left with, and how long it stood.
-struct Answered {
+struct DialogAnswer {
     file: Option<FileHandle>,
     after: Duration,
 }
 
 /// The field to type a path into.
-struct Typed {
+struct TypedPath {
     purpose: Purpose,
     text: String,
     /// Why it appeared.
@@ -168,13 +171,13 @@ impl PathDialog {
             self.type_path(purpose, NO_DIALOG);
         } else if self.typed.is_none() {
             let answer = IoTaskPool::get().spawn(ask_system(purpose));
-            self.asked = Some(Asked { purpose, answer });
+            self.asked = Some(SystemDialog { purpose, answer });
         }
     }
 
     /// Asks for a path with the field.
     pub fn type_path(&mut self, purpose: Purpose, reason: &'static str) {
-        self.typed = Some(Typed {
+        self.typed = Some(TypedPath {
             purpose,
             text: purpose.suggestion(),
             reason,
@@ -197,11 +200,11 @@ impl PathDialog {
         self.take_answer(out);
         if let Some(typed) = &mut self.typed {
             match typed_ui(ctx, typed) {
-                Some(Answer::Path(path)) => {
+                Some(FieldAnswer::Path(path)) => {
                     out.push(typed.purpose.request(&path));
                     self.typed = None;
                 }
-                Some(Answer::Nothing) => self.typed = None,
+                Some(FieldAnswer::Nothing) => self.typed = None,
                 None => {}
             }
         }
@@ -236,7 +239,7 @@ fn dialogs_are_there() -> bool {
         || bus().is_some()
 }
 
-async fn ask_system(purpose: Purpose) -> Answered {
+async fn ask_system(purpose: Purpose) -> DialogAnswer {
     let since = Instant::now();
     let dialog = AsyncFileDialog::new().set_title(purpose.title());
     let file = match purpose {
@@ -267,19 +270,19 @@ async fn ask_system(purpose: Purpose) -> Answered {
             dialog.set_file_name("changes.json").save_file().await
         }
     };
-    Answered {
+    DialogAnswer {
         file,
         after: since.elapsed(),
     }
 }
 
 /// How the field was left.
-enum Answer {
+enum FieldAnswer {
     Path(PathBuf),
     Nothing,
 }
 
-fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
+fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath) -> Option<FieldAnswer> {
     let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
     let modal = Modal::new(Id::new("path")).frame(frame).show(ctx, |ui| {
         ui.set_width(560.0_f32.min(0.9 * ui.ctx().content_rect().width()));
@@ -316,14 +319,14 @@ fn typed_ui(ctx: &egui::Context, typed: &mut Typed) -> Option<Answer> {
                 .clicked();
             let left = ui.button("Cancel").clicked();
             match (done || (entered && possible), left) {
-                (true, _) => Some(Answer::Path(path)),
-                (false, true) => Some(Answer::Nothing),
+                (true, _) => Some(FieldAnswer::Path(path)),
+                (false, true) => Some(FieldAnswer::Nothing),
                 (false, false) => None,
             }
         })
         .inner
     });
-    let closed = modal.should_close().then_some(Answer::Nothing);
+    let closed = modal.should_close().then_some(FieldAnswer::Nothing);
     modal.inner.or(closed)
 }
 

@@ -147,6 +147,7 @@ impl Gallery {
 
 impl Card {
     fn of(scene: &BuiltIn, ctx: &egui::Context) -> Option<Self> {
+        // Every built-in scene is opened by a test: one that cannot be is not in the program.
         let opened = Scene::parse(scene.path, scene.text).ok()?;
         let grains = opened.grain_count();
         Some(Self {
@@ -196,7 +197,8 @@ fn recent_ui(ui: &mut egui::Ui, memory: &UserMemory) -> Option<String> {
     chosen
 }
 
-/// The picture of the scene called `name`.
+/// The picture of the scene called `name`. A test reads every one of them: none that cannot be read
+/// is in the program.
 fn picture(name: &str) -> Option<ColorImage> {
     let (_, bytes) = PICTURES.iter().find(|(known, _)| *known == name)?;
     let mut reader = png::Decoder::new(std::io::Cursor::new(*bytes))

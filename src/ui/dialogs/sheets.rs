@@ -1,5 +1,8 @@
-//! Sheets over the window: the shortcuts, what the program is, a file that could not be opened,
-//! work that is in no file.
+//! Sheets over the window: the shortcuts, what the program is, why a file could not be opened, and
+//! what is to become of unsaved work.
+//!
+//! In: what is to be said or asked. Out: whether the sheet is still open, and the answer as a
+//! request.
 
 use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::{GESTURES, SHORTCUTS};

@@ -42,7 +42,7 @@ pub struct AvalanchePlots {
 }
 
 /// What is marked in the part in view.
-struct Marks<'a> {
+struct AvalancheMarks<'a> {
     palette: Palette,
     avalanches: &'a [Avalanche],
     changes: Vec<f64>,
@@ -121,7 +121,7 @@ impl AvalanchePlots {
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
         let window = self.window.window(curves.series.time(), curves.shown);
-        let marks = Marks::within(curves, &window, columns, palette);
+        let marks = AvalancheMarks::within(curves, &window, columns, palette);
         let angle = angle_curve(curves, &window, columns, palette);
         let first = angle.ui(ui, &window, height, |plot| marks.angle_ui(plot));
         let temperature = temperature_curve(curves, &window, columns, palette, self.logarithmic);
@@ -214,7 +214,7 @@ fn on_axis(temperature: f64, decades: bool) -> f64 {
     }
 }
 
-impl<'a> Marks<'a> {
+impl<'a> AvalancheMarks<'a> {
     /// The marks of `curves` in `window`: its avalanches, and its changes, of which one is drawn
     /// per column of pixels.
     fn within(
@@ -309,14 +309,14 @@ mod tests {
         let series = Series::default();
         let curves = Curves {
             series: &series,
-            twin: None,
+            compared: None,
             avalanches: &[],
             changes: &changes,
             kept: &[],
             shown: None,
         };
         let palette = Palette::of(&egui::Visuals::dark());
-        let marks = Marks::within(&curves, &(0.0..=20.0), 400, palette);
+        let marks = AvalancheMarks::within(&curves, &(0.0..=20.0), 400, palette);
         assert_eq!(marks.changes, [1.0, 5.0]);
     }
 }

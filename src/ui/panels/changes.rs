@@ -19,7 +19,7 @@ const LIST_HEIGHT: f32 = 170.0;
 
 /// The panel.
 #[derive(Default)]
-pub struct Changes {
+pub struct ChangeList {
     rows: Vec<ChangeRow>,
     /// The revision of the commands of both runs that the rows were made of.
     revision: [u64; 2],
@@ -32,7 +32,7 @@ struct ChangeRow {
     text: String,
 }
 
-impl Panel for Changes {
+impl Panel for ChangeList {
     fn title(&self) -> &'static str {
         "Changes and runs"
     }
@@ -64,7 +64,7 @@ impl Panel for Changes {
     }
 }
 
-impl Changes {
+impl ChangeList {
     fn list_ui(&self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let shown = simulation.step();
         ScrollArea::vertical()

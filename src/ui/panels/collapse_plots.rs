@@ -65,7 +65,7 @@ impl Panel for CollapsePlots {
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
         let window = self.window.window(all.series.time(), all.shown);
-        let marks = Marks::of(all, palette);
+        let marks = CollapseMarks::of(all, palette);
         let plots = [
             front(&all, &window, columns, palette),
             energy(&all, &window, columns, palette),
@@ -123,14 +123,14 @@ fn energy(
 }
 
 /// What is marked on both plots.
-struct Marks<'a> {
+struct CollapseMarks<'a> {
     palette: Palette,
     changes: &'a [f64],
     shown: Option<f64>,
     collapse: Option<Collapse>,
 }
 
-impl<'a> Marks<'a> {
+impl<'a> CollapseMarks<'a> {
     /// Those of the left run.
     fn of(curves: Curves<'a>, palette: Palette) -> Self {
         Self {

@@ -11,7 +11,7 @@ use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plot_export::{Export, ExportedRun, PlotAxis};
 use crate::ui::plots::axes::fitting_plot;
 use crate::ui::plots::decimate::decimate;
-use crate::ui::plots::run_curves::{halves_ui, kept_runs, twin_line};
+use crate::ui::plots::run_curves::{compared_line, halves_ui, kept_runs};
 use crate::ui::plots::time_plot::moment_ui;
 use crate::ui::plots::time_window::near_start;
 use crate::ui::request::Request;
@@ -135,12 +135,12 @@ impl Explorer {
             "this run"
         };
         let own = Line::new(name, self.points(simulation.series(), columns));
-        let twin = comparison.map(|comparison| {
+        let compared = comparison.map(|comparison| {
             let points = self.points(comparison.right.series(), columns);
-            twin_line("right", points, palette)
+            compared_line("right", points, palette)
         });
         kept.chain([own.color(palette.angle).width(1.7)])
-            .chain(twin)
+            .chain(compared)
             .collect()
     }
 

@@ -1,6 +1,8 @@
 //! Fewer points for the same picture: of all samples that fall on one column of pixels only the
 //! lowest and the highest are drawn, so that a long series costs no more than a short one and no
 //! peak is lost.
+//!
+//! In: times and values of samples, the part in view, columns of pixels. Out: points of a line.
 
 use std::ops::{Range, RangeInclusive};
 

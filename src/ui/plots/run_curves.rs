@@ -8,7 +8,7 @@ use crate::measure::{Avalanche, Series};
 use crate::simulation::{Half, Record, RunView, Simulation};
 use crate::ui::playback::moment_shown;
 use crate::ui::plots::decimate::decimate;
-use crate::ui::theme::{Palette, TWIN_DASH};
+use crate::ui::theme::{COMPARED_DASH, Palette};
 use crate::ui::words::number;
 use crate::ui::words::run_names::half_title;
 use bevy_egui::egui::{self, Stroke};
@@ -22,7 +22,7 @@ pub struct Curves<'a> {
     /// The samples of the run.
     pub series: &'a Series,
     /// The samples of the run beside it.
-    pub twin: Option<&'a Series>,
+    pub compared: Option<&'a Series>,
     /// Avalanches in order of time.
     pub avalanches: &'a [Avalanche],
     /// When parameters were changed [s], ascending.
@@ -41,7 +41,7 @@ pub struct Lines {
     /// That of the present run.
     pub own: Vec<[f64; 2]>,
     /// That of the run beside it.
-    pub twin: Option<Vec<[f64; 2]>>,
+    pub compared: Option<Vec<[f64; 2]>>,
     /// Those of runs kept beside it, with their names.
     pub kept: Vec<(String, Vec<[f64; 2]>)>,
 }
@@ -51,7 +51,7 @@ impl<'a> Curves<'a> {
     pub fn of(simulation: &'a Simulation, changes: &'a [f64], kept: &'a [KeptRun]) -> Self {
         Self {
             series: simulation.series(),
-            twin: (simulation.comparison()).map(|comparison| comparison.right.series()),
+            compared: (simulation.comparison()).map(|comparison| comparison.right.series()),
             avalanches: simulation.avalanches(),
             changes,
             kept,
@@ -70,7 +70,7 @@ impl<'a> Curves<'a> {
         let kept = self.kept.iter();
         Lines {
             own: line(self.series),
-            twin: self.twin.map(line),
+            compared: self.compared.map(line),
             kept: kept
                 .map(|(name, record)| (name.clone(), line(&record.series)))
                 .collect(),
@@ -89,7 +89,7 @@ impl<'a> Curves<'a> {
             in_words(index.map_or(f64::NAN, |index| value(series, index)))
         };
         std::iter::once(self.series)
-            .chain(self.twin)
+            .chain(self.compared)
             .map(present)
             .collect()
     }
@@ -100,7 +100,7 @@ impl Lines {
     pub fn points(&self) -> impl Iterator<Item = &[f64; 2]> {
         let kept = self.kept.iter().flat_map(|(_, points)| points);
         (self.own.iter())
-            .chain(self.twin.iter().flatten())
+            .chain(self.compared.iter().flatten())
             .chain(kept)
     }
 }
@@ -134,7 +134,7 @@ pub fn halves_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     let palette = Palette::of(ui.visuals());
     let lines = [
         (Half::Left, ui.visuals().text_color(), None),
-        (Half::Right, palette.twin, Some(TWIN_DASH)),
+        (Half::Right, palette.compared, Some(COMPARED_DASH)),
     ];
     for (half, colour, dash) in lines {
         ui.horizontal(|ui| {
@@ -159,10 +159,12 @@ pub fn line_sample_ui(ui: &mut egui::Ui, dash: Option<f32>, stroke: Stroke) {
 }
 
 /// The line of the run beside the first.
-pub fn twin_line<'a>(name: &str, points: Vec<[f64; 2]>, palette: Palette) -> Line<'a> {
-    let style = LineStyle::Dashed { length: TWIN_DASH };
+pub fn compared_line<'a>(name: &str, points: Vec<[f64; 2]>, palette: Palette) -> Line<'a> {
+    let style = LineStyle::Dashed {
+        length: COMPARED_DASH,
+    };
     Line::new(name, points)
-        .color(palette.twin)
+        .color(palette.compared)
         .width(2.0)
         .style(style)
 }

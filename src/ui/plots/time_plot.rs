@@ -3,7 +3,7 @@
 //! In: the curves and the part of the run in view. Out: the plot, and what the pointer did on it.
 
 use crate::ui::plots::axes::{SPARSE_X, SPARSE_Y, round_marks, tick, tidy};
-use crate::ui::plots::run_curves::{Lines, twin_line};
+use crate::ui::plots::run_curves::{Lines, compared_line};
 use crate::ui::theme::{Palette, dash};
 use crate::ui::words::number;
 use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
@@ -55,7 +55,7 @@ impl TimePlot {
         marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
     ) -> egui::Response {
         let palette = Palette::of(ui.visuals());
-        let colours = [self.colour, palette.twin];
+        let colours = [self.colour, palette.compared];
         head_ui(ui, self.title, &self.present, colours);
         let bounds = PlotBounds::from_min_max(
             [*window.start(), *self.height.start()],
@@ -63,17 +63,25 @@ impl TimePlot {
         );
         let room = egui::vec2(ui.available_width() - ROOM_AT_THE_RIGHT, height);
         let plot = self.empty_plot(room, palette);
-        let Lines { own, twin, kept } = self.lines;
-        let name = if twin.is_some() { "left" } else { self.title };
+        let Lines {
+            own,
+            compared,
+            kept,
+        } = self.lines;
+        let name = if compared.is_some() {
+            "left"
+        } else {
+            self.title
+        };
         let line = Line::new(name, own).color(self.colour).width(1.7);
-        let twin = twin.map(|points| twin_line("right", points, palette));
+        let compared = compared.map(|points| compared_line("right", points, palette));
         let shown = plot.show(ui, move |plot| {
             plot.set_plot_bounds(bounds);
             for (index, (name, points)) in kept.into_iter().enumerate() {
                 kept_ui(plot, index, &name, points, palette.kept);
             }
             plot.line(line);
-            if let Some(line) = twin {
+            if let Some(line) = compared {
                 plot.line(line);
             }
             marks(plot);

@@ -83,8 +83,8 @@ pub fn per_point(response: &egui::Response, window: &RangeInclusive<f64>) -> f64
     (window.end() - window.start()) / f64::from(response.rect.width().max(1.0))
 }
 
-/// The start of the avalanche within [`NEAR`] points of `time` [s], where a point stands for
-/// `per_point` [s]; else that time.
+/// The start of the nearest avalanche where that is within [`NEAR`] points of `time` [s], else
+/// `time`. A point of the plot is `per_point` [s] wide.
 pub fn near_start(avalanches: &[Avalanche], time: f64, per_point: f64) -> f64 {
     let reach = NEAR * per_point;
     let starts = avalanches.iter().map(|avalanche| avalanche.start);

@@ -1,7 +1,7 @@
-//! A field for a number, to type or to drag, and the word on what was typed and could not be taken.
+//! A field for a number, to type or to drag, which says what was wrong with a text it refused.
 //!
-//! In: what was typed. Out: the number; where there is none in it, or none in range, a line that
-//! says so under the field, until something else is done there.
+//! In: what was typed. Out: the number. Where the text is no number, or one out of range, a line
+//! under the field says so until the person does something else there.
 
 use crate::ui::theme::Palette;
 use crate::ui::words::number;

@@ -5,8 +5,7 @@
 use crate::ui::theme::Palette;
 use bevy_egui::egui::{self, Id};
 
-/// Scrolls the area that `ui` fills to the control in it that the keyboard's focus has just come
-/// to.
+/// Scrolls the area of `ui` so that a control that has just taken the keyboard's focus is in view.
 pub fn follow_focus(ui: &egui::Ui) {
     let focused = ui.memory(egui::Memory::focused);
     let gained = focused.and_then(|id| ui.ctx().read_response(id));

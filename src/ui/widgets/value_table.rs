@@ -1,4 +1,6 @@
 //! Two-column tables: a name on the left, a value on the right.
+//!
+//! In: rows of text. Out: the table over the whole width. Numbers become text elsewhere.
 
 use crate::ui::words::symbol;
 use bevy_egui::egui::{self, Color32, Frame, Margin, RichText, Sides};

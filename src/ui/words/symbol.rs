@@ -1,4 +1,6 @@
 //! Names with the paper's symbols, whose indices stand low: `μ_R`.
+//!
+//! In: text in which an underscore begins an index. Out: a layout for egui.
 
 use bevy_egui::egui::text::{LayoutJob, TextFormat};
 use bevy_egui::egui::{Align, Color32, FontId, TextStyle, Ui};
