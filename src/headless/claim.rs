@@ -92,7 +92,7 @@ impl Claim {
         };
         let script =
             Script::new(&self.commands, &run.world().clock).map_err(|e| refuse(e.to_string()))?;
-        run.schedule(script).map_err(|e| refuse(e.to_string()))?;
+        run.replay(script).map_err(|e| refuse(e.to_string()))?;
         let reached = self.advance(&mut run, &mut progress, stop);
         progress.finish();
         let hash = run.world().hash();

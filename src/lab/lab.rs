@@ -7,6 +7,7 @@
 use super::command::LabCommand;
 use super::driver::Driver;
 use super::engine::{Engine, Message};
+use super::runs::ONE_STEP;
 use super::update::{RunsNews, SavedFile, Update};
 use super::{DriverKind, Half, Options, RunView, Status};
 use crate::run::{Changed, Command, Parameter, Provenance, Session, check};
@@ -242,6 +243,9 @@ impl Lab {
     pub fn check_comparison(&self, parameter: &Parameter, value: f64) -> Result<(), String> {
         if self.comparison.is_some() {
             return Err("Two runs are compared already: end that comparison first".into());
+        }
+        if *parameter == Parameter::TimeStep {
+            return Err(ONE_STEP.into());
         }
         let (Some(world), true) = (self.world(), self.can_compare()) else {
             return Err("Two runs start side by side only while the run stands or goes on".into());

@@ -5,9 +5,11 @@
 
 use super::update::RunNews;
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
-use crate::run::{Command, Parameter, ParameterInfo, Past, Record, StampedCommand};
+use crate::run::{
+    Command, Parameter, ParameterInfo, Past, Record, StampedCommand, StepTimes, time_step,
+};
 use crate::scene::Scene;
-use crate::solver::{Fault, Profile, TimeStepAdvice};
+use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
 use crate::world::World;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,6 +23,9 @@ pub const SMALLEST_DROP: f64 = std::f64::consts::PI / 180.0;
 pub struct RunView {
     id: u64,
     scene: Arc<Scene>,
+    extremes: Extremes,
+    /// The step with which the run begins [s].
+    first_step: f64,
     advice: TimeStepAdvice,
     /// What the engine has told last; nothing while the run is prepared.
     news: Option<RunNews>,
@@ -43,7 +48,9 @@ impl RunView {
     pub(super) fn new(scene: Arc<Scene>, advice: TimeStepAdvice) -> Self {
         Self {
             id: next_number(),
+            extremes: Extremes::of(&scene),
             scene,
+            first_step: advice.time_step,
             warnings: advice.warning.iter().cloned().collect(),
             advice,
             news: None,
@@ -60,7 +67,7 @@ impl RunView {
 
     /// Another run of the same scene of which nothing is known yet.
     pub(super) fn sibling(&self) -> Self {
-        Self::new(self.scene.clone(), self.advice.clone())
+        Self::new(self.scene.clone(), advise(&self.scene))
     }
 
     /// What was asked for.
@@ -161,9 +168,24 @@ impl RunView {
         &self.profile
     }
 
-    /// The time step and its reasons.
+    /// The time step of the state shown and the limits that this state sets; before there is one, what the scene says.
     pub fn advice(&self) -> &TimeStepAdvice {
         &self.advice
+    }
+
+    /// Which step of the present branch is when; nothing before there is a run.
+    pub fn step_times(&self) -> Option<StepTimes> {
+        self.world()?;
+        Some(StepTimes::new(self.first_step, self.commands()))
+    }
+
+    /// What there is to know of `parameter`, be it a live parameter or the time step.
+    pub fn info_of(&self, parameter: &Parameter) -> Option<ParameterInfo> {
+        if *parameter == Parameter::TimeStep {
+            return Some(time_step(self.first_step));
+        }
+        let mut live = self.parameters().iter();
+        live.find(|info| info.parameter == *parameter).cloned()
     }
 
     /// What people should know, in sentences: refused commands, a bed that could not be kept …
@@ -196,11 +218,20 @@ impl RunView {
         self.sought = None;
     }
 
+    /// Takes in the `advice` of another state; a step that has come to exceed its limit is told.
+    fn heed(&mut self, advice: TimeStepAdvice) {
+        if self.advice.warning.is_none() {
+            self.warnings.extend(advice.warning.clone());
+        }
+        self.advice = advice;
+    }
+
     /// Takes in what is new of it.
     pub(super) fn take(&mut self, mut news: RunNews) {
         let is_other = |known: &RunNews| !Arc::ptr_eq(&known.world, &news.world);
         if self.news.as_ref().is_none_or(is_other) {
             self.generation = next_number();
+            self.heed(self.extremes.advise(&news.world));
         }
         let count = |record: &Record| (record.number, record.history.commands().len());
         if count(&self.record) != count(&news.record) {

@@ -19,6 +19,9 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Why two time steps are not compared.
+pub const ONE_STEP: &str = "Two runs side by side have the same time step";
+
 /// The runs of a lab, one at least.
 pub struct Runs {
     list: Vec<LabRun>,
@@ -264,9 +267,15 @@ impl Runs {
             (Command::Set { parameter, .. }, Some(own)) if parameter == own
         );
         let half = half.or(differs.then_some(Half::Left));
+        // Two runs have one time: their step follows no limit of one of them.
+        let make = if self.is_pair() {
+            Timeline::change_in_pair
+        } else {
+            Timeline::change
+        };
         for (index, timeline) in self.timelines().enumerate() {
             if half.is_none_or(|half| half.index() == index) {
-                timeline.change(change.clone(), joins)?;
+                make(timeline, change.clone(), joins)?;
             } else {
                 timeline.note_beside(change, joins)?;
             }
@@ -290,6 +299,9 @@ impl Runs {
         }
         if self.fault().is_some() {
             return Err("Two runs start side by side only while the run stands or goes on".into());
+        }
+        if parameter == Parameter::TimeStep {
+            return Err(ONE_STEP.into());
         }
         let first = &mut self.list[0].timeline;
         let run = first.run();

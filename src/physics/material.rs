@@ -26,7 +26,7 @@ impl Material {
     }
 }
 
-/// How two materials meet.
+/// How two materials meet, or two bodies of one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairProperties {
     /// Coefficient of restitution e, in (0, 1].
@@ -37,6 +37,24 @@ pub struct PairProperties {
     pub wet_friction: f64,
     /// Coefficient of rolling friction `μ_R`.
     pub rolling_friction: f64,
+}
+
+impl PairProperties {
+    /// How two materials meet whose bodies meet their own kind like `a` and `b`: the harmonic mean of
+    /// each value, Eq. 3.7 of Man et al. 2023.
+    pub fn mixed(a: &Self, b: &Self) -> Self {
+        Self {
+            restitution: harmonic_mean(a.restitution, b.restitution),
+            friction: harmonic_mean(a.friction, b.friction),
+            wet_friction: harmonic_mean(a.wet_friction, b.wet_friction),
+            rolling_friction: harmonic_mean(a.rolling_friction, b.rolling_friction),
+        }
+    }
+}
+
+/// `2 a b / (a + b)`, exactly `a` for equal values, zero where both are zero.
+fn harmonic_mean(a: f64, b: f64) -> f64 {
+    if a == b { a } else { 2.0 * a * b / (a + b) }
 }
 
 /// All materials of a world and the properties of each pair.

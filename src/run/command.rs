@@ -36,6 +36,17 @@ pub enum Command {
 }
 
 impl Command {
+    /// Whether it changes the time step.
+    pub(crate) fn is_of_time_step(&self) -> bool {
+        matches!(
+            self,
+            Self::Set {
+                parameter: Parameter::TimeStep,
+                ..
+            }
+        )
+    }
+
     /// Its name where it moves along the runs instead of changing one.
     pub(crate) fn moving(&self) -> Option<&'static str> {
         match self {
@@ -89,6 +100,8 @@ pub enum Parameter {
     LiquidVolume,
     /// How bridges act: 0 as printed, 1 as coded.
     BridgeLaw,
+    /// Length of a step [s]. It belongs to how the run is computed, not to what runs.
+    TimeStep,
 }
 
 impl fmt::Display for Parameter {
@@ -107,6 +120,7 @@ impl fmt::Display for Parameter {
             Self::ContactAngle => f.write_str("contact-angle"),
             Self::LiquidVolume => f.write_str("liquid-volume"),
             Self::BridgeLaw => f.write_str("bridge-law"),
+            Self::TimeStep => f.write_str("time-step"),
         }
     }
 }
@@ -135,10 +149,11 @@ impl TryFrom<String> for Parameter {
             ["contact-angle"] => Ok(Self::ContactAngle),
             ["liquid-volume"] => Ok(Self::LiquidVolume),
             ["bridge-law"] => Ok(Self::BridgeLaw),
+            ["time-step"] => Ok(Self::TimeStep),
             _ => Err(format!(
                 "no parameter is called `{key}`; expected one of friction.A.B, wet-friction.A.B, restitution.A.B, \
                  rolling-friction.A.B (A, B: materials), drum-speed, gravity, share.S (S: a species), viscosity, \
-                 surface-tension, contact-angle, liquid-volume, bridge-law"
+                 surface-tension, contact-angle, liquid-volume, bridge-law, time-step"
             )),
         }
     }

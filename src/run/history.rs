@@ -156,13 +156,16 @@ impl Record {
     }
 
     /// Takes in what is new of `run`, which is at the record's end or beyond; new commands are part of the last change
-    /// where they `join`.
+    /// where they `join`, and a step that followed its limit is part of the change that moved it.
     pub fn follow(&mut self, run: &Run, join: bool) {
         let known = self.history.commands.len();
         if run.commands().len() > known {
             let history = Arc::make_mut(&mut self.history);
+            let mut before = None;
             for command in &run.commands()[known..] {
-                history.push(command.clone(), join);
+                let followed = command.command.is_of_time_step() && before == Some(command.step);
+                before = Some(command.step);
+                history.push(command.clone(), join || followed);
             }
         }
         let (samples, known) = (run.series(), self.series.len());
@@ -172,6 +175,7 @@ impl Record {
                 series.push(sample);
             }
         }
+        self.plan.keep_times(&run.world().clock);
         self.flow.clone_from(run.flow());
         self.end = Moment::of(run);
     }
@@ -211,11 +215,12 @@ impl Record {
         self.end.step > last
     }
 
-    /// What is still to be carried out after the first `commands`, if the run goes on beyond the record's end.
-    pub fn rest(&self, commands: usize) -> Script {
-        let recorded = self.history.commands[commands.min(self.history.commands.len())..].iter();
-        let recorded = recorded.map(|stamped| (stamped.step, stamped.command.clone()));
-        Script::in_order(recorded.chain(self.plan.after(self.end.step)))
+    /// What is still to be carried out after the first `commands`, if the run goes on beyond the record's end, and how
+    /// many of these are the record's.
+    pub fn rest(&self, commands: usize) -> (Script, usize) {
+        let recorded = &self.history.commands[commands.min(self.history.commands.len())..];
+        let script = Script::again(recorded, &self.plan, self.end.step);
+        (script, recorded.len())
     }
 }
 

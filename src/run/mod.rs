@@ -8,6 +8,7 @@
 //! | `command` | everything a person can ask for |
 //! | `parameter`, `relabel` | the numbers that can change while a run goes on, and how they change a world |
 //! | `start` | the numbers that act from the next start on |
+//! | `steps` | which step was when, where the time step changed |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `trajectory` | the run itself: world, solver, samples, snapshots |
 //! | `timeline` | runs as something to hold: seek, branch, undo |
@@ -31,6 +32,7 @@ mod session;
 mod settling;
 mod shared;
 mod start;
+mod steps;
 mod timeline;
 mod trajectory;
 
@@ -38,12 +40,14 @@ pub use bed::BedStore;
 pub use claim::{Claim, VERSION, fingerprint};
 pub use command::{Command, Parameter, StampedCommand};
 pub use history::{History, Moment, Record};
+pub(crate) use parameter::time_step;
 pub use parameter::{DisplayUnit, ParameterInfo};
 pub use preparation::{Preparation, Prepared, make_bed};
 pub use provenance::{Provenance, TABLES_METADATA};
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use start::{StartInfo, StartParameter, start_parameters};
+pub use steps::StepTimes;
 pub use timeline::{Changed, Past, Timeline};
 pub(crate) use trajectory::check;
 pub use trajectory::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};

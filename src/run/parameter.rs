@@ -69,6 +69,10 @@ const MILLILITRES: DisplayUnit = DisplayUnit {
     name: "ml",
     factor: 1e6,
 };
+const MICROSECONDS: DisplayUnit = DisplayUnit {
+    name: "µs",
+    factor: 1e6,
+};
 const METRES_PER_SECOND_SQUARED: DisplayUnit = DisplayUnit {
     name: "m/s²",
     factor: 1.0,
@@ -98,6 +102,7 @@ impl Parameter {
                 BridgeLaw::AS_CODED => Some(1.0),
                 _ => None,
             },
+            Self::TimeStep => Some(world.clock.time_step),
         }
     }
 
@@ -110,6 +115,7 @@ impl Parameter {
             Self::SurfaceTension => "N/m",
             Self::ContactAngle => "rad",
             Self::LiquidVolume => "m³",
+            Self::TimeStep => "s",
             _ => "1",
         }
     }
@@ -124,6 +130,7 @@ impl Parameter {
             Self::SurfaceTension => MILLINEWTONS_PER_METRE,
             Self::ContactAngle => DEGREES,
             Self::LiquidVolume => MILLILITRES,
+            Self::TimeStep => MICROSECONDS,
             Self::Friction(..)
             | Self::WetFriction(..)
             | Self::Restitution(..)
@@ -167,6 +174,7 @@ impl Parameter {
                 "V = 0.05 (Vf_i + Vf_j) of both films, Eq. 11 of Kasper et al. 2021"
             }
             Self::BridgeLaw => "Eqs. 11–17 of Kasper et al. 2021",
+            Self::TimeStep => "x(t + Δt) from x(t): velocity Verlet",
         }
     }
 
@@ -191,6 +199,24 @@ const LARGEST_CONTACT_ANGLE: f64 = 80.0 / DEGREES.factor;
 const FASTEST_DRUM: f64 = 10.0 / RPM.factor;
 /// Strongest gravity a slider offers [m/s²].
 const STRONGEST_GRAVITY: f64 = 20.0;
+
+/// Shortest and longest step that a run can be given [s].
+const STEPS: RangeInclusive<f64> = 1e-12..=1.0;
+
+/// The time step of a run whose first one is `time_step` [s]. It is none of the
+/// [`live_parameters`], which are physics; a run takes commands about it all the same.
+pub fn time_step(time_step: f64) -> ParameterInfo {
+    ParameterInfo {
+        parameter: Parameter::TimeStep,
+        label: "time step".into(),
+        symbol: "Δt",
+        unit: Parameter::TimeStep.unit(),
+        range: STEPS,
+        default: time_step,
+        description: "Simulated time of one step. The stiffest contact and the thinnest film limit it.",
+        display: MICROSECONDS,
+    }
+}
 
 /// The live parameters of `scene`, whose world at time zero is `world`.
 pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
@@ -240,6 +266,7 @@ pub fn write(parameter: &Parameter, value: f64, scene: &Scene, world: &mut World
                 BridgeLaw::AS_CODED
             };
         }),
+        Parameter::TimeStep => world.clock.set_time_step(value),
     }
 }
 

@@ -25,7 +25,18 @@ pub struct ScriptedCommand {
 /// Commands in the order in which they are due.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Script {
-    commands: VecDeque<(u64, Command)>,
+    commands: VecDeque<Due>,
+}
+
+/// A command and the step before which it is due.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Due {
+    step: u64,
+    command: Command,
+    /// The simulated time that it was given for [s], where it was not for a step: it keeps that when
+    /// the time step changes. A file keeps the step alone.
+    #[serde(skip)]
+    time: Option<f64>,
 }
 
 /// Why a list of commands cannot be played.
@@ -55,41 +66,55 @@ impl Script {
             if let Some(name) = entry.command.moving() {
                 return Err(ScriptError::NoChange(index + 1, name));
             }
-            due.push((entry.due(index + 1, clock)?, entry.command.clone()));
+            due.push(Due {
+                step: entry.due(index + 1, clock)?,
+                command: entry.command.clone(),
+                time: entry.time.filter(|_| entry.step.is_none()),
+            });
         }
-        due.sort_by_key(|(step, _)| *step);
+        due.sort_by_key(|due| due.step);
         Ok(Self {
             commands: due.into(),
         })
     }
 
-    /// The script of `commands` in order of their steps.
-    pub(crate) fn in_order(commands: impl Iterator<Item = (u64, Command)>) -> Self {
+    /// The commands that were `carried_out`, in order, and then what of `plan` is due after `step`.
+    pub(crate) fn again(carried_out: &[StampedCommand], plan: &Self, step: u64) -> Self {
+        let again = carried_out.iter().map(|stamped| Due {
+            step: stamped.step,
+            command: stamped.command.clone(),
+            time: None,
+        });
+        let later = plan.commands.iter().filter(|due| due.step > step);
         Self {
-            commands: commands.collect(),
+            commands: again.chain(later.cloned()).collect(),
         }
     }
 
-    /// What is due after `step`.
-    pub(crate) fn after(&self, step: u64) -> impl Iterator<Item = (u64, Command)> {
-        let later = move |entry: &&(u64, Command)| entry.0 > step;
-        self.commands.iter().filter(later).cloned()
+    /// Fits the steps of what is due later than now at given times to a `clock` whose time step may
+    /// have changed.
+    pub(crate) fn keep_times(&mut self, clock: &Clock) {
+        let later = self.commands.iter_mut().filter(|due| due.step > clock.step);
+        for due in later {
+            due.step = due.time.map_or(due.step, |time| clock.step_at(time));
+        }
+        self.commands.make_contiguous().sort_by_key(|due| due.step);
     }
 
     /// What is still to be carried out.
     pub fn commands(&self) -> impl Iterator<Item = &Command> {
-        self.commands.iter().map(|(_, command)| command)
+        self.commands.iter().map(|due| &due.command)
     }
 
     /// The step before which the next command is due.
     pub fn next_step(&self) -> Option<u64> {
-        self.commands.front().map(|(step, _)| *step)
+        self.commands.front().map(|due| due.step)
     }
 
     /// Takes the next command if it is due at `step`.
     pub fn take_due(&mut self, step: u64) -> Option<Command> {
         self.next_step().filter(|due| *due <= step)?;
-        self.commands.pop_front().map(|(_, command)| command)
+        self.commands.pop_front().map(|due| due.command)
     }
 }
 

@@ -5,9 +5,7 @@
 //! [`super::Parameter`] instead.
 
 use super::DisplayUnit;
-use crate::scene::{
-    ContactLaw, Scene, SceneContainer, SceneError, SceneGrains, SceneMaterial, TimeStep,
-};
+use crate::scene::{ContactLaw, Scene, SceneContainer, SceneError, SceneGrains, SceneMaterial};
 use crate::solver::advise;
 use std::ops::RangeInclusive;
 
@@ -196,10 +194,10 @@ impl StartParameter {
     /// # Errors
     /// As [`StartParameter::write`].
     pub fn restore(&self, original: &Scene, scene: &mut Scene) -> Result<(), SceneError> {
-        match (self, original.time_step, self.read(original)) {
-            (Self::TimeStep, TimeStep::Automatic, _) => scene.set("time-step", "automatic"),
-            (_, _, Some(value)) => self.write(value, scene),
-            (_, _, None) => Ok(()),
+        match (self, self.read(original)) {
+            (Self::TimeStep, _) => changed(scene, |scene| scene.time_step = original.time_step),
+            (_, Some(value)) => self.write(value, scene),
+            (_, None) => Ok(()),
         }
     }
 }

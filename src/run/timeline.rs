@@ -343,12 +343,33 @@ impl Timeline {
     /// # Errors
     /// As [`Run::apply`].
     pub fn change(&mut self, command: Command, joins: bool) -> Result<(), CommandError> {
+        self.change_by(command, joins, Run::apply)
+    }
+
+    /// The same in one of two runs that keep one time: the step stays.
+    ///
+    /// # Errors
+    /// As [`Run::apply`].
+    pub(crate) fn change_in_pair(
+        &mut self,
+        command: Command,
+        joins: bool,
+    ) -> Result<(), CommandError> {
+        self.change_by(command, joins, Run::apply_at_this_step)
+    }
+
+    fn change_by(
+        &mut self,
+        command: Command,
+        joins: bool,
+        apply: fn(&mut Run, Command) -> Result<(), CommandError>,
+    ) -> Result<(), CommandError> {
         self.run.check(&command)?;
         let Command::Set { parameter, .. } = &command else {
             return Ok(());
         };
         let joins = self.begin_change(parameter, joins);
-        self.run.apply(command)?;
+        apply(&mut self.run, command)?;
         self.record.follow(&self.run, joins);
         Ok(())
     }
@@ -610,7 +631,7 @@ impl Timeline {
 
     /// Lets the run go on as the record says and, after its end, as was planned.
     fn follow_record(&mut self) {
-        let rest = self.record.rest(self.run.commands().len());
-        self.run.follow(rest);
+        let (rest, recorded) = self.record.rest(self.run.commands().len());
+        self.run.follow(rest, recorded);
     }
 }

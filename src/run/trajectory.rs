@@ -8,8 +8,8 @@ use super::parameter::{self, ParameterInfo};
 use super::script::Script;
 use super::{Command, Parameter, StampedCommand};
 use crate::measure::{FlowHistory, Series, sample_and_surface};
-use crate::scene::Scene;
-use crate::solver::{Fault, Profile, Solver};
+use crate::scene::{Scene, TimeStep};
+use crate::solver::{Extremes, Fault, Profile, Solver, TimeStepAdvice};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,6 +26,9 @@ pub struct Run {
     solver: Solver,
     commands: Vec<StampedCommand>,
     script: Script,
+    /// How many of the script's commands are those of a record, which says what the step became.
+    recorded: usize,
+    extremes: Extremes,
     series: Series,
     flow: Arc<FlowHistory>,
     next_sample: u64,
@@ -116,12 +119,14 @@ impl Run {
         let bed = bed.into();
         let mut run = Self {
             parameters: parameter::live_parameters(&scene, &bed).into(),
+            extremes: Extremes::of(&scene),
             scene,
             world: (*bed).clone(),
             bed,
             solver: Solver::new(threads),
             commands: Vec::new(),
             script: Script::default(),
+            recorded: 0,
             series: Series::default(),
             flow: Arc::default(),
             next_sample: 0,
@@ -165,6 +170,11 @@ impl Run {
         &self.parameters
     }
 
+    /// The time step now, and the limits that the present state sets.
+    pub fn advice(&self) -> TimeStepAdvice {
+        self.extremes.advise(&self.world)
+    }
+
     /// Goes on with `threads` threads, to the same bits.
     pub(crate) fn use_threads(&mut self, threads: usize) {
         self.solver = Solver::new(threads);
@@ -180,24 +190,50 @@ impl Run {
     /// # Errors
     /// A [`CommandError`] when one of them cannot be carried out in this scene; none is taken then.
     pub fn schedule(&mut self, script: Script) -> Result<(), CommandError> {
-        for command in script.commands() {
-            check(&self.parameters, &self.world, command)?;
-        }
-        self.follow(script);
+        self.check_all(&script)?;
+        self.follow(script, 0);
         Ok(())
     }
 
-    /// Carries out `script`, which was checked, from here on instead of what was scheduled.
-    pub(crate) fn follow(&mut self, script: Script) {
+    /// The same for all the commands of a recorded run: no step follows a limit but by a command.
+    ///
+    /// # Errors
+    /// As [`Run::schedule`].
+    pub fn replay(&mut self, script: Script) -> Result<(), CommandError> {
+        self.check_all(&script)?;
+        self.follow(script, usize::MAX);
+        Ok(())
+    }
+
+    fn check_all(&self, script: &Script) -> Result<(), CommandError> {
+        let mut commands = script.commands();
+        commands.try_for_each(|command| check(&self.parameters, &self.world, command))
+    }
+
+    /// Carries out `script`, which was checked, from here on instead of what was scheduled. Its first
+    /// `recorded` commands are those of a record.
+    pub(crate) fn follow(&mut self, script: Script, recorded: usize) {
         self.script = script;
+        self.recorded = recorded;
         self.carry_out_due();
     }
 
     /// Carries out `command` now and keeps it. What concerns the player alone (play, pause, step, seek …) is passed over.
+    /// Where the scene's step follows its limit and the command moves that, a command about the step comes after it.
     ///
     /// # Errors
     /// A [`CommandError`] when the scene has no such parameter or the value is out of its range; nothing changes then.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
+        self.check(&command)?;
+        self.followed(|run| run.carry_out(command));
+        Ok(())
+    }
+
+    /// The same, and the step stays: for one of two runs that keep one time.
+    ///
+    /// # Errors
+    /// As [`Run::apply`].
+    pub(crate) fn apply_at_this_step(&mut self, command: Command) -> Result<(), CommandError> {
         self.check(&command)?;
         self.carry_out(command);
         Ok(())
@@ -269,7 +305,7 @@ impl Run {
         let kept = snapshot.commands.min(commands.len());
         self.commands.extend_from_slice(&commands[..kept]);
         self.series.copy_first(series, snapshot.samples);
-        self.script = Script::default();
+        self.forget_script();
         self.flow.clone_from(&snapshot.flow);
         self.next_sample = snapshot.next_sample;
     }
@@ -278,16 +314,47 @@ impl Run {
     pub fn restart(&mut self) {
         self.world.clone_from(&self.bed);
         self.commands.clear();
-        self.script = Script::default();
+        self.forget_script();
         self.series.truncate(0);
         self.flow = Arc::default();
         self.next_sample = 0;
         self.take_due_sample();
     }
 
+    fn forget_script(&mut self) {
+        self.script = Script::default();
+        self.recorded = 0;
+    }
+
     fn carry_out_due(&mut self) {
-        while let Some(command) = self.script.take_due(self.world.clock.step) {
+        let step = self.world.clock.step;
+        while self.recorded > 0
+            && let Some(command) = self.script.take_due(step)
+        {
+            self.recorded -= 1;
             self.carry_out(command);
+        }
+        if self.script.next_step().is_some_and(|due| due <= step) {
+            self.followed(|run| {
+                while let Some(command) = run.script.take_due(step) {
+                    run.carry_out(command);
+                }
+            });
+        }
+    }
+
+    /// Makes a change; where the step follows its limit and that has moved, takes the largest stable
+    /// step from here on.
+    fn followed(&mut self, change: impl FnOnce(&mut Self)) {
+        if self.scene.time_step != TimeStep::Following {
+            return change(self);
+        }
+        let before = self.advice().largest();
+        change(self);
+        let advice = self.advice();
+        let largest = advice.largest();
+        if largest != before && largest != advice.time_step {
+            self.set(&Parameter::TimeStep, largest);
         }
     }
 
@@ -302,6 +369,9 @@ impl Run {
     fn set(&mut self, parameter: &Parameter, value: f64) {
         let parameter = parameter::canonical(parameter, &self.world.materials);
         parameter::write(&parameter, value, &self.scene, &mut self.world);
+        if parameter == Parameter::TimeStep {
+            self.script.keep_times(&self.world.clock);
+        }
         self.commands.push(StampedCommand {
             step: self.world.clock.step,
             time: self.world.time(),
@@ -309,9 +379,10 @@ impl Run {
         });
     }
 
-    /// Present values of the parameters.
+    /// Present values of the parameters and of the time step.
     pub(crate) fn values(&self) -> Vec<(Parameter, f64)> {
         let parameters = self.parameters.iter().map(|info| info.parameter.clone());
+        let parameters = parameters.chain([Parameter::TimeStep]);
         let values = parameters.filter_map(|parameter| {
             let value = parameter.read(&self.world)?;
             Some((parameter, value))
@@ -364,10 +435,12 @@ pub(crate) fn check(
         return Ok(());
     };
     let parameter = parameter::canonical(parameter, &world.materials);
-    let Some(info) = parameters.iter().find(|info| info.parameter == parameter) else {
+    let step = parameter::time_step(world.clock.time_step);
+    let known = || parameters.iter().chain([&step]);
+    let Some(info) = known().find(|info| info.parameter == parameter) else {
         return Err(CommandError::Unknown {
             parameter: parameter.to_string(),
-            known: parameters.iter().map(|i| i.parameter.to_string()).collect(),
+            known: known().map(|info| info.parameter.to_string()).collect(),
         });
     };
     if info.range.contains(value) {

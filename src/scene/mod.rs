@@ -79,11 +79,15 @@ pub struct Scene {
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum TimeStep {
-    /// The largest stable step, as the solver's advice reasons it.
+    /// The largest stable step at the start. It stays as it is; a change that makes it too long is
+    /// told.
     #[default]
     Automatic,
     /// This step [s].
     Given(f64),
+    /// The largest stable step at any time: a change that moves the limit changes the step too, as a
+    /// command of its own.
+    Following,
 }
 
 /// A material as a scene states it.

@@ -49,7 +49,7 @@ const SETTINGS: &[Setting] = &[
         expected: "`automatic`, or a time such as `1e-5s` or `10us`",
         apply: |scene, text| {
             scene.time_step = match text {
-                "automatic" => TimeStep::Automatic,
+                "automatic" => TimeStep::Following,
                 time => TimeStep::Given(seconds(time)?),
             };
             Some(())

@@ -236,7 +236,7 @@ fn meaning(key: &str) -> &'static str {
         "between" => "two materials, `(\"glass\", \"drum\")`",
         "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
         "law" => "`HertzMindlin` or `Hooke(…)`",
-        "time_step" => "`Automatic` or `Given(…)` with a time in s",
+        "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
         "duration" | "output_interval" => "a time in s",
         _ => "",
     }

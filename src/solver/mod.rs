@@ -31,7 +31,7 @@ pub use crate::lanes::Processor;
 pub use fault::{Fault, FaultKind};
 pub use profile::{Profile, Stage};
 pub use terms::{ForceTerms, NormalLaw, force_terms};
-pub use time_step::{Limit, TimeStepAdvice, advise};
+pub use time_step::{Extremes, Limit, TimeStepAdvice, advise};
 
 use crate::physics::ContactLaw;
 use crate::physics::law::{HertzMindlin, Hooke, Law};

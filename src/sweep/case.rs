@@ -9,7 +9,7 @@ use crate::headless::{
 };
 use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, VelocityMap, results};
 use crate::simulation::{Preparation, Provenance, Run, SMALLEST_DROP, Script, TABLES_METADATA};
-use crate::solver::{Fault, advise};
+use crate::solver::Fault;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -196,7 +196,7 @@ fn write_files(
     wall_time: Duration,
 ) -> Result<(), HeadlessError> {
     let world = run.world();
-    let advice = advise(&case.scene);
+    let advice = run.advice();
     let summary = SummaryFile {
         program: "grainfall",
         version: env!("CARGO_PKG_VERSION"),

@@ -61,7 +61,8 @@ pub fn is_basic(info: &ParameterInfo, scene: &Scene) -> bool {
         Parameter::RollingFriction(..)
         | Parameter::SurfaceTension
         | Parameter::ContactAngle
-        | Parameter::BridgeLaw => false,
+        | Parameter::BridgeLaw
+        | Parameter::TimeStep => false,
     }
 }
 
@@ -130,6 +131,9 @@ pub fn landmarks(parameter: &Parameter) -> &'static [Landmark] {
         Parameter::SurfaceTension => {
             &const { [named("glycerol", 63.4e-3), named("water", 72.8e-3)] }
         }
-        Parameter::Viscosity | Parameter::ContactAngle | Parameter::BridgeLaw => &[],
+        Parameter::Viscosity
+        | Parameter::ContactAngle
+        | Parameter::BridgeLaw
+        | Parameter::TimeStep => &[],
     }
 }

@@ -319,15 +319,17 @@ impl Dock {
         out: &mut Vec<Request>,
     ) {
         let (recent, shown, badge) = (self.memory.recent(), &mut self.shown, &mut self.badge);
+        let mut of_badge = Vec::new();
         egui::Panel::top("menu").show(root, |ui| {
             menu_ui(ui, simulation, recent, shown, view, out, |ui| {
                 if let Some(simulation) = simulation {
-                    badge.ui(ui, simulation);
+                    badge.ui(ui, simulation, &mut of_badge);
                     let title = RichText::new(&simulation.scene().title).weak();
                     ui.add(egui::Label::new(title).truncate());
                 }
             });
         });
+        out.extend(of_badge);
     }
 
     fn sides_ui(

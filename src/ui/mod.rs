@@ -48,7 +48,7 @@ mod user_memory;
 mod widgets;
 mod words;
 
-pub use bars::badge::{Check, Level, checks};
+pub use bars::badge::{Check, Level, checks, stable_step};
 pub use bars::film_bar::film_bar_ui;
 pub use bars::transport::{Transport, status_ui};
 pub use detail::Detail;

@@ -86,7 +86,7 @@ pub enum Way {
 /// one.
 pub fn to_avalanche(simulation: &RunView, way: Way) -> Option<Request> {
     let time_step = simulation.world()?.clock.time_step;
-    let now = simulation.step() as f64 * time_step;
+    let now = simulation.step_times()?.time_at(simulation.step());
     // A start that is shown already is neither before nor after.
     let mut starts = simulation
         .avalanches()
@@ -101,16 +101,15 @@ pub fn to_avalanche(simulation: &RunView, way: Way) -> Option<Request> {
 
 /// The moment shown [s], where it is not the newest.
 pub fn moment_shown(simulation: &RunView) -> Option<f64> {
-    let time_step = simulation.world()?.clock.time_step;
+    let times = simulation.step_times()?;
     simulation
         .looks_back()
-        .then(|| simulation.step() as f64 * time_step)
+        .then(|| times.time_at(simulation.step()))
 }
 
 /// The request to show the moment at `time` [s].
 pub fn seek(simulation: &RunView, time: f64) -> Option<Request> {
-    let time_step = simulation.world()?.clock.time_step;
-    let step = (time.max(0.0) / time_step).round() as u64;
+    let step = simulation.step_times()?.step_at(time);
     Some(Request::Command(Command::Seek(step)))
 }
 

@@ -71,7 +71,8 @@ pub fn build_packed(scene: &Scene, time_step: f64, cells: Vec<Rounded>) -> World
     world
 }
 
-fn materials(scene: &Scene) -> Materials {
+/// The materials of `scene` in its order, and how each pair of them meets.
+pub fn materials(scene: &Scene) -> Materials {
     let list = scene.materials.iter().map(material).collect();
     Materials::new(list, |a, b| {
         let [a, b] = [a, b].map(|id| &scene.materials[usize::from(id.0)]);
@@ -88,30 +89,32 @@ fn material(material: &SceneMaterial) -> Material {
     }
 }
 
-/// How `a` and `b` meet: as the scene says for this pair, else by the harmonic mean (Eq. 3.7 of Man et al. 2023).
+/// How `a` and `b` meet: as the scene says for this pair, else by the mixing rule.
 fn pair_properties(scene: &Scene, a: &SceneMaterial, b: &SceneMaterial) -> PairProperties {
+    let mixed = PairProperties::mixed(&among_itself(a), &among_itself(b));
     let mut pairs = scene.pairs.iter();
-    let given = pairs.find(|pair| pair.is_between(&a.name, &b.name));
-    let mixed = |own: fn(&SceneMaterial) -> f64| harmonic_mean(own(a), own(b));
+    let Some(given) = pairs.find(|pair| pair.is_between(&a.name, &b.name)) else {
+        return mixed;
+    };
     PairProperties {
-        restitution: given
-            .and_then(|pair| pair.restitution)
-            .unwrap_or_else(|| mixed(|m| m.restitution)),
-        friction: given
-            .and_then(|pair| pair.friction)
-            .unwrap_or_else(|| mixed(|m| m.friction)),
+        restitution: given.restitution.unwrap_or(mixed.restitution),
+        friction: given.friction.unwrap_or(mixed.friction),
         wet_friction: given
-            .and_then(|pair| pair.wet_friction.or(pair.friction))
-            .unwrap_or_else(|| mixed(|m| m.wet_friction.unwrap_or(m.friction))),
-        rolling_friction: given
-            .and_then(|pair| pair.rolling_friction)
-            .unwrap_or_else(|| mixed(|m| m.rolling_friction)),
+            .wet_friction
+            .or(given.friction)
+            .unwrap_or(mixed.wet_friction),
+        rolling_friction: given.rolling_friction.unwrap_or(mixed.rolling_friction),
     }
 }
 
-/// `2 a b / (a + b)`, exactly `a` for equal values, zero where both are zero.
-fn harmonic_mean(a: f64, b: f64) -> f64 {
-    if a == b { a } else { 2.0 * a * b / (a + b) }
+/// How bodies of one material meet.
+fn among_itself(material: &SceneMaterial) -> PairProperties {
+    PairProperties {
+        restitution: material.restitution,
+        friction: material.friction,
+        wet_friction: material.wet_friction.unwrap_or(material.friction),
+        rolling_friction: material.rolling_friction,
+    }
 }
 
 fn material_id(scene: &Scene, name: &str) -> MaterialId {

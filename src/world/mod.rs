@@ -19,7 +19,7 @@ mod voronoi;
 
 pub use crate::geometry::{Polyhedron, Rounded};
 pub use crate::physics::{Liquid, Material, MaterialId, Materials, PairProperties};
-pub use build::{build, build_packed};
+pub use build::{build, build_packed, materials};
 pub use contact::{Contact, Partner};
 pub use container::{Container, Motion, Shape, Surface, Wall};
 pub use grains::{Grains, Species, SpeciesId};

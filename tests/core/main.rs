@@ -7,6 +7,7 @@ mod run;
 mod scene;
 mod session;
 mod solver;
+mod step;
 mod sweep;
 mod timeline;
 mod twin;

@@ -7,9 +7,9 @@ use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use grainfall::measure::{Avalanche, Measure, Sample, Series};
-use grainfall::scene::TimeStep;
-use grainfall::simulation::{Command, Record, SAMPLE_INTERVAL, Simulation, Status};
-use grainfall::ui::{AvalanchePlots, Curves, Level, Request, checks};
+use grainfall::scene::{LIQUID_CASES, SceneGrains, TimeStep};
+use grainfall::simulation::{Command, Parameter, Record, SAMPLE_INTERVAL, Simulation, Status};
+use grainfall::ui::{AvalanchePlots, Curves, Level, Request, checks, stable_step};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -316,4 +316,44 @@ fn the_badge_names_a_time_step_beyond_its_limit_and_a_remedy() {
         };
         harness.get_by_label_contains(word);
     }
+}
+
+#[test]
+fn the_badge_offers_the_step_that_a_change_asks_for() {
+    let mut simulation = fine_and_wet();
+    let glycerol = LIQUID_CASES[6];
+    carried_out(&mut simulation, Command::Step(10));
+    carried_out(
+        &mut simulation,
+        set(Parameter::Viscosity, glycerol.viscosity),
+    );
+    let limit = simulation.advice().largest();
+    let mut harness = Window::of(simulation);
+    harness.get_by_label_contains("29 % over").click();
+    harness.run_steps(4);
+    harness
+        .get_by_label_contains("Go on with steps of 6.57")
+        .click();
+    harness.run_steps(2);
+    let asked = commands(&harness.state().asked);
+    assert_eq!(asked, [set(Parameter::TimeStep, limit)]);
+    let simulation = &mut harness.state_mut().simulation;
+    carried_out(simulation, asked[0].clone());
+    assert_eq!(simulation.advice().time_step, limit);
+    harness.run_steps(4);
+    harness.get_by_label_contains("Trust: Sound");
+    assert!(stable_step(&harness.state().simulation).is_none());
+    harness.state_mut().show_panel("Changes and runs");
+    harness.run_steps(4);
+    harness.get_by_label_contains("time step 8.45 → 6.57 µs");
+}
+
+/// Three of the paper's finest grains in water, which allows them a step of 8.45 µs.
+fn fine_and_wet() -> Simulation {
+    let mut scene = prepared().scene().clone();
+    scene.liquid = Some(LIQUID_CASES[0].liquid());
+    if let SceneGrains::List(grains) = &mut scene.grains {
+        grains.iter_mut().for_each(|grain| grain.radius = 1.25e-3);
+    }
+    ready(Simulation::open(scene, standing()))
 }

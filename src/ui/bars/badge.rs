@@ -1,11 +1,14 @@
 //! The badge that says at any time whether the run can be trusted, and why.
 //!
 //! In: the simulation. Out: one mark, told by its shape and a word as well as by its colour, with one line why; a click
-//! shows every number that was looked at, its limits and what to do.
+//! shows every number that was looked at, its limits and what to do, and where a step is too long a button that
+//! shortens it.
 
 use crate::measure::{Measure, Sample};
-use crate::simulation::{RunView, Simulation, Status};
+use crate::simulation::{Command, Half, Parameter, RunView, Simulation, Status};
 use crate::solver::Fault;
+use crate::ui::playback::allows;
+use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::world::{StateHash, World};
@@ -99,7 +102,7 @@ pub struct Badge {
 
 impl Badge {
     /// Draws it; a click shows the numbers.
-    pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+    pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         if self.generation != simulation.generation() || self.checks.is_empty() {
             self.generation = simulation.generation();
             self.checks = checks(simulation);
@@ -128,10 +131,10 @@ impl Badge {
         Popup::from_toggle_button_response(&response)
             .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
             .width(WIDTH)
-            .show(|ui| self.details_ui(ui, simulation));
+            .show(|ui| self.details_ui(ui, simulation, out));
     }
 
-    fn details_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+    fn details_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         ui.set_width(WIDTH);
         let palette = Palette::of(ui.visuals());
         for check in &self.checks {
@@ -145,6 +148,7 @@ impl Badge {
                 ui.weak(check.remedy);
             }
         }
+        stable_step_ui(ui, simulation, out);
         ui.separator();
         ui.label(pace(simulation));
         if *simulation.status() == Status::Running {
@@ -155,6 +159,35 @@ impl Badge {
             ui.monospace(hash.to_string());
         }
     }
+}
+
+/// The button that goes on with the largest stable step, where the present one is longer.
+fn stable_step_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let Some(command) = stable_step(simulation) else {
+        return;
+    };
+    let Command::Set { value, .. } = command else {
+        return;
+    };
+    let text = format!("Go on with steps of {}", number::short_time(value));
+    let enabled = allows(simulation.status(), &command);
+    let button = ui.add_enabled(enabled, egui::Button::new(text));
+    let hint = "From this moment on; recorded as any other change, and taken back by an undo";
+    if button.on_hover_text(hint).clicked() {
+        out.push(Request::Command(command));
+    }
+}
+
+/// The change that makes a step that exceeds its limit the largest stable one; of two runs side by side, which have one
+/// step, that of both.
+pub fn stable_step(simulation: &Simulation) -> Option<Command> {
+    let advices = Half::ALL.map(|half| simulation.half(half).advice());
+    let exceeded = advices.iter().any(|advice| advice.excess().is_some());
+    let largest = advices.map(|advice| advice.largest());
+    exceeded.then_some(Command::Set {
+        parameter: Parameter::TimeStep,
+        value: largest.into_iter().fold(f64::INFINITY, f64::min),
+    })
 }
 
 /// How fast the run goes, in words.
@@ -220,10 +253,13 @@ fn time_step(simulation: &RunView) -> Check {
             // The last bit of a step that is its own limit does not count.
             Level::of(advice.time_step / limit.time_step * (1.0 - 1e-12), STEPS),
             format!(
-                "{}, limit {} ({})",
+                "{}, limit {} ({}){}",
                 shown(advice.time_step),
                 shown(limit.time_step),
-                limit.name
+                limit.name,
+                advice.excess().map_or_else(String::new, |excess| {
+                    format!(", {:.0} % over", 100.0 * excess)
+                })
             ),
         ),
         None => (
@@ -235,7 +271,8 @@ fn time_step(simulation: &RunView) -> Check {
         name: "time step".into(),
         level,
         value,
-        remedy: "Give the scene `time_step: Automatic`, or a step below the limit.",
+        remedy: "Go on with a step within the limit, or give the scene `time_step: Following`: its step then follows \
+                 whatever is changed.",
     }
 }
 

@@ -77,17 +77,20 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         return;
     };
     let time_step = world.clock.time_step;
+    let Some(times) = simulation.step_times() else {
+        return;
+    };
     let end = simulation.past().end;
     let shown = simulation.step();
     let enabled = end.step > 0 && allows(simulation.status(), &Command::Seek(0));
-    let mut time = shown.min(end.step) as f64 * time_step;
+    let mut time = times.time_at(shown.min(end.step));
     ui.spacing_mut().slider_width = (ui.available_width() - room_for_place(ui, end.time)).max(80.0);
     let slider = egui::Slider::new(&mut time, 0.0..=end.time.max(time_step)).show_value(false);
     let response = ui.add_enabled(enabled, slider);
     let value = (time * 1e6).round() / 1e6;
     response.widget_info(|| WidgetInfo::slider(enabled, value, "Moment shown"));
     if response.changed() {
-        let step = ((time / time_step).round() as u64).min(end.step);
+        let step = times.step_at(time).min(end.step);
         if step != shown {
             out.push(Request::Command(Command::Seek(step)));
         }
@@ -158,10 +161,10 @@ fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) 
             .on_hover_text("The newest state of the run is shown");
         return;
     }
-    let Some(world) = simulation.world() else {
+    let Some(times) = simulation.step_times() else {
         return;
     };
-    let time = simulation.step() as f64 * world.clock.time_step;
+    let time = times.time_at(simulation.step());
     let palette = Palette::of(ui.visuals());
     let text = place_in_words(time, end.time);
     ui.label(RichText::new(text).color(palette.warning))

@@ -151,7 +151,7 @@ fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<Cha
 
 /// `friction glass – glass 0.4 → 0.2`; from the scene's value where it had not been changed before.
 fn in_words(parameter: &Parameter, from: Option<f64>, to: f64, simulation: &RunView) -> String {
-    let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
+    let info = simulation.info_of(parameter);
     let from = from.or(info.map(|info| info.default));
     let from = from.map_or(String::new(), |from| bare_value(parameter, from));
     let to = value_in_words(parameter, to);

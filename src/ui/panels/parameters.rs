@@ -53,7 +53,8 @@ impl Group {
     fn of(parameter: &Parameter, scene: &Scene) -> Self {
         match parameter {
             Parameter::DrumSpeed => Self::Drum,
-            Parameter::Gravity => Self::Gravity,
+            // The step has no row here: it is no physics.
+            Parameter::Gravity | Parameter::TimeStep => Self::Gravity,
             Parameter::Share(_) => Self::Mixture,
             Parameter::Viscosity
             | Parameter::SurfaceTension

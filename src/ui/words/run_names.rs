@@ -7,8 +7,8 @@ use crate::ui::words::number;
 
 /// What people call `parameter`.
 pub fn parameter_name(parameter: &Parameter, simulation: &RunView) -> String {
-    let info = (simulation.parameters().iter()).find(|info| info.parameter == *parameter);
-    info.map_or_else(|| parameter.to_string(), |info| info.label.clone())
+    let info = simulation.info_of(parameter);
+    info.map_or_else(|| parameter.to_string(), |info| info.label)
 }
 
 /// A value of `parameter` with the unit that people think in.

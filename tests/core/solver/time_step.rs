@@ -1,8 +1,9 @@
 //! The advised time step: its limits, the reasons, the warning.
 
 use super::*;
-use grainfall::scene::TimeStep;
-use grainfall::solver::advise;
+use grainfall::scene::{TimeStep, built_in};
+use grainfall::solver::{Extremes, advise};
+use grainfall::world::build_packed;
 
 #[test]
 fn paper_drums_step_at_a_fifth_of_their_rayleigh_time() {
@@ -89,4 +90,97 @@ fn smallest_and_stiffest_grain_limits_the_step() {
     assert_relative("step", advise(&scene).time_step, 0.25 * alone, 1e-12);
     scene.time_step = TimeStep::Given(alone);
     assert!(advise(&scene).warning.is_some());
+}
+
+/// The steps [s] with which every scene that comes with the program has run so far.
+const BUILT_IN_STEPS: [(&str, f64); 18] = [
+    ("dry-r3", 2.027_968_459_384_669_3e-5),
+    ("dry-r2", 1.351_978_972_923_112_7e-5),
+    ("dry-r1.25", 8.449_868_580_769_456e-6),
+    ("wet", 2.027_968_459_384_669_3e-5),
+    ("column", 1.101_492_479_323_962e-6),
+    ("column-7-3", 1.101_492_479_323_962e-6),
+    ("column-1-1", 1.101_492_479_323_962e-6),
+    ("small-drum", 2.027_968_459_384_669_3e-5),
+    ("two-frictions-drum", 2.027_968_459_384_669_3e-5),
+    ("water-drum", 2.027_968_459_384_669_3e-5),
+    ("honey-drum", 2.027_968_459_384_669_3e-5),
+    ("two-sizes-drum", 1.013_984_229_692_334_6e-5),
+    ("two-sizes-wet-drum", 1.013_984_229_692_334_6e-5),
+    ("bouncing-grain", 2.027_968_459_384_669_3e-5),
+    ("small-column", 2.045_656_927_752_522e-5),
+    ("two-grains", 2.027_968_459_384_669_3e-5),
+    ("grain-chain", 2.027_968_459_384_669_3e-5),
+    ("slide-to-roll", 1.993_233_066_362_639e-5),
+];
+
+#[test]
+fn every_built_in_scene_and_its_world_have_the_step_they_always_had() {
+    let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
+    assert_eq!(names, BUILT_IN_STEPS.map(|(name, _)| name));
+    for (name, expected) in BUILT_IN_STEPS {
+        let scene = Scene::open(name).unwrap();
+        let planned = advise(&scene);
+        assert_eq!(planned.time_step.to_bits(), expected.to_bits(), "{name}");
+        // A world without its Voronoi cells has all that the limits depend on.
+        let world = build_packed(&scene, planned.time_step, Vec::new());
+        assert_eq!(Extremes::of(&scene).advise(&world), planned, "{name}");
+    }
+}
+
+/// The drum of the paper with its finest grains and one of its liquids.
+fn fine_wet_drum(liquid: &str) -> Scene {
+    let mut scene = Scene::open("wet").unwrap();
+    scene.set("radius", "1.25mm").unwrap();
+    scene.set("liquid", liquid).unwrap();
+    scene
+}
+
+#[test]
+fn liquid_poured_into_a_world_limits_the_step_as_one_that_was_there_from_the_start() {
+    let (water, glycerol) = (fine_wet_drum("1"), fine_wet_drum("7"));
+    let extremes = Extremes::of(&water);
+    let mut world = build(&water, advise(&water).time_step);
+    assert_eq!(extremes.advise(&world), advise(&water));
+    world.liquid = glycerol.liquid;
+    let (found, from_the_start) = (extremes.advise(&world), advise(&glycerol));
+    assert_eq!(found.limits, from_the_start.limits);
+    assert_eq!(
+        found.largest().to_bits(),
+        from_the_start.time_step.to_bits()
+    );
+    // 8.45 µs against 6.57 µs.
+    assert_relative("excess", found.excess().unwrap(), 0.2867, 1e-3);
+    let warning = found.warning.unwrap();
+    for part in ["8.450e-6", "6.567e-6", "lubrication by 29 %", "`time-step`"] {
+        assert!(warning.contains(part), "`{part}` in: {warning}");
+    }
+    world.clock.set_time_step(from_the_start.time_step);
+    assert_eq!(extremes.advise(&world), from_the_start);
+    // No bridges, no films that could limit anything.
+    world.set_liquid_volume(0.0);
+    assert_eq!(extremes.advise(&world).limits[0].name, "Rayleigh wave");
+}
+
+#[test]
+fn restitution_of_a_pair_limits_the_step_of_polyhedra_where_it_is_changed() {
+    let scene = Scene::open("small-column").unwrap();
+    let extremes = Extremes::of(&scene);
+    let planned = advise(&scene);
+    let mut world = build_packed(&scene, planned.time_step, Vec::new());
+    let find = |world: &World, name| world.materials.find(name).unwrap();
+    let (smooth, floor) = (find(&world, "smooth"), find(&world, "floor"));
+    world.materials.pair_mut(smooth, floor).restitution = 1.0;
+    assert_eq!(extremes.advise(&world), planned, "less damping is no limit");
+    world.materials.pair_mut(smooth, floor).restitution = 0.1;
+    let damped = extremes.advise(&world);
+    assert_eq!(damped.limits[0].name, "dashpots of a polyhedron");
+    let share = |e: f64| (e.ln().powi(2) / (std::f64::consts::PI.powi(2) + e.ln().powi(2))).sqrt();
+    let own = scene.materials[0].restitution;
+    let dashpots = planned
+        .limits
+        .iter()
+        .find(|limit| limit.name == damped.limits[0].name);
+    let expected = dashpots.unwrap().time_step * share(own) / share(0.1);
+    assert_relative("limit", damped.largest(), expected, 1e-12);
 }
