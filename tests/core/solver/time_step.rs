@@ -172,7 +172,7 @@ fn restitution_of_a_pair_limits_the_step_of_polyhedra_where_it_is_changed() {
     let (smooth, floor) = (find(&world, "smooth"), find(&world, "floor"));
     world.materials.pair_mut(smooth, floor).restitution = 1.0;
     assert_eq!(extremes.advise(&world), planned, "less damping is no limit");
-    world.materials.pair_mut(smooth, floor).restitution = 0.1;
+    world.materials.pair_mut(smooth, floor).restitution = 0.01;
     let damped = extremes.advise(&world);
     assert_eq!(damped.limits[0].name, "dashpots of a polyhedron");
     let share = |e: f64| (e.ln().powi(2) / (std::f64::consts::PI.powi(2) + e.ln().powi(2))).sqrt();
@@ -181,6 +181,6 @@ fn restitution_of_a_pair_limits_the_step_of_polyhedra_where_it_is_changed() {
         .limits
         .iter()
         .find(|limit| limit.name == damped.limits[0].name);
-    let expected = dashpots.unwrap().time_step * share(own) / share(0.1);
+    let expected = dashpots.unwrap().time_step * share(own) / share(0.01);
     assert_relative("limit", damped.largest(), expected, 1e-12);
 }
