@@ -6,8 +6,8 @@ use crate::timeline::{arrive, change, go_on, hash};
 use grainfall::headless::Verdict;
 use grainfall::scene::{LIQUID_CASES, LiquidCase, Scene, TimeStep};
 use grainfall::simulation::{
-    BedStore, Changed, Claim, Command, CommandError, DriverKind, Half, LabCommand, Options, Parameter, Run,
-    Script, ScriptedCommand, Session, Simulation, Status, StepTimes, Timeline,
+    BedStore, Changed, Claim, Command, CommandError, DriverKind, Half, Lab, LabCommand, Options,
+    Parameter, Run, Script, ScriptedCommand, Session, Status, StepTimes, Timeline,
 };
 use grainfall::solver::advise;
 use std::time::Duration;
@@ -256,7 +256,7 @@ fn two_runs_side_by_side_keep_one_step_and_one_time() {
         script: Vec::new(),
         memory: PLENTY,
     };
-    let mut pair = Simulation::open(drum(1, TimeStep::Following), options);
+    let mut pair = Lab::open(drum(1, TimeStep::Following), options);
     stand(&mut pair);
     let refused = pair.check_comparison(&Parameter::TimeStep, 1e-6);
     assert!(refused.unwrap_err().contains("same time step"));
@@ -274,7 +274,7 @@ fn two_runs_side_by_side_keep_one_step_and_one_time() {
         pair.send(command);
         stand(&mut pair);
     }
-    let clocks = |pair: &Simulation| Half::ALL.map(|half| pair.half(half).world().unwrap().clock);
+    let clocks = |pair: &Lab| Half::ALL.map(|half| pair.half(half).world().unwrap().clock);
     let [left, right] = clocks(&pair);
     assert_eq!((left, left.time_step), (right, water));
     for half in Half::ALL {
@@ -299,7 +299,7 @@ fn two_runs_side_by_side_keep_one_step_and_one_time() {
 }
 
 /// Lets a simulation come to a stand.
-fn stand(simulation: &mut Simulation) {
+fn stand(simulation: &mut Lab) {
     for _ in 0..10_000 {
         simulation.tick(Duration::from_millis(16));
         if simulation.has_answered() && *simulation.status() == Status::Paused {
