@@ -153,7 +153,11 @@ fn step_that_follows_its_limit_changes_with_it_and_is_recorded() {
     let commands = timeline.run().commands();
     assert_eq!(commands[2].command, set(Parameter::TimeStep, glycerol));
     assert_eq!((commands[2].step, commands.len()), (400, 3));
-    assert_eq!(timeline.past().changes, [0, 1], "both are one change");
+    assert_eq!(
+        timeline.record().history.changes(),
+        [0, 1],
+        "both are one change"
+    );
     go_on(&mut timeline, 700);
     change(&mut timeline, set(Parameter::Viscosity, 1.01e-3));
     assert_eq!(step_of(&timeline), water, "and back");
