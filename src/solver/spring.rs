@@ -34,8 +34,13 @@ pub fn stretch<N: Lanes>(
     let stretched = minus(stretched, times(normal, dot(stretched, normal)));
     let trial = stiffness * dot(stretched, stretched).sqrt();
     let slides = trial.exceeds(bound);
-    let kept = N::choose(touching, N::choose(slides, bound / trial, one), zero);
-    let spring = times(stretched, kept);
+    let [x, y, z] = times(stretched, N::choose(slides, bound / trial, one));
+    // Chosen, not multiplied: a zero's sign would tell where the spring has been.
+    let spring = [
+        N::choose(touching, x, zero),
+        N::choose(touching, y, zero),
+        N::choose(touching, z, zero),
+    ];
     // What the mean of the old and the new spring's pull does along the slip, less the change of what they store.
     let new_work = stiffness * dot(spring, minus(slipped, spring));
     Springs {

@@ -513,6 +513,32 @@ pub(super) fn move_walls(walls: &mut [WallBody], dt: f64) {
 }
 
 impl WallBody {
+    /// How far the surface is from where it was [m]; without bound where it is another surface.
+    pub fn moved_from(&self, old: &Surface) -> f64 {
+        match (self.surface, *old) {
+            (
+                Surface::Plane { point, normal },
+                Surface::Plane {
+                    point: before,
+                    normal: same,
+                },
+            ) if normal == same => (point - before).dot(normal).abs(),
+            (
+                Surface::Tube { radius, rim },
+                Surface::Tube {
+                    radius: same,
+                    rim: before,
+                },
+            ) if radius == same => (rim - before).abs(),
+            (Surface::Cylinder { radius }, Surface::Cylinder { radius: same })
+                if radius == same =>
+            {
+                0.0
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Speed at which the surface moves along its normal [m/s].
     pub fn speed(&self) -> f64 {
         match self.surface {

@@ -12,6 +12,7 @@ mod pair_forces;
 mod polyhedra;
 mod published;
 mod random_scenes;
+mod resume;
 mod rolling;
 mod terms;
 mod time_step;

@@ -67,6 +67,8 @@ pub struct Shapes {
     pub loop_starts: Vec<u32>,
     /// Vertices of the faces, by their numbers in the body.
     pub loops: Vec<u16>,
+    /// How far a vertex of each body is from the plane of one of its faces, at most [m].
+    pub uneven: Vec<f64>,
 }
 
 impl Shapes {
@@ -110,12 +112,19 @@ impl Shapes {
         self.body_vertices
             .extend(shape.vertices.iter().map(DVec3::to_array));
         self.edges.extend_from_slice(&shape.edges);
+        let mut uneven: f64 = 0.0;
         for face in &shape.faces {
             self.loop_starts.push(self.loops.len() as u32);
             self.loops.extend_from_slice(face);
             let first = face.first().copied().unwrap_or(0);
-            self.body_normals.push((outward_normal(shape, face), first));
+            let normal = outward_normal(shape, face);
+            self.body_normals.push((normal, first));
+            for corner in face {
+                let [corner, first] = [*corner, first].map(|k| shape.vertices[usize::from(k)]);
+                uneven = uneven.max((corner - first).dot(normal).abs());
+            }
         }
+        self.uneven.push(uneven);
         if shape.vertices.len() == 1 {
             // Two spheres meet as two edges of no length.
             self.edges.push([0; 2]);

@@ -113,10 +113,25 @@ pub struct Wanted {
     pub bodies: [usize; 2],
     /// The direction that parted them best last time, or about that; zero at the first time.
     pub axis: [f64; 3],
+    /// Distance of the farthest point of the first from its centroid [m].
+    pub reach: f64,
     /// Distance of cores at which they touch [m].
     pub touch: f64,
     /// How far the list reaches beyond [m].
     pub skin: f64,
+}
+
+impl Wanted {
+    /// Distance of cores within which features are listed [m].
+    fn cutoff(&self) -> f64 {
+        self.touch + self.skin
+    }
+
+    /// How far the foot of a vertex near a face may move along that face while distances change by the skin [m]: a
+    /// body that turns moves what is beyond its surface by more than any point of its own.
+    fn leeway(&self) -> f64 {
+        self.skin * (1.0 + (self.cutoff() + self.skin) / self.reach)
+    }
 }
 
 /// What a search found.
@@ -195,7 +210,7 @@ impl Search {
             slack: wanted.skin,
             axis: axis.direction,
         };
-        let cutoff = wanted.touch + wanted.skin;
+        let cutoff = wanted.cutoff();
         if axis.gap() > cutoff {
             found.slack = axis.gap() - wanted.touch;
             return found;
@@ -215,7 +230,7 @@ impl Search {
                 found.axis = [nx, ny, nz];
             }
         }
-        self.keep_near(&geometry.places, cutoff, wanted.skin, list);
+        self.keep_near(&geometry.places, wanted, list);
         if list.is_empty() {
             // The nearest features tell a better direction, which may part the two by more.
             let gap = Axis::between(vertices, found.axis).gap();
@@ -295,35 +310,54 @@ impl Search {
         self.jobs.extend_sorted(shapes, &starts, candidates, 0);
     }
 
-    /// Keeps the candidates nearer than `cutoff`, each with what matters while the bodies move by `skin`.
-    fn keep_near(&self, places: &Places<'_>, cutoff: f64, skin: f64, list: &mut Vec<Listed>) {
+    /// Keeps the candidates nearer than the cutoff, each with what matters while the bodies move by the skin. A vertex
+    /// behind a face is near nothing, but it may come round an edge of it.
+    fn keep_near(&self, places: &Places<'_>, wanted: &Wanted, list: &mut Vec<Listed>) {
+        let (cutoff, leeway) = (wanted.cutoff(), wanted.leeway());
         for (number, (listed, result)) in self.candidates.iter().zip(&self.results).enumerate() {
-            if result.normal[3] >= cutoff {
-                continue;
-            }
+            let distance = result.normal[3];
             // Vertices and faces come before edges: their numbers are those of the outlines.
-            list.push(match self.jobs.outlines.get(number) {
-                Some(job) if result.middle[3] <= skin => {
-                    Listed::face(listed.feature, sides_near(places, job, skin))
+            let Some(job) = self.jobs.outlines.get(number) else {
+                if distance < cutoff {
+                    list.push(*listed);
                 }
-                Some(_) => Listed::face(listed.feature, 0),
-                None => *listed,
-            });
+                continue;
+            };
+            let near_outline = result.middle[3] <= leeway;
+            if distance < cutoff && !near_outline {
+                list.push(Listed::face(listed.feature, 0));
+            } else if near_outline && (distance < cutoff || distance == f64::INFINITY) {
+                let sides = Sides::near(places, job, wanted.skin, leeway);
+                if distance < cutoff || sides.nearest < cutoff {
+                    list.push(Listed::face(listed.feature, sides.marks));
+                }
+            }
         }
     }
 }
 
-/// Which edges of a face matter to a vertex while the bodies move by `skin`, bit by bit.
-fn sides_near(places: &Places<'_>, job: &OutlineJob, skin: f64) -> u32 {
-    let ends = |side: u32| job.ends(places.corners, side);
-    let beside = || (0..job.count).map(|side| along_side(places, &job.face, ends(side)));
-    let nearest = beside().fold(f64::INFINITY, |least, (_, distance)| least.min(distance));
-    // Every distance changes by the skin at most.
-    let matters =
-        |(margin, distance): (f64, f64)| margin <= 1.01 * skin || distance <= nearest + 2.02 * skin;
-    // Where there are more edges than bits, all matter.
-    let marked = (0..).zip(beside()).filter(|(_, place)| matters(*place));
-    marked.fold(0, |marks, (side, _)| marks | 1 << (side % u32::BITS))
+/// The edges of a face as a vertex sees them.
+struct Sides {
+    /// Those that matter, bit by bit.
+    marks: u32,
+    /// Distance of the nearest [m].
+    nearest: f64,
+}
+
+impl Sides {
+    /// Which edges of a face matter to a vertex while distances change by `skin` and its foot moves by `leeway` [m].
+    fn near(places: &Places<'_>, job: &OutlineJob, skin: f64, leeway: f64) -> Self {
+        let ends = |side: u32| job.ends(places.corners, side);
+        let beside = || (0..job.count).map(|side| along_side(places, &job.face, ends(side)));
+        let nearest = beside().fold(f64::INFINITY, |least, (_, distance)| least.min(distance));
+        let matters = |(margin, distance): (f64, f64)| {
+            margin <= 1.01 * leeway || distance <= nearest + 2.02 * skin
+        };
+        // Where there are more edges than bits, all matter.
+        let marked = (0..).zip(beside()).filter(|(_, place)| matters(*place));
+        let marks = marked.fold(0, |marks, (side, _)| marks | 1 << (side % u32::BITS));
+        Self { marks, nearest }
+    }
 }
 
 /// How far inside a `side` of a face the foot of a vertex lies, and how far the vertex is from that edge [m].
@@ -407,13 +441,14 @@ impl Jobs {
     }
 }
 
-/// Those of `near` that are nearer than `cutoff` by `results` [m]; returns the distance of the nearest of the others [m].
+/// Those of `near` that are nearer than `cutoff` by `results` [m], and vertices behind faces, which may come round an
+/// edge at any time; returns the distance of the nearest of the others [m].
 pub fn choose(near: &[Listed], results: &[Nearest], cutoff: f64, chosen: &mut Vec<Listed>) -> f64 {
     chosen.clear();
     let mut nearest = f64::INFINITY;
     for (listed, result) in near.iter().zip(results) {
         let distance = result.normal[3];
-        if distance < cutoff {
+        if distance < cutoff || distance == f64::INFINITY {
             chosen.push(*listed);
         } else {
             nearest = nearest.min(distance);

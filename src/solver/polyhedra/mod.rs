@@ -32,11 +32,15 @@ use super::state::move_walls;
 use super::team::{Barrier, Shared, Team, share};
 use super::{Fault, FaultKind, Profile, Stage, Stretch};
 use crate::physics::{ContactLaw, FeatureRule};
-use crate::world::{Contact, FeatureContact, Materials, Partner, Polyhedron, SpeciesId, World};
+use crate::world::{
+    Contact, FeatureContact, Materials, Partner, Polyhedron, SpeciesId, Surface, World,
+};
 use bodies::{Body, Geometry, Load, Placing, Shapes};
 use listing::Listed;
 use nearest::Places;
-use pairs::{Action, Active, BLOCK, DEEPEST, Desk, Forces, Pair, Spot, Surroundings, Terms};
+use pairs::{
+    Action, Active, BLOCK, DEEPEST, Desk, Extents, Forces, Pair, Spot, Surroundings, Terms,
+};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -61,7 +65,10 @@ pub struct State {
     sides: Sides,
     /// Where the bodies were when the pairs were found.
     reference: Vec<Row>,
+    /// Where the walls were then.
+    reference_surfaces: Vec<Surface>,
     near_skin: f64,
+    extents: Extents,
     known: Known,
     known_shapes: Option<Arc<[Polyhedron]>>,
     desks: Vec<Mutex<Desk>>,
@@ -171,6 +178,8 @@ impl State {
             ContactLaw::Hooke { features, .. } => features,
             ContactLaw::HertzMindlin => FeatureRule::Full,
         };
+        let surfaces = || world.container.walls.iter().map(|wall| wall.surface);
+        let same_walls = surfaces().eq(self.walls.iter().map(|wall| wall.surface));
         self.walls.clear();
         self.walls
             .extend(world.container.walls.iter().map(|wall| WallBody {
@@ -178,7 +187,7 @@ impl State {
                 motion: wall.motion,
             }));
         let bodies: Vec<Body> = (0..count).map(|i| Body::of(world, i, self.dt)).collect();
-        let unmoved = bodies == self.bodies && self.holds(world);
+        let unmoved = same_walls && bodies == self.bodies && self.holds(world);
         self.bodies = bodies;
         self.loads.clear();
         self.loads.extend((0..count).map(|i| Load {
@@ -297,19 +306,44 @@ impl State {
         self.reference.clear();
         self.reference
             .extend(self.bodies.iter().map(|body| body.position));
+        self.reference_surfaces.clear();
+        self.reference_surfaces
+            .extend(self.walls.iter().map(|wall| wall.surface));
         self.set_geometry_constants();
         self.known = Known::default();
         self.compute_constants(world);
     }
 
+    /// Sizes of the bodies and of where they and the walls are.
+    fn extents(&self) -> Extents {
+        let largest = |v: glam::DVec3| v.abs().max_element();
+        let bodies = self.bodies.iter().map(|body| largest(body.centre()));
+        let walls = self.walls.iter().map(|wall| match wall.surface {
+            Surface::Plane { point, .. } => largest(point),
+            Surface::Cylinder { radius } => radius,
+            Surface::Tube { radius, rim } => radius.max(rim.abs()),
+        });
+        let reach = self.bodies.iter().map(|body| body.spin[3]);
+        Extents::new(
+            bodies.chain(walls).fold(0.0, f64::max),
+            reach.fold(0.0, f64::max),
+            self.near_skin,
+        )
+    }
+
     fn set_geometry_constants(&mut self) {
+        let extents = self.extents();
         for (pair, terms) in self.pairs.list.iter().zip(&mut self.pairs.terms) {
-            let own = self.bodies[pair.first as usize].rounding();
+            let first = &self.bodies[pair.first as usize];
             let other = self.bodies.get(pair.second as usize);
-            let other = other.map_or(0.0, Body::rounding);
+            let (own, other) = (first.rounding(), other.map_or(0.0, Body::rounding));
             terms.touch = own + other;
             terms.offset = 0.5 * (own - other);
+            let uneven = |body: u32| self.shapes.uneven.get(body as usize).unwrap_or(&0.0);
+            let uneven = uneven(pair.first) + uneven(pair.second);
+            terms.margin = extents.margin(first.spin[3], terms.touch, uneven);
         }
+        self.extents = extents;
     }
 
     /// Computes what the law needs of every pair, if anything it depends on has changed.
@@ -450,18 +484,37 @@ impl State {
             body.drift(self.dt);
         }
         self.place_all(processor);
-        let slack = 0.5 * self.near_skin;
+        let slack = self.slack();
         let moved = self.bodies.iter().zip(&self.reference);
         moved
             .map(|(body, old)| length_squared(sub(body.position, *old)))
             .any(|square| square > slack * slack)
+            || self.walls_moved() > slack
+    }
+
+    /// How far a body or a wall may move until the pairs must be found anew [m]: less than half of the skin, by more than
+    /// rounding.
+    fn slack(&self) -> f64 {
+        0.499 * self.near_skin
+    }
+
+    /// How far any wall is from where it was when the pairs were found; without bound where it is another [m].
+    fn walls_moved(&self) -> f64 {
+        let old = &self.reference_surfaces;
+        if old.len() != self.walls.len() {
+            return f64::INFINITY;
+        }
+        let moved = self.walls.iter().zip(old);
+        moved
+            .map(|(wall, old)| wall.moved_from(old))
+            .fold(0.0, f64::max)
     }
 
     /// Steps after which a wall may have used up its half of the near skin.
     fn steps_within_slack(&self) -> u64 {
         let speed = self.walls.iter().map(WallBody::speed).fold(0.0, f64::max);
         if speed > 0.0 {
-            (0.5 * self.near_skin / (speed * self.dt)).max(1.0) as u64
+            ((self.slack() - self.walls_moved()) / (speed * self.dt)).max(1.0) as u64
         } else {
             u64::MAX
         }
@@ -536,7 +589,7 @@ impl State {
 
     /// Lends the state to a team of `size`.
     fn phase(&mut self, size: usize) -> Phase<'_> {
-        let shares = shares(&self.pairs.spots, size);
+        let (shares, slack) = (shares(&self.pairs.spots, size), self.slack());
         Phase {
             shares,
             pair_count: self.pairs.list.len(),
@@ -554,10 +607,11 @@ impl State {
             reference: &self.reference,
             walls: &self.walls,
             desks: &self.desks,
-            slack_squared: (0.5 * self.near_skin).powi(2),
+            slack_squared: slack * slack,
             dt: self.dt,
             gravity: self.gravity,
             rule: self.rule,
+            extents: self.extents,
         }
     }
 
@@ -654,6 +708,7 @@ struct Phase<'a> {
     dt: f64,
     gravity: Row,
     rule: FeatureRule,
+    extents: Extents,
 }
 
 /// What a range of bodies asks for after a step.
@@ -726,6 +781,7 @@ impl Phase<'_> {
                 },
                 walls,
                 wall_motions: &wall_motions,
+                extents: self.extents,
             },
             pairs,
             terms,

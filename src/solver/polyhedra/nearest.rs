@@ -150,7 +150,7 @@ pub fn group<N: Lanes, T>(items: &[T]) -> [&T; WIDEST] {
 }
 
 /// Sines squared below which two edges count as parallel: the middle of their overlap is taken then.
-const PARALLEL: f64 = 1e-10;
+pub const PARALLEL: f64 = 1e-10;
 
 #[inline(always)]
 fn clamp<N: Lanes>(x: N, zero: N, one: N) -> N {

@@ -19,7 +19,7 @@ use super::super::row::{length_squared, row, sub, vector};
 use super::super::spring::{UNLOADED, stretch};
 use super::bodies::{Body, Geometry};
 use super::listing::{Listed, Search, Wanted, choose};
-use super::nearest::{Jobs, Nearest, group};
+use super::nearest::{Jobs, Nearest, PARALLEL, group};
 use crate::physics::FeatureRule;
 use crate::world::{Feature, Surface};
 use std::ops::Range;
@@ -32,8 +32,8 @@ const SKIN: std::ops::RangeInclusive<f64> = 0.01..=0.5;
 const ACTIVE_LIFE: f64 = 10.0;
 /// Smallest skin of active features relative to the distance at which the two touch.
 const ACTIVE_SKIN: f64 = 1e-4;
-/// Bodies are taken to move by so much more than their velocities say.
-const CAUTION: f64 = 1.05;
+/// What the speed of two bodies makes in a step is taken this much larger: more than its rounding.
+const CAUTION: f64 = 1.01;
 /// Two cores that come nearer than the rest of this share of the touching distance could pass through each other.
 pub const DEEPEST: f64 = 0.8;
 /// Pairs that are worked on in one go, whose active features lie together: enough to fill the lanes, few enough to stay in
@@ -55,7 +55,8 @@ pub struct Pair {
     pub slack: f64,
     /// How far they may still move before anything else than what is active can touch [m].
     pub active_slack: f64,
-    /// How far they may still move before anything active can touch; none where something does [m].
+    /// How far they may still move before anything active can touch; none where something does [m]. A pair is left
+    /// out while it is positive: all of it is a bound, so that what is left out would have added nothing, to the bit.
     pub quiet: f64,
     /// Where the active features are among the spots of the block.
     pub active: Active,
@@ -103,6 +104,9 @@ pub struct Terms {
     pub offset: f64,
     /// About the direction that parted the two best when they were last listed; zero when never.
     pub axis: [f32; 3],
+    /// By how much a computed distance of two of their features may jump though they hardly move [m]: what is
+    /// left of any slack is smaller by this.
+    pub margin: f32,
 }
 
 /// What an active feature of a pair remembers: a cache line.
@@ -161,6 +165,45 @@ pub struct Surroundings<'a> {
     pub walls: &'a [WallBody],
     /// The origin, and the velocity and the spin of every wall.
     pub wall_motions: &'a [[Row; 3]],
+    /// Sizes that bound how far two bodies move in a step.
+    pub extents: Extents,
+}
+
+/// Sizes that bound how far two bodies move relative to each other in a step, to the last bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extents {
+    /// Distance of any point of a body from the centroid of another that is near it, at most [m].
+    pub between_grains: f64,
+    /// Distance of any point of a body from the origin, about which walls move, at most [m].
+    pub to_origin: f64,
+    /// What rounding adds to the relative motion of two bodies in a step, at most [m].
+    pub rounding: f64,
+}
+
+/// Roundings that a coordinate meets in a step and in the computation of a distance, generously counted, each of
+/// half the distance of two neighbouring numbers of its size.
+const ROUNDINGS: f64 = 32.0;
+
+impl Extents {
+    /// For bodies whose coordinates and those of the walls' points are at most `coordinate`, and whose points are at
+    /// most `reach` from their centroids; pairs are nearer than their reaches and `skin` [m].
+    pub fn new(coordinate: f64, reach: f64, skin: f64) -> Self {
+        let to_origin = 2.0 * coordinate + reach + skin;
+        Self {
+            between_grains: 3.0 * reach + 2.0 * skin,
+            to_origin,
+            rounding: ROUNDINGS * f64::EPSILON * to_origin,
+        }
+    }
+
+    /// How much a computed distance of features of two bodies may jump, the first of which reaches to `reach`, that
+    /// touch at `touch` and whose faces are as `uneven` [m]. Edges change from crossing to parallel where their
+    /// sine is that of [`PARALLEL`]; a vertex leaves a face across an edge that is not quite in its plane.
+    pub fn margin(&self, reach: f64, touch: f64, uneven: f64) -> f32 {
+        let parallel = 2.0 * PARALLEL * reach * reach / touch;
+        let margin = 4.0 * (parallel + uneven + self.rounding);
+        margin as f32
+    }
 }
 
 /// How the bodies of a pair move relative to each other.
@@ -169,8 +212,8 @@ struct Relative {
     velocity: Row,
     /// Relative spin [rad/s].
     spin: Row,
-    /// A speed that no point of the first exceeds relative to the second [m/s].
-    pace: f64,
+    /// How far a point of the first has come in this step, seen from the second, at most [m].
+    moved: f64,
 }
 
 /// A pair on its way through a block.
@@ -338,17 +381,32 @@ impl Surroundings<'_> {
     }
 
     /// How the two move relative to each other.
+    ///
+    /// With velocities `v`, spins `ω` and centroids `x` at the end of the step, a point of the first at `y` from its
+    /// centroid has moved by `Δt (v₁ − v₂ − ω₂ × (x₁ − x₂) + (ω₁ − ω₂) × y)` seen from the second, but for terms of
+    /// second order: each body turns on a circle (`½ (ω Δt)²` of the distance from its centroid), its spin changes
+    /// by `ω² Δt` at most where its momentum stays, and `x₁ − x₂` changes during the step. Together they are less
+    /// than `3 Δt² (ω₁² + ω₂²) a + Δt² v²/a`, `a` being no smaller than any of these distances.
     #[inline(always)]
     fn relative(&self, pair: &Pair) -> Relative {
         let first = &self.bodies[pair.first as usize];
-        let [position, velocity, spin] = self.motion(pair.second);
-        let turning = crossed(*spin, sub(first.position, *position));
+        let [position, velocity, other_spin] = self.motion(pair.second);
+        let turning = crossed(*other_spin, sub(first.position, *position));
         let velocity = sub(sub(first.velocity, *velocity), turning);
-        let (reach, spin) = (first.spin[3], sub(first.spin, *spin));
+        let (reach, spin) = (first.spin[3], sub(first.spin, *other_spin));
+        let arm = if (pair.second as usize) < self.bodies.len() {
+            self.extents.between_grains
+        } else {
+            self.extents.to_origin
+        };
+        let speed_squared = length_squared(velocity);
+        let spins_squared = length_squared(first.spin) + length_squared(*other_spin);
+        let pace = speed_squared.sqrt() + length_squared(spin).sqrt() * reach;
+        let bend = 3.0 * spins_squared * arm + speed_squared / arm;
         Relative {
             velocity,
             spin,
-            pace: length_squared(velocity).sqrt() + length_squared(spin).sqrt() * reach,
+            moved: self.dt * (CAUTION * pace + self.dt * bend) + self.extents.rounding,
         }
     }
 }
@@ -389,7 +447,7 @@ impl Desk {
             }
             let pair = &mut block.pairs[index];
             let relative = all.relative(pair);
-            let moved = CAUTION * all.dt * relative.pace;
+            let moved = relative.moved;
             pair.slack -= moved;
             pair.active_slack -= moved;
             pair.quiet -= moved;
@@ -431,13 +489,14 @@ impl Desk {
         terms: &mut Terms,
     ) {
         let skin = (LIFE * moved).clamp(SKIN.start() * terms.touch, SKIN.end() * terms.touch);
-        pair.slack = if let Some(wall) = all.wall(pair) {
+        let slack = if let Some(wall) = all.wall(pair) {
             let (first, reach) = (pair.first as usize, [terms.touch, skin]);
             list_at_wall(all, &wall.surface, first, reach, &mut self.found)
         } else {
             let wanted = Wanted {
                 bodies: [pair.first as usize, pair.second as usize],
                 axis: terms.axis.map(f64::from),
+                reach: all.bodies[pair.first as usize].spin[3],
                 touch: terms.touch,
                 skin,
             };
@@ -447,6 +506,7 @@ impl Desk {
             terms.axis = found.axis.map(|x| x as f32);
             found.slack
         };
+        pair.slack = slack - f64::from(terms.margin);
         pair.near = self.found.as_slice().into();
         pair.active_slack = -1.0;
     }
@@ -521,7 +581,7 @@ impl Desk {
         let skin = (ACTIVE_LIFE * moved).max(ACTIVE_SKIN * terms.touch);
         let results = &self.results[span.results as usize..];
         let nearest = choose(&pair.near, results, terms.touch + skin, &mut self.found);
-        pair.active_slack = nearest - terms.touch;
+        pair.active_slack = nearest - terms.touch - f64::from(terms.margin);
         let old = &block.spots[pair.active.spots()];
         self.known.clear();
         self.known.extend_from_slice(old);
@@ -592,14 +652,20 @@ impl Desk {
             let (span, results) = (&mut self.spans[number], &mut self.results[range]);
             let own = span.pair as usize;
             let (pair, terms) = (&mut block.pairs[own], &block.terms[own]);
-            let mut deepest = f64::NEG_INFINITY;
+            let (mut deepest, mut hidden) = (f64::NEG_INFINITY, false);
             for result in results.iter_mut() {
                 let overlap = terms.touch - result.normal[3];
                 result.middle[3] = overlap;
                 deepest = if overlap > deepest { overlap } else { deepest };
+                hidden |= overlap == f64::NEG_INFINITY;
             }
             span.touches = deepest > 0.0;
-            pair.quiet = if span.touches { 0.0 } else { -deepest };
+            // A vertex behind a face may come round its edge at any time.
+            pair.quiet = if span.touches || hidden {
+                0.0
+            } else {
+                -deepest - f64::from(terms.margin)
+            };
             fault |= deepest > DEEPEST * terms.touch && !all.has_sides(pair);
             if all.rule == FeatureRule::Shared {
                 let spots = &block.spots[pair.active.spots()];
