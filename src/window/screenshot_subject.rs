@@ -176,10 +176,7 @@ impl SinglePicture {
             return false;
         }
         let is_there = |run: &RunView| run.world().is_some_and(|w| w.clock.step >= step);
-        let halves = Half::ALL.into_iter();
-        let are_there = halves
-            .map(|half| is_there(simulation.half(half)))
-            .all(|there| there);
+        let are_there = (Half::ALL.into_iter()).all(|half| is_there(simulation.half(half)));
         if are_there {
             // How fast it came here, on the way to a picture, is nothing to show.
             simulation.send(Command::Pause);
