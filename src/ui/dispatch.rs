@@ -83,27 +83,17 @@ fn fulfil(
             compare(simulation, parameter, value, dock, &mut opener.view);
         }
         (Request::SetIn(half, parameter, value), Some(simulation)) => {
-            simulation.send(LabCommand::SetIn {
-                half,
-                parameter,
-                value,
-            });
+            set_in(simulation, half, parameter, value);
         }
         (Request::EndComparison(half), Some(simulation)) => {
             end_comparison(simulation, half, dock, &mut opener.view);
         }
-        (Request::SaveSession(path), Some(simulation)) => {
-            simulation.send(LabCommand::Save(path));
-        }
-        (Request::SaveChanges(path), Some(simulation)) => {
-            let saved = save_changes(simulation, &path);
-            dock.notify(said("The list of changes", &path, saved));
+        (Request::SaveSession(path), Some(run)) => run.send(LabCommand::Save(path)),
+        (Request::SaveChanges(path), Some(run)) => {
+            dock.notify(said("The list of changes", &path, save_changes(run, &path)));
         }
         (Request::Save, simulation) => save(simulation, dock),
-        (Request::Start(scene), simulation) => {
-            opener.start_again(*scene, simulation.as_deref());
-            dock.scene_changed();
-        }
+        (Request::Start(scene), run) => opener.start_again(*scene, run.as_deref(), dock),
         (Request::Trail, _) => opener.trace_selected(),
         (Request::NoTrails, _) => opener.view.traced.clear(),
         (Request::Camera(request), _) => opener.view.camera_request = Some(request),
@@ -134,6 +124,15 @@ fn fulfil(
         )
         | (Request::SaveThen(_) | Request::Leave(_), _) => {}
     }
+}
+
+/// Sets a value in one of two runs side by side.
+fn set_in(simulation: &mut Simulation, half: Half, parameter: Parameter, value: f64) {
+    simulation.send(LabCommand::SetIn {
+        half,
+        parameter,
+        value,
+    });
 }
 
 /// Saves the session to the file it has, or lets the person choose one.
@@ -285,11 +284,12 @@ impl Opener<'_, '_> {
 
     /// Starts a run of `scene`, which came of that of the present `simulation`, with what was
     /// changed there.
-    fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>) {
+    fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>, dock: &mut Dock) {
         let script = simulation.map_or_else(Vec::new, present);
         let original = simulation.map(|simulation| simulation.original().clone());
         let speed = simulation.map_or(1.0, |simulation| simulation.speed());
         self.start(scene, script, original, speed);
+        dock.scene_changed();
     }
 
     /// Starts a run of `scene`, which came of the `original`, with `script`, at this `speed`.

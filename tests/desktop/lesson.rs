@@ -84,34 +84,37 @@ fn a_lesson_from_play_to_verify() {
     command(&mut app, Command::Return(0), |s| s.step() == newest + rest);
     assert_eq!(hash(&app), changed);
 
-    // Two side by side; a change of both is taken back in both.
+    side_by_side(&mut app, early);
+    saved_and_verified(&mut app);
+}
+
+/// Two side by side; a change of both is taken back in both.
+fn side_by_side(app: &mut App, early: u64) {
     let stands = |s: &Simulation| s.comparison().is_some();
     let compare = Request::StartComparison(Parameter::Gravity, 0.0);
-    ask(&mut app, compare, stands);
-    command(&mut app, Command::Step(early), |s| s.step() == early);
-    look(&mut app, "side by side");
+    ask(app, compare, stands);
+    command(app, Command::Step(early), |s| s.step() == early);
+    look(app, "side by side");
     let both = |app: &App| Half::ALL.map(|half| simulation(app).half(half).world().unwrap().hash());
-    let before = both(&app);
-    command(&mut app, at_gravity(20.0), |s| {
-        s.undo_and_redo()[0].is_some()
-    });
-    command(&mut app, Command::Step(early), |s| s.step() == 2 * early);
-    look(&mut app, "changed side by side");
-    command(&mut app, Command::Undo, |s| s.step() == early);
-    assert_eq!(both(&app), before);
-    ask(&mut app, Request::EndComparison(Half::Left), |s| {
+    let before = both(app);
+    command(app, at_gravity(20.0), |s| s.undo_and_redo()[0].is_some());
+    command(app, Command::Step(early), |s| s.step() == 2 * early);
+    look(app, "changed side by side");
+    command(app, Command::Undo, |s| s.step() == early);
+    assert_eq!(both(app), before);
+    ask(app, Request::EndComparison(Half::Left), |s| {
         s.comparison().is_none()
     });
-    look(&mut app, "alone again");
+    look(app, "alone again");
+}
 
-    // In a file, which is then computed from the beginning.
+/// In a file, which is then computed from the beginning.
+fn saved_and_verified(app: &mut App) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lesson.grainfall");
-    ask(&mut app, Request::SaveSession(path.clone()), |s| {
-        !s.is_saving()
-    });
+    ask(app, Request::SaveSession(path.clone()), |s| !s.is_saving());
     let claim = Claim::read(&path).unwrap();
-    assert_eq!(claim.state_hash, Some(hash(&app).to_string()));
+    assert_eq!(claim.state_hash, Some(hash(app).to_string()));
     let verdict = claim.verify(1, BedStore::none(), &|| false).unwrap();
     assert_eq!(verdict, Verdict::Same);
 }

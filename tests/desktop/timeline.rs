@@ -205,8 +205,9 @@ fn runs_that_were_left_can_be_taken_up_and_forgotten() {
     assert_eq!(asked(&mut harness), [Command::Forget(0)]);
 }
 
-#[test]
-fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
+/// Plots of a run of 20 s with an avalanche at 10 s and of one kept beside it, in a window 600 points
+/// wide that notes the moments that are clicked on [s].
+fn clickable_plots() -> Harness<'static, Vec<f64>> {
     let mut series = Series::default();
     for i in 0..=1000 {
         series.push(sample(f64::from(i) * 0.02, 0.4, 0.4));
@@ -231,26 +232,28 @@ fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
         ..Record::default()
     };
     let kept = [("Run 1".to_owned(), Arc::new(left))];
-    let (series, kept) = (&series, &kept);
     let mut plots = AvalanchePlots::default();
-    let mut harness = Harness::builder().with_size([600.0, 500.0]).build_ui_state(
+    Harness::builder().with_size([600.0, 500.0]).build_ui_state(
         move |ui, clicked: &mut Vec<f64>| {
             let curves = Curves {
-                series,
+                series: &series,
                 compared: None,
                 avalanches: std::slice::from_ref(&avalanche),
                 changes: &[],
-                kept,
+                kept: &kept,
                 shown: Some(4.0),
             };
             clicked.extend(plots.curves_ui(ui, &curves));
         },
         Vec::new(),
-    );
+    )
+}
+
+#[test]
+fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
+    let mut harness = clickable_plots();
     harness.run_steps(3);
     let title = harness.get_by_label("Surface angle θ [°]").rect();
-    // Between the labels of the axis on the left and the right edge lie 20 s.
-    let right = 600.0 - 8.0 - 14.0;
     let click = |harness: &mut Harness<'_, Vec<f64>>, x: f32| {
         let place = egui::pos2(x, title.bottom() + 50.0);
         harness.hover_at(place);
@@ -261,12 +264,11 @@ fn a_click_on_a_plot_means_a_moment_and_near_an_avalanche_its_start() {
         harness.run_steps(2);
         harness.state_mut().pop().expect("a moment was clicked on")
     };
-    let (early, late) = (
-        click(&mut harness, 0.35 * right),
-        click(&mut harness, 0.9 * right),
-    );
-    let per_point = (late - early) / f64::from(0.55 * right);
-    let at = |time: f64| (0.9 * right) - ((late - time) / per_point) as f32;
+    // Two clicks far apart tell the scale of the axis.
+    let (left, right) = (200.0_f32, 520.0);
+    let (early, late) = (click(&mut harness, left), click(&mut harness, right));
+    let per_point = (late - early) / f64::from(right - left);
+    let at = |time: f64| right - ((late - time) / per_point) as f32;
     assert_eq!(click(&mut harness, at(10.0) + 3.0), 10.0);
     let off = click(&mut harness, at(10.0) + 12.0);
     assert!((off - 10.0 - 12.0 * per_point).abs() < 1e-3, "{off}");
