@@ -1,6 +1,6 @@
 //! The liquid between the grains: films on them, bridges between them.
 
-use super::{Contact, World};
+use super::World;
 use crate::physics::Liquid;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -62,7 +62,6 @@ impl World {
     /// Forgets the pairs that only a bridge held together.
     fn drop_open_bridges(&mut self) {
         self.grains.open_bridges.fill(0);
-        let touching = |contact: &Contact| contact.touching;
-        self.contacts.retain(touching);
+        self.contacts.retain(|contact| contact.touching);
     }
 }

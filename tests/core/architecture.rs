@@ -13,14 +13,12 @@ use std::path::Path;
 
 /// Folders that still have circles among what stands in them.
 const CIRCLES_LEFT: &[&str] = &[
-    "src/headless",
     "src/measure",
     "src/run",
     "src/scene",
     "src/scene/file",
     "src/solver",
     "src/sweep",
-    "src/world",
 ];
 
 /// Columns by which code in braces is indented.
@@ -297,10 +295,10 @@ fn absolute(
 ) -> Option<ModulePath> {
     let mut base = module.to_vec();
     let mut rest = segments;
-    match rest.first()? {
-        &"crate" => base.clear(),
-        &"self" => {}
-        &"super" => {
+    match *rest.first()? {
+        "crate" => base.clear(),
+        "self" => {}
+        "super" => {
             while let Some((&"super", after)) = rest.split_first() {
                 base.pop();
                 rest = after;
@@ -308,7 +306,7 @@ fn absolute(
             base.extend(rest.iter().map(|&segment| segment.to_owned()));
             return Some(base);
         }
-        &first if modules.contains(&child(module, first)) => {
+        first if modules.contains(&child(module, first)) => {
             base.extend(rest.iter().map(|&segment| segment.to_owned()));
             return Some(base);
         }
@@ -445,7 +443,11 @@ fn read_sources(folder: &Path, below: &str, files: &mut Vec<(String, String)>) {
         let path = format!("{below}{name}");
         if entry.path().is_dir() {
             read_sources(&entry.path(), &format!("{path}/"), files);
-        } else if path.ends_with(".rs") {
+        } else if entry
+            .path()
+            .extension()
+            .is_some_and(|ending| ending == "rs")
+        {
             files.push((path, fs::read_to_string(entry.path()).unwrap()));
         }
     }

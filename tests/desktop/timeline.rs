@@ -355,7 +355,9 @@ fn fine_and_wet() -> Simulation {
     let mut scene = prepared().scene().clone();
     scene.liquid = Some(LIQUID_CASES[0].liquid());
     if let SceneGrains::List(grains) = &mut scene.grains {
-        grains.iter_mut().for_each(|grain| grain.radius = 1.25e-3);
+        for grain in grains {
+            grain.radius = 1.25e-3;
+        }
     }
     ready(Simulation::open(scene, standing()))
 }

@@ -6,7 +6,7 @@
 
 use crate::measure::{Measure, Sample};
 use crate::simulation::{Command, Half, Parameter, RunView, Simulation, Status};
-use crate::solver::Fault;
+use crate::solver::{Fault, TimeStepAdvice};
 use crate::ui::playback::allows;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
@@ -183,7 +183,7 @@ fn stable_step_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Requ
 pub fn stable_step(simulation: &Simulation) -> Option<Command> {
     let advices = Half::ALL.map(|half| simulation.half(half).advice());
     let exceeded = advices.iter().any(|advice| advice.excess().is_some());
-    let largest = advices.map(|advice| advice.largest());
+    let largest = advices.map(TimeStepAdvice::largest);
     exceeded.then_some(Command::Set {
         parameter: Parameter::TimeStep,
         value: largest.into_iter().fold(f64::INFINITY, f64::min),
