@@ -329,18 +329,25 @@ fn inline_paths(module: &[String], code: &str, modules: &BTreeSet<ModulePath>) -
     paths.collect()
 }
 
-/// The modules of the table in `src/lib.rs`, from the lowest up.
-fn rows_of_table(lib: &str) -> Vec<String> {
-    let rows = lib.lines().filter_map(|line| line.strip_prefix("//! | "));
-    let names = rows.flat_map(|row| {
-        let cell = row.split('|').next().unwrap_or_default();
+/// The modules in the rows of a table in a file's documentation, from the first row on.
+fn table(text: &str) -> Vec<Vec<String>> {
+    let rows = text.lines().filter_map(|line| line.strip_prefix("//! | "));
+    let cells = rows.map(|row| row.split('|').next().unwrap_or_default());
+    let names = cells.map(|cell| {
         cell.split('`')
             .skip(1)
             .step_by(2)
             .map(str::to_owned)
-            .collect::<Vec<_>>()
+            .collect()
     });
-    names.collect()
+    names
+        .filter(|names: &Vec<String>| !names.is_empty())
+        .collect()
+}
+
+/// The modules of the table in `src/lib.rs`, from the lowest up.
+fn rows_of_table(lib: &str) -> Vec<String> {
+    table(lib).concat()
 }
 
 /// A sentence for every arrow that runs against the table, and for every module that is in no row.
@@ -386,6 +393,39 @@ fn neighbours(tree: &Tree) -> BTreeMap<String, Neighbours> {
         names.entry(place(&to)).or_default().insert(name);
     }
     folders
+}
+
+/// What the documentation of a folder says where its table has an order.
+const HAS_ORDER: &str = "uses only rows below it";
+
+/// A sentence for every arrow in a folder that runs up in the table of its `mod.rs`, where that
+/// table has an order.
+fn against_own_tables(tree: &Tree, files: &[(String, String)]) -> Vec<String> {
+    let mut said = Vec::new();
+    let folders = neighbours(tree);
+    for (path, text) in files.iter().filter(|(_, text)| text.contains(HAS_ORDER)) {
+        let rows = table(text);
+        let row = |name: &String| rows.iter().position(|names| names.contains(name));
+        let folder = format!("src/{}", path.trim_end_matches("/mod.rs"));
+        for (from, arrows) in folders.get(&folder).into_iter().flatten() {
+            for (to, names) in arrows {
+                match (row(from), row(to)) {
+                    (Some(own), Some(other)) if other < own => {
+                        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                        let names = names.join(", ");
+                        said.push(format!(
+                            "In {folder} {from} uses {names} of {to}, a row above it."
+                        ));
+                    }
+                    (Some(_), Some(_)) => {}
+                    _ => said.push(format!(
+                        "In {folder} {from} or {to} is in no row of its table."
+                    )),
+                }
+            }
+        }
+    }
+    said
 }
 
 /// All that can be reached from `start`.
@@ -470,6 +510,18 @@ fn modules_name_only_modules_above_them_in_the_table() {
 }
 
 #[test]
+fn folders_keep_the_order_that_their_own_tables_state() {
+    let files = sources();
+    let ordered = files.iter().filter(|(_, text)| text.contains(HAS_ORDER));
+    assert!(
+        ordered.count() >= 2,
+        "the panels and the view have such tables"
+    );
+    let said = against_own_tables(&Tree::of(&files), &files);
+    assert!(said.is_empty(), "{}", said.join("\n"));
+}
+
+#[test]
 fn neighbours_never_name_each_other_in_a_circle() {
     let said = circles_in_words(&Tree::of(&sources()), CIRCLES_LEFT);
     assert!(said.is_empty(), "{}", said.join("\n"));
@@ -540,6 +592,26 @@ fn an_arrow_against_the_table_is_found_also_inside_a_path() {
     assert!(said[0].contains("`stray` is in no row"), "{said:?}");
     assert!(
         said[1].contains("`world` takes `draw` from `ui`"),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn an_arrow_up_in_the_table_of_a_folder_is_found() {
+    let face = "//! Each row of the table uses only rows below it.\n//! | `menu`, `dock` | top |\n//! | `words` | text |";
+    let files = [
+        ("lib.rs", "pub mod ui;"),
+        ("ui/mod.rs", face),
+        ("ui/dock.rs", "use super::words::short;\npub struct Dock;"),
+        ("ui/words.rs", "pub fn short(dock: super::dock::Dock) {}"),
+        ("ui/stray.rs", "use super::dock::Dock;"),
+    ];
+    let owned = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
+    let said = against_own_tables(&Tree::of(&owned), &owned);
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].contains("stray or dock is in no row"), "{said:?}");
+    assert!(
+        said[1].contains("words uses Dock of dock, a row above"),
         "{said:?}"
     );
 }
