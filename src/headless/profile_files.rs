@@ -1,5 +1,5 @@
-//! Profiles: `flow.csv`, that of the flowing layer over depth, averaged over the part of the run that results count, and
-//! `profile.csv`, that of a heap's height over the radius at the end.
+//! Profiles: `flow.csv`, that of the flowing layer over depth, averaged over the part of the run
+//! that results count, and `profile.csv`, that of a heap's height over the radius at the end.
 
 use crate::measure::{FlowProfile, HeightProfile};
 use std::io::{self, Write};
@@ -8,7 +8,8 @@ use std::io::{self, Write};
 pub const FLOW: &str = "flow.csv";
 pub const PROFILE: &str = "profile.csv";
 
-/// Writes `profile` to `file`: depth below the middle of the surface, velocity along it there, samples averaged.
+/// Writes `profile` to `file`: depth below the middle of the surface, velocity along it there,
+/// samples averaged.
 ///
 /// # Errors
 /// When the file cannot be written.

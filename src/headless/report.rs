@@ -3,13 +3,11 @@
 use super::Ending;
 use super::progress::spoken;
 use super::recorder::Recorder;
-use crate::measure::{Summary, SummaryEntry};
+use crate::measure::{ResultKey, Summary};
 use crate::simulation::Simulation;
 
-/// Results about the smallest drops beside the first stand in the file only.
-const FILE_ONLY: &str = "(≥";
-
-/// Prints how a run ended, its results and where its files are.
+/// Prints how a run ended, its results and where its files are. Results for several thresholds of
+/// the drop stand in the file only.
 pub fn report(simulation: &Simulation, recorder: &Recorder, ending: &Ending, results: &Summary) {
     let Some(world) = simulation.world() else {
         println!(
@@ -36,12 +34,9 @@ pub fn report(simulation: &Simulation, recorder: &Recorder, ending: &Ending, res
         "results from t = {:.2} s to {:.2} s:",
         results.from, results.to
     );
-    for entry in results
-        .entries
-        .iter()
-        .filter(|entry| !entry.name.contains(FILE_ONLY))
-    {
-        println!("  {:<32} {}", entry.name, value(entry));
+    let keys = results.entries.iter().map(|entry| entry.key);
+    for key in keys.filter(|key| !matches!(key, ResultKey::OfAvalanches(..))) {
+        println!("  {:<32} {}", key.name(), results.text(key));
     }
     println!("state {}", world.hash());
     println!("files in {}", recorder.folder().path().display());
@@ -52,15 +47,5 @@ fn ended(ending: &Ending) -> &'static str {
         Ending::Done => "done",
         Ending::Interrupted => "interrupted",
         Ending::Faulted(_) => "stopped by a fault",
-    }
-}
-
-fn value(entry: &SummaryEntry) -> String {
-    match (entry.value, entry.unit) {
-        (None, _) => "–".into(),
-        (Some(value), "1") => format!("{value:.4}"),
-        (Some(value), "rad") => format!("{value:.4} rad = {:.2}°", value.to_degrees()),
-        (Some(value), "rad/s") => format!("{value:.4} rad/s = {:.2} °/s", value.to_degrees()),
-        (Some(value), unit) => format!("{value:.4e} {unit}"),
     }
 }

@@ -1,4 +1,5 @@
-//! `series.csv`: one row per sample, one column per quantity that has a meaning in the scene, headed `name [unit]`, in SI units.
+//! `series.csv`: one row per sample, one column per quantity that has a meaning in the scene,
+//! headed `key [unit]`, in SI units.
 
 use crate::measure::{Measure, Series};
 use std::io::{self, Write};
@@ -12,10 +13,7 @@ pub const SERIES: &str = "series.csv";
 /// When the file cannot be written.
 pub fn write_series(series: &Series, measures: &[Measure], file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    let head = |measure: &Measure| {
-        let quantity = measure.quantity();
-        format!("{} [{}]", quantity.name, quantity.unit)
-    };
+    let head = |measure: &Measure| measure.quantity().column();
     let first = ["step [1]", "time [s]"].map(str::to_owned);
     writer.write_record(first.into_iter().chain(measures.iter().map(head)))?;
     for sample in (0..series.len()).filter_map(|index| series.get(index)) {

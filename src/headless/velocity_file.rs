@@ -1,4 +1,5 @@
-//! `velocity.csv`: the velocities in the cross-section at the fastest moment of the part of the run that results count.
+//! `velocity.csv`: the velocities in the cross-section at the fastest moment of the part of the run
+//! that results count.
 
 use crate::measure::VelocityMap;
 use std::io::{self, Write};

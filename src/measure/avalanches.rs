@@ -1,9 +1,9 @@
 //! Avalanches: the extrema of θ(t).
 //!
-//! θ is smoothed by a centred moving average over [`SMOOTHING_TIME`]; then maxima and minima alternate, each confirmed
-//! once the curve has turned back by the smallest drop. An avalanche runs from a maximum to the following minimum. One
-//! that is still under way at the end, or was already under way at the beginning, is not reported: one of its ends is
-//! unknown.
+//! θ is smoothed by a centred moving average over [`SMOOTHING_TIME`]; then maxima and minima
+//! alternate, each confirmed once the curve has turned back by the smallest drop. An avalanche runs
+//! from a maximum to the following minimum. One that is still under way at the end, or was already
+//! under way at the beginning, is not reported: one of its ends is unknown.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,8 @@ impl Avalanche {
 
 /// The avalanches in `theta` [rad] over `time` [s] whose drop is at least `smallest_drop` [rad].
 ///
-/// Samples that are not finite, or that one of the two lacks, are passed over. The work is linear in the number of samples.
+/// Samples that are not finite, or that one of the two lacks, are passed over. The work is linear
+/// in the number of samples.
 pub fn avalanches(time: &[f64], theta: &[f64], smallest_drop: f64) -> Vec<Avalanche> {
     let mut found = Vec::new();
     let mut tracker = Tracker::default();
@@ -43,7 +44,8 @@ pub fn avalanches(time: &[f64], theta: &[f64], smallest_drop: f64) -> Vec<Avalan
     found
 }
 
-/// Finite samples of `values` over `time`, each averaged with its neighbours within half of [`SMOOTHING_TIME`].
+/// Finite samples of `values` over `time`, each averaged with its neighbours within half of
+/// [`SMOOTHING_TIME`].
 fn smoothed<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     let half = 0.5 * SMOOTHING_TIME;
     let (mut first, mut end) = (0, 0);
@@ -82,7 +84,8 @@ enum Tracker {
     },
     /// Since the last minimum the curve has risen by the smallest drop; the highest point so far.
     Rising { highest: Point },
-    /// Since `maximum` (none if the curve began by falling) it has fallen by as much; the lowest point so far.
+    /// Since `maximum` (none if the curve began by falling) it has fallen by as much; the lowest
+    /// point so far.
     Falling {
         maximum: Option<Point>,
         lowest: Point,

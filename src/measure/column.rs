@@ -1,12 +1,15 @@
-//! The column that collapses: what it was at the start, what it is made of, and the paper's laws for what becomes of it.
+//! The column that collapses: what it was at the start, what it is made of, and the paper's laws
+//! for what becomes of it.
 //!
-//! In: a world on whose floor a column stood ([`Shape::Column`]). Out: the numbers that the paper plots against, and the
-//! laws drawn through its plots. What lies on the floor now is measured by [`super::Deposit`].
+//! In: a world on whose floor a column stood ([`Shape::Column`]). Out: the numbers that the paper
+//! plots against, and the laws drawn through its plots. What lies on the floor now is measured by
+//! [`super::Deposit`].
 
 use crate::world::{MaterialId, Shape, Species, Surface, World};
 use std::f64::consts::PI;
 
-/// Weight β of the friction among grains against that on the floor (Man et al. 2023, after Eq. 1.1).
+/// Weight β of the friction among grains against that on the floor (Man et al. 2023, after Eq.
+/// 1.1).
 const PARTICLE_WEIGHT: f64 = 2.0;
 
 /// Effective aspect ratio at which the laws break.
@@ -43,8 +46,8 @@ pub struct Column {
 impl Column {
     /// The column of `world`; none where there was none, or no grains.
     ///
-    /// `μ_p = Σ P_a P_b μ_ab` over the shares by number of the species, which for two of them is Eqs. 4.1 and 4.2; `μ_w` is
-    /// the mean over the grains. Both are those of dry grains.
+    /// `μ_p = Σ P_a P_b μ_ab` over the shares by number of the species, which for two of them is
+    /// Eqs. 4.1 and 4.2; `μ_w` is the mean over the grains. Both are those of dry grains.
     pub fn of(world: &World) -> Option<Self> {
         let Shape::Column { radius, height } = world.container.shape else {
             return None;
@@ -111,8 +114,8 @@ pub fn cone_volume(front: f64, height: f64) -> f64 {
     PI / 3.0 * front * front * height
 }
 
-/// Relative run-out ℛ over the effective aspect ratio: `1.0 α_eff^1.35`, and `α_eff^0.5` from 3.5 on. The exponents are the
-/// paper's; the factor is read from its plots (± 20 %).
+/// Relative run-out ℛ over the effective aspect ratio: `1.0 α_eff^1.35`, and `α_eff^0.5` from 3.5
+/// on. The exponents are the paper's; the factor is read from its plots (± 20 %).
 pub fn run_out_law(effective: f64) -> f64 {
     const EXPONENT: f64 = 1.35;
     if effective <= CRITICAL_ASPECT_RATIO {
@@ -122,7 +125,8 @@ pub fn run_out_law(effective: f64) -> f64 {
     }
 }
 
-/// `V_cone/V_init` over the effective aspect ratio: `1.2 α_eff^0.9`, and `7.5 α_eff^−0.6` above 3.5 (Eq. 4.4).
+/// `V_cone/V_init` over the effective aspect ratio: `1.2 α_eff^0.9`, and `7.5 α_eff^−0.6` above 3.5
+/// (Eq. 4.4).
 pub fn cone_volume_law(effective: f64) -> f64 {
     if effective <= CRITICAL_ASPECT_RATIO {
         1.2 * effective.powf(0.9)
@@ -131,7 +135,8 @@ pub fn cone_volume_law(effective: f64) -> f64 {
     }
 }
 
-/// Shares of pairs of two species by chance, `P11, P12, P22`, where the second one's share by number is `second` (Eq. 4.1).
+/// Shares of pairs of two species by chance, `P11, P12, P22`, where the second one's share by
+/// number is `second` (Eq. 4.1).
 pub fn contact_shares_law(second: f64) -> [f64; 3] {
     let first = 1.0 - second;
     [first * first, 2.0 * first * second, second * second]

@@ -1,7 +1,9 @@
-//! What lies on the floor where a column stood: how far it reaches, how high it is, what shape it has.
+//! What lies on the floor where a column stood: how far it reaches, how high it is, what shape it
+//! has.
 //!
-//! A grain's farthest point is that of its rounded body from the axis of the column, its top the highest one; both are
-//! exact for spheres and polyhedra. Grains in flight and lone ones count: the cluster's radius leaves them out.
+//! A grain's farthest point is that of its rounded body from the axis of the column, its top the
+//! highest one; both are exact for spheres and polyhedra. Grains in flight and lone ones count: the
+//! cluster's radius leaves them out.
 
 use super::column::volume;
 use crate::world::{Contact, Partner, Shape, World};
@@ -16,7 +18,8 @@ const MIDDLE: f64 = 0.5;
 const RING_WIDTH: f64 = 2.0;
 /// The top is flat as far as the profile keeps this share of its apex.
 const FLAT: f64 = 0.9;
-/// A deposit whose flat top reaches farther than this share of its front is a frustum; that of a cone reaches a tenth.
+/// A deposit whose flat top reaches farther than this share of its front is a frustum; that of a
+/// cone reaches a tenth.
 const FRUSTUM: f64 = 0.25;
 
 /// The grains of a column as a heap.
@@ -60,6 +63,16 @@ pub enum DepositShape {
     Frustum,
 }
 
+impl DepositShape {
+    /// The words for them, in order.
+    pub const WORDS: [&'static str; 2] = ["cone", "frustum"];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+}
+
 impl Deposit {
     /// The heap in `world`; none where no column stood, or without grains.
     pub fn of(world: &World) -> Option<Self> {
@@ -75,8 +88,8 @@ impl Deposit {
         })
     }
 
-    /// Radius of the front [m]: the farthest grain in each of 72 sectors about the axis, their mean over the sectors that
-    /// hold a grain.
+    /// Radius of the front [m]: the farthest grain in each of 72 sectors about the axis, their mean
+    /// over the sectors that hold a grain.
     pub fn front_radius(&self) -> f64 {
         front_radius(self.grains.iter())
     }
@@ -89,23 +102,25 @@ impl Deposit {
         *distances.select_nth_unstable_by(last, f64::total_cmp).1
     }
 
-    /// Radius of the front of the largest cluster of grains that touch each other [m]; `world` is the deposit's own.
+    /// Radius of the front of the largest cluster of grains that touch each other [m]; `world` is
+    /// the deposit's own.
     pub fn cluster_radius(&self, world: &World) -> f64 {
         let members = largest_cluster(world);
         front_radius(members.iter().map(|&i| &self.grains[i]))
     }
 
-    /// Height of the highest grain whose centre lies within half the column's initial radius of the axis [m]; zero where
-    /// there is none.
+    /// Height of the highest grain whose centre lies within half the column's initial radius of the
+    /// axis [m]; zero where there is none.
     pub fn height(&self) -> f64 {
         let middle = MIDDLE * self.initial_radius;
         let inside = self.grains.iter().filter(|grain| grain.distance <= middle);
         inside.map(|grain| grain.top).fold(0.0, f64::max)
     }
 
-    /// The mean height over the azimuth: the floor about the axis is cut into rings two grain sizes wide (the grain size is
-    /// the cube root of the mean volume) and these into cells about as long; a cell is as high as the highest grain whose
-    /// centre lies over it, an empty one has no height, and a ring has the mean height of its cells.
+    /// The mean height over the azimuth: the floor about the axis is cut into rings two grain sizes
+    /// wide (the grain size is the cube root of the mean volume) and these into cells about as
+    /// long; a cell is as high as the highest grain whose centre lies over it, an empty one has no
+    /// height, and a ring has the mean height of its cells.
     pub fn height_profile(&self) -> HeightProfile {
         let width = RING_WIDTH * self.grain_size;
         let farthest = self.grains.iter().map(|grain| grain.distance);
@@ -153,7 +168,8 @@ impl HeightProfile {
         self.height.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Distance from the axis at which it first falls below nine tenths of its apex, interpolated between the rings [m].
+    /// Distance from the axis at which it first falls below nine tenths of its apex, interpolated
+    /// between the rings [m].
     pub fn flat_radius(&self) -> f64 {
         let level = FLAT * self.apex();
         let top = self.height.iter().position(|height| *height >= level);
@@ -202,8 +218,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The grains of the largest cluster that hangs together by touching contacts, the floor left out; of equal ones, that of
-/// the first grain.
+/// The grains of the largest cluster that hangs together by touching contacts, the floor left out;
+/// of equal ones, that of the first grain.
 fn largest_cluster(world: &World) -> Vec<usize> {
     let mut leader: Vec<u32> = (0..world.grains.len() as u32).collect();
     for contact in &world.contacts {

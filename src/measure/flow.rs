@@ -1,28 +1,28 @@
-//! The flowing layer: mean velocity in the cross-section, its profile over depth, its map where the bed flows fastest.
+//! The flowing layer: mean velocity in the cross-section, its profile over depth, its map where the
+//! bed flows fastest.
 //!
-//! Velocities are averaged over the grains with a Gaussian of their distance in the x–y plane, whatever their place along
-//! the axis, and over the samples in which the bed flows ([`NON_RIGID_TEMPERATURE`]). The kernel reaches as far as that of
-//! Kasper et al. 2021: 8 mm, and 11 mm for grains of 3 mm; here that is where the Gaussian is cut off, at two standard
-//! deviations.
+//! In: a world with its sample and surface, again and again. Out: profiles and maps of any later
+//! part of the run. Velocities are the local means of `velocity_kernel`, averaged over the samples
+//! in which the bed flows ([`NON_RIGID_TEMPERATURE`]).
 
-use super::surface::{SurfaceLine, mean_radius};
-use super::{Measure, NON_RIGID_TEMPERATURE, Sample, VelocityMap, velocity_map};
+use super::sample::Sample;
+use super::sampled_quantity::Measure;
+use super::surface::SurfaceLine;
+use super::velocity_kernel::{kernel_reach, mean_velocity};
+use super::velocity_map::{VelocityMap, velocity_map};
 use crate::world::World;
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
+
+/// Granular temperature from which a bed counts as flowing [m²/s²] (Kasper et al. 2021).
+pub const NON_RIGID_TEMPERATURE: f64 = 2e-9;
 
 /// Depths at which the profile is taken.
 const DEPTHS: usize = 48;
 /// The deepest of them [m].
 const DEEPEST: f64 = 0.06;
-/// Reach of the kernel in mean radii, within [`REACH`].
-const REACH_IN_RADII: f64 = 11.0 / 3.0;
-/// Reach of the kernel [m].
-const REACH: std::ops::RangeInclusive<f64> = 0.008..=0.011;
-/// Standard deviations at which the kernel is cut off.
-const CUT_OFF: f64 = 2.0;
 
-/// Profiles of every second of a run, so that any later part of it can be averaged, and maps of its fastest moments.
+/// Profiles of every second of a run, so that any later part of it can be averaged, and maps of its
+/// fastest moments.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowHistory {
     seconds: Vec<FlowProfile>,
@@ -66,8 +66,8 @@ impl FlowHistory {
         }
     }
 
-    /// The velocities in the laboratory frame at the sample with the highest granular temperature from the first whole
-    /// second at or after `time` [s] on; none where the bed never flowed.
+    /// The velocities in the laboratory frame at the sample with the highest granular temperature
+    /// from the first whole second at or after `time` [s] on; none where the bed never flowed.
     pub fn fastest_since(&self, time: f64) -> Option<&VelocityMap> {
         let maps = self.fastest.iter().map(|moment| &moment.map);
         maps.into_iter()
@@ -138,37 +138,10 @@ impl FlowProfile {
         }
     }
 
-    /// Mean velocity along the surface, positive uphill to the right, at each depth [m/s]; NaN where nothing was averaged.
+    /// Mean velocity along the surface, positive uphill to the right, at each depth [m/s]; NaN
+    /// where nothing was averaged.
     pub fn velocity(&self) -> Vec<f64> {
         let mean = |(sum, count): (&f64, &u32)| sum / f64::from(*count);
         self.sums.iter().zip(&self.samples).map(mean).collect()
-    }
-}
-
-/// Reach of the kernel that suits the grains of `world` [m].
-pub fn kernel_reach(world: &World) -> f64 {
-    let reach = REACH_IN_RADII * mean_radius(&world.grains);
-    reach.clamp(*REACH.start(), *REACH.end())
-}
-
-/// Mean velocity of the grains near `point` of the cross-section, each weighed by a Gaussian of its distance that is cut
-/// off at `reach` [m]; none where there is no grain.
-pub fn mean_velocity(world: &World, point: DVec2, reach: f64) -> Option<DVec2> {
-    let (mut weights, mut sum) = (0.0, DVec2::ZERO);
-    for (position, velocity) in world.grains.position.iter().zip(&world.grains.velocity) {
-        let weight = weight((position.truncate() - point).length_squared(), reach);
-        weights += weight;
-        sum += weight * velocity.truncate();
-    }
-    (weights > 0.0).then(|| sum / weights)
-}
-
-/// Weight of a grain at this squared distance [m²] in a mean whose kernel is cut off at `reach` [m].
-pub(super) fn weight(squared: f64, reach: f64) -> f64 {
-    let width = reach / CUT_OFF;
-    if squared < reach * reach {
-        (-0.5 * squared / (width * width)).exp()
-    } else {
-        0.0
     }
 }

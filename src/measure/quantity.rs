@@ -1,390 +1,378 @@
-//! What a sample holds: one [`Measure`] per column and what people need to know of it.
+//! What is known of a measured quantity beside its value: one row of a registry, and how its values
+//! are written for people.
+//!
+//! In: a value in the SI unit. Out: its text. The rows themselves stand in three tables, because
+//! the numbers belong to three different things: [`super::Measure`] to one instant of a world (a
+//! column of every series), [`super::RunQuantity`] to a whole run, [`super::GrainQuantity`] to one
+//! grain. Each table is made by the macro `quantities!`: one row makes the key, its documentation
+//! and its place in the list of all.
 
-use crate::world::{Shape, World};
+use super::numeral::{self, NOTHING};
+use serde::{Serialize, Serializer};
 
-/// What one number is: its key in files, its name and symbol for people, its unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Row of the registry: all that people and files need to know of one quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
-    /// Name in files and on plots: `surface angle`.
-    pub name: &'static str,
-    /// The paper's symbol: `θ`.
+    /// Its key in files, which never changes: `surface angle`.
+    pub key: &'static str,
+    /// What people read beside its value; [`Quantity::label`] where this is empty.
+    pub short_label: &'static str,
+    /// The paper's symbol, empty where there is none: `θ`.
     pub symbol: &'static str,
-    /// SI unit, `1` for a pure number: `rad`.
-    pub unit: &'static str,
-    /// One sentence: what it is and by which method it is taken.
+    /// Its unit, in files and for people.
+    pub unit: Unit,
+    /// How its values are written.
+    pub format: Format,
+    /// Where it has a meaning.
+    pub scope: Scope,
+    /// One sentence or formula: what it is, how it is taken.
     pub description: &'static str,
+    /// The equation it comes from, empty where there is none: `Eq. 1.1 of Man et al. 2023`.
+    pub source: &'static str,
 }
 
-/// A number that every sample holds, NaN where it has no meaning; `as usize` gives its column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Measure {
-    /// Slope of the free surface [rad].
-    SurfaceAngle,
-    /// Granular temperature in the laboratory frame [m²/s²].
-    GranularTemperature,
-    /// Granular temperature in the drum's frame [m²/s²].
-    CorotatingTemperature,
-    /// Grain volume per bed volume.
-    PackingFraction,
-    /// Touching grains per grain.
-    CoordinationNumber,
-    /// Kinetic energy [J].
-    KineticEnergy,
-    /// Largest overlap relative to the smaller radius, of polyhedra to the rounding radius.
-    LargestOverlap,
-    /// What the energy ledger leaves unexplained [J].
-    EnergyResidual,
-    /// Energy stored in the contacts [J].
-    ElasticEnergy,
-    /// Work of gravity since the start [J].
-    GravityWork,
-    /// Work of the moving walls since the start [J].
-    WallWork,
-    /// Energy lost in dashpots since the start [J].
-    DashpotLoss,
-    /// Energy lost in sliding since the start [J].
-    SlidingLoss,
-    /// Energy lost in rolling since the start [J].
-    RollingLoss,
-    /// Mean speed of the grains [m/s].
-    MeanSpeed,
-    /// Mean distance of the surface from a straight line [m].
-    SurfaceRoughness,
-    /// Curvature of the surface, positive where it is convex [1/m].
-    SurfaceCurvature,
-    /// Number of liquid bridges.
-    Bridges,
-    /// Bridges that broke since the start.
-    Ruptures,
-    /// Torque that turns the drum against its grains [N m].
-    DrumTorque,
-    /// Energy lost to the viscosity of the liquid since the start [J].
-    ViscousLoss,
-    /// Energy taken by capillary forces since the start [J].
-    CapillaryLoss,
-    /// Radius of the front [m].
-    FrontRadius,
-    /// Radius within which the centres of 99 % of the grains lie [m].
-    FrontRadius99,
-    /// Radius within which the centres of 95 % of the grains lie [m].
-    FrontRadius95,
-    /// Radius of the front of the largest cluster [m].
-    ClusterRadius,
-    /// Height of the highest grain near the axis [m].
-    DepositHeight,
-    /// Apex of the mean profile of height [m].
-    ApexHeight,
-    /// Volume of the cone of front and height over that of the column.
-    ConeVolumeRatio,
-    /// Mean kinetic energy of translation of a grain [J].
-    TranslationalEnergy,
-    /// Mean kinetic energy of rotation of a grain [J].
-    RotationalEnergy,
-    /// Share of the touching pairs in which both grains are of the first species.
-    FirstPairs,
-    /// Share of the touching pairs of one grain of either species.
-    MixedPairs,
-    /// Share of the touching pairs in which both grains are of the second species.
-    SecondPairs,
+/// The unit of a quantity: SI in files, another for people where they use one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// SI unit, `1` for a pure number: `rad`.
+    pub si: &'static str,
+    /// The unit that people read, empty for a pure number: `°`.
+    pub shown: &'static str,
+    /// A value in the SI unit times this is the value in the shown one.
+    pub factor: f64,
 }
 
-impl Measure {
-    /// Number of measures in a sample.
-    pub const COUNT: usize = 34;
+/// How the values of a quantity are written for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// With this many digits after the point.
+    Fixed(usize),
+    /// With about four digits in all.
+    Significant,
+    /// As a power of ten with two digits after the point.
+    Scientific,
+    /// With a prefix of its unit: `12.3 mJ`; where no unit can stand, as a power of ten.
+    Prefixed,
+    /// As a whole number.
+    Count,
+    /// As one of these words.
+    Choice(&'static [&'static str]),
+}
 
-    /// Every measure in the order of its column.
-    pub const ALL: [Self; Self::COUNT] = [
-        Self::SurfaceAngle,
-        Self::GranularTemperature,
-        Self::CorotatingTemperature,
-        Self::PackingFraction,
-        Self::CoordinationNumber,
-        Self::KineticEnergy,
-        Self::LargestOverlap,
-        Self::EnergyResidual,
-        Self::ElasticEnergy,
-        Self::GravityWork,
-        Self::WallWork,
-        Self::DashpotLoss,
-        Self::SlidingLoss,
-        Self::RollingLoss,
-        Self::MeanSpeed,
-        Self::SurfaceRoughness,
-        Self::SurfaceCurvature,
-        Self::Bridges,
-        Self::Ruptures,
-        Self::DrumTorque,
-        Self::ViscousLoss,
-        Self::CapillaryLoss,
-        Self::FrontRadius,
-        Self::FrontRadius99,
-        Self::FrontRadius95,
-        Self::ClusterRadius,
-        Self::DepositHeight,
-        Self::ApexHeight,
-        Self::ConeVolumeRatio,
-        Self::TranslationalEnergy,
-        Self::RotationalEnergy,
-        Self::FirstPairs,
-        Self::MixedPairs,
-        Self::SecondPairs,
-    ];
+/// The worlds in which a quantity has a meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// All.
+    Everywhere,
+    /// Drums and boxes, whose bed has a surface.
+    Beds,
+    /// Drums.
+    Drums,
+    /// Columns that collapse.
+    Columns,
+    /// Where there is liquid, and beds, into which it can be poured.
+    Liquids,
+}
 
-    /// Whether it has a meaning in `world`: only a drum or a box holds a bed that has a surface, only a drum is turned, only
-    /// a column has a front, and without liquid there are no bridges but where it can be poured in.
-    pub fn concerns(self, world: &World) -> bool {
-        let shape = &world.container.shape;
-        let is_column = matches!(shape, Shape::Column { .. });
-        let has_bed = matches!(shape, Shape::Drum { .. } | Shape::Box { .. });
-        match self {
-            Self::SurfaceAngle
-            | Self::GranularTemperature
-            | Self::CorotatingTemperature
-            | Self::PackingFraction
-            | Self::SurfaceRoughness
-            | Self::SurfaceCurvature => has_bed,
-            Self::DrumTorque => matches!(shape, Shape::Drum { .. }),
-            Self::Bridges | Self::Ruptures | Self::ViscousLoss | Self::CapillaryLoss => {
-                has_bed || world.liquid.is_some()
+/// One value of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MeasuredValue {
+    /// A number in the SI unit.
+    Number(f64),
+    /// A whole number.
+    Count(usize),
+    /// A word out of those of [`Format::Choice`].
+    Choice(&'static str),
+}
+
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+impl Unit {
+    /// Pure numbers.
+    pub const PURE: Self = Self::new("1", "", 1.0);
+    /// Angles, for people in degrees.
+    pub const ANGLE: Self = Self::new("rad", "°", DEGREES);
+    /// Angular velocities, for people in degrees per second.
+    pub const TURNING: Self = Self::new("rad/s", "°/s", DEGREES);
+    /// Lengths of the size of grains and containers, for people in millimetres.
+    pub const LENGTH: Self = Self::new("m", "mm", 1e3);
+    /// Volumes of heaps, for people in cubic centimetres.
+    pub const VOLUME: Self = Self::new("m³", "cm³", 1e6);
+    /// Volumes of liquid, for people in litres with a prefix.
+    pub const LIQUID: Self = Self::new("m³", "L", 1e3);
+    /// Times.
+    pub const TIME: Self = Self::same("s");
+    /// Energies.
+    pub const ENERGY: Self = Self::same("J");
+    /// Energies in the unit of Man et al. 2023: 1 g cm²/s² is 1e-7 J.
+    pub const ERG: Self = Self::new("J", "g cm²/s²", 1e7);
+    /// Powers of small drums, for people in milliwatts.
+    pub const POWER: Self = Self::new("W", "mW", 1e3);
+
+    /// A unit that people read as it stands in files.
+    pub const fn same(si: &'static str) -> Self {
+        Self::new(si, si, 1.0)
+    }
+
+    const fn new(si: &'static str, shown: &'static str, factor: f64) -> Self {
+        Self { si, shown, factor }
+    }
+
+    /// `name` with the shown unit in brackets: `θ [°]`; a pure number has none.
+    pub fn beside(&self, name: &str) -> String {
+        match self.shown {
+            "" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        }
+    }
+}
+
+impl Quantity {
+    /// What a row says that does not say otherwise.
+    pub(super) const BLANK: Self = Self {
+        key: "",
+        short_label: "",
+        symbol: "",
+        unit: Unit::PURE,
+        format: Format::Significant,
+        scope: Scope::Everywhere,
+        description: "",
+        source: "",
+    };
+
+    /// Key and symbol, which some keys hold already: `surface angle θ`.
+    pub fn title(&self) -> String {
+        match self.key.strip_suffix(self.symbol) {
+            Some(name) if name.is_empty() || name.ends_with(' ') || self.symbol.is_empty() => {
+                self.key.to_owned()
             }
-            Self::FrontRadius
-            | Self::FrontRadius99
-            | Self::FrontRadius95
-            | Self::ClusterRadius
-            | Self::DepositHeight
-            | Self::ApexHeight
-            | Self::ConeVolumeRatio
-            | Self::TranslationalEnergy
-            | Self::RotationalEnergy
-            | Self::FirstPairs
-            | Self::MixedPairs
-            | Self::SecondPairs => is_column,
-            _ => true,
+            _ => format!("{} {}", self.key, self.symbol),
         }
     }
 
-    /// The measures that have a meaning in `world`, in the order of their columns.
-    pub fn of(world: &World) -> Vec<Self> {
-        let concerns = |measure: &Self| measure.concerns(world);
-        Self::ALL.into_iter().filter(concerns).collect()
+    /// What people read beside its value: `Surface angle θ`.
+    pub fn label(&self) -> String {
+        match self.short_label {
+            "" => numeral::capitalised(&self.title()),
+            label => label.to_owned(),
+        }
     }
 
-    /// Name, symbol, unit and method.
-    pub fn quantity(self) -> &'static Quantity {
-        &QUANTITIES[self as usize]
+    /// Head of its column in a file, with the SI unit: `surface angle [rad]`.
+    pub fn column(&self) -> String {
+        format!("{} [{}]", self.key, self.unit.si)
+    }
+
+    /// Label of an axis that shows it, with the unit that people read: `surface angle θ [°]`.
+    pub fn axis(&self) -> String {
+        self.unit.beside(&self.title())
+    }
+
+    /// Description and source.
+    pub fn explanation(&self) -> String {
+        let (text, end) = match self.description.strip_suffix('.') {
+            Some(text) => (text, "."),
+            None => (self.description, ""),
+        };
+        match self.source {
+            "" => self.description.to_owned(),
+            source => format!("{text}, {source}{end}"),
+        }
+    }
+
+    /// `value` in the shown unit, without it, in plain characters that programs read too: `24.31`,
+    /// `2.00e-9`, a word; a dash for what is not finite.
+    pub fn number(&self, value: impl Into<MeasuredValue>) -> String {
+        self.number_as(value, self.unit, self.format)
+    }
+
+    /// The same in another unit or with other digits than the quantity's own.
+    pub fn number_as(&self, value: impl Into<MeasuredValue>, unit: Unit, format: Format) -> String {
+        match value.into() {
+            MeasuredValue::Number(value) if value.is_finite() => format.plain(value * unit.factor),
+            MeasuredValue::Number(_) => NOTHING.into(),
+            MeasuredValue::Count(count) => count.to_string(),
+            MeasuredValue::Choice(word) => word.into(),
+        }
+    }
+
+    /// `value` with the shown unit, as people read it: `24.31 °`, `12.30 mJ`, `2.00·10⁻⁹ m²/s²`, a
+    /// word; a dash where there is none.
+    pub fn text(&self, value: impl Into<MeasuredValue>) -> String {
+        let value = match value.into() {
+            MeasuredValue::Number(value) => value * self.unit.factor,
+            MeasuredValue::Count(count) => return count.to_string(),
+            MeasuredValue::Choice(word) => return word.into(),
+        };
+        if self.format == Format::Prefixed && value.is_finite() {
+            return numeral::with_prefix(value, self.unit.shown);
+        }
+        let number = numeral::written(value, |value| self.format.plain(value));
+        if self.unit.shown.is_empty() || value.is_nan() {
+            number
+        } else {
+            format!("{number} {}", self.unit.shown)
+        }
     }
 }
 
-/// What a sample holds, in the order of [`Measure::ALL`].
-pub const QUANTITIES: &[Quantity] = &[
-    Quantity {
-        name: "surface angle",
-        symbol: "θ",
-        unit: "rad",
-        description: "Slope of a straight line through the top grain of each bin over the middle 70 % of the free \
-                      surface, positive where the surface rises to the right.",
-    },
-    Quantity {
-        name: "granular temperature",
-        symbol: "Tg",
-        unit: "m²/s²",
-        description: "Mean square of the grains' velocity relative to the mean of their neighbours within 7r/3, per \
-                      direction, in the laboratory frame (Eqs. 21 and 22 of Kasper et al. 2021).",
-    },
-    Quantity {
-        name: "co-rotating temperature",
-        symbol: "Tg′",
-        unit: "m²/s²",
-        description: "The granular temperature of the velocities relative to the turning drum.",
-    },
-    Quantity {
-        name: "packing fraction",
-        symbol: "φ",
-        unit: "1",
-        description: "Grain volume per container volume in the part of the bed that lies deeper than two mean radii \
-                      below the surface line; layers at the walls are included.",
-    },
-    Quantity {
-        name: "coordination number",
-        symbol: "Z",
-        unit: "1",
-        description: "Mean number of other grains that a grain touches; walls do not count.",
-    },
-    Quantity {
-        name: "kinetic energy",
-        symbol: "E_kin",
-        unit: "J",
-        description: "Kinetic energy of translation and rotation of all grains.",
-    },
-    Quantity {
-        name: "largest overlap",
-        symbol: "δ_max/r",
-        unit: "1",
-        description: "Largest overlap of all contacts relative to the smaller grain's radius, of polyhedra to their rounding \
-                      radius.",
-    },
-    Quantity {
-        name: "energy residual",
-        symbol: "ΔE",
-        unit: "J",
-        description: "Change of kinetic and elastic energy since the start that work and losses do not explain.",
-    },
-    Quantity {
-        name: "elastic energy",
-        symbol: "E_el",
-        unit: "J",
-        description: "Energy stored in the normal and tangential springs of all contacts.",
-    },
-    Quantity {
-        name: "gravity work",
-        symbol: "W_g",
-        unit: "J",
-        description: "Work of gravity on the grains since the start.",
-    },
-    Quantity {
-        name: "wall work",
-        symbol: "W_w",
-        unit: "J",
-        description: "Work of the moving walls on the grains since the start.",
-    },
-    Quantity {
-        name: "dashpot loss",
-        symbol: "D_d",
-        unit: "J",
-        description: "Energy lost in the normal and tangential dashpots since the start.",
-    },
-    Quantity {
-        name: "sliding loss",
-        symbol: "D_s",
-        unit: "J",
-        description: "Energy lost in sliding friction since the start.",
-    },
-    Quantity {
-        name: "rolling loss",
-        symbol: "D_r",
-        unit: "J",
-        description: "Energy lost in rolling friction since the start.",
-    },
-    Quantity {
-        name: "mean speed",
-        symbol: "⟨v⟩",
-        unit: "m/s",
-        description: "Mean speed of the grains' centres.",
-    },
-    Quantity {
-        name: "surface roughness",
-        symbol: "h",
-        unit: "m",
-        description: "Mean distance of the top grains' centres from the straight line through them (Eq. 24 of Kasper et \
-                      al. 2021).",
-    },
-    Quantity {
-        name: "surface curvature",
-        symbol: "κ",
-        unit: "1/m",
-        description: "Curvature of the parabola through the top grains' centres, positive where the surface is convex.",
-    },
-    Quantity {
-        name: "bridges",
-        symbol: "N_b",
-        unit: "1",
-        description: "Number of liquid bridges between grains.",
-    },
-    Quantity {
-        name: "ruptures",
-        symbol: "N_r",
-        unit: "1",
-        description: "Liquid bridges that broke since the start.",
-    },
-    Quantity {
-        name: "drum torque",
-        symbol: "M",
-        unit: "N m",
-        description: "Torque about its axis with which the drum turns against the grains' contact forces.",
-    },
-    Quantity {
-        name: "viscous loss",
-        symbol: "D_v",
-        unit: "J",
-        description: "Energy lost to the viscosity of the liquid since the start.",
-    },
-    Quantity {
-        name: "capillary loss",
-        symbol: "D_c",
-        unit: "J",
-        description: "Energy taken by capillary forces since the start: the cost of broken bridges, and what those that \
-                      hold would give back.",
-    },
-    Quantity {
-        name: "front radius",
-        symbol: "R",
-        unit: "m",
-        description: "Distance of the farthest point of a grain from the column's axis in each of 72 sectors, their mean over the sectors that hold a grain.",
-    },
-    Quantity {
-        name: "99 % radius",
-        symbol: "R_99",
-        unit: "m",
-        description: "Radius about the column's axis within which the centres of 99 % of the grains lie.",
-    },
-    Quantity {
-        name: "95 % radius",
-        symbol: "R_95",
-        unit: "m",
-        description: "Radius about the column's axis within which the centres of 95 % of the grains lie.",
-    },
-    Quantity {
-        name: "cluster radius",
-        symbol: "R_c",
-        unit: "m",
-        description: "The front radius of those grains alone that belong to the largest cluster of touching grains.",
-    },
-    Quantity {
-        name: "deposit height",
-        symbol: "H",
-        unit: "m",
-        description: "Highest point of the grains whose centres lie within half of the column's initial radius of its axis.",
-    },
-    Quantity {
-        name: "apex height",
-        symbol: "H_a",
-        unit: "m",
-        description: "Largest height of the profile over the radius, averaged over the azimuth in rings two grain sizes wide.",
-    },
-    Quantity {
-        name: "cone volume ratio",
-        symbol: "V_cone/V_init",
-        unit: "1",
-        description: "Volume of the cone with the front radius and the deposit height over that of the column (Eq. 4.3 of Man et al. 2023).",
-    },
-    Quantity {
-        name: "translational energy per grain",
-        symbol: "e_t",
-        unit: "J",
-        description: "Kinetic energy of translation, mean over the grains.",
-    },
-    Quantity {
-        name: "rotational energy per grain",
-        symbol: "e_r",
-        unit: "J",
-        description: "Kinetic energy of rotation, mean over the grains.",
-    },
-    Quantity {
-        name: "pairs of first species",
-        symbol: "P11",
-        unit: "1",
-        description: "Share of the touching pairs of grains in which both are of the first species; the floor does not count.",
-    },
-    Quantity {
-        name: "mixed pairs",
-        symbol: "P12",
-        unit: "1",
-        description: "Share of the touching pairs of grains in which one is of either species; the floor does not count.",
-    },
-    Quantity {
-        name: "pairs of second species",
-        symbol: "P22",
-        unit: "1",
-        description: "Share of the touching pairs of grains in which both are of the second species; the floor does not count.",
-    },
-];
+impl Format {
+    /// A finite `value` in plain characters.
+    fn plain(self, value: f64) -> String {
+        match self {
+            Self::Fixed(digits) => format!("{value:.digits$}"),
+            Self::Significant => numeral::significant(value),
+            Self::Scientific | Self::Prefixed => format!("{value:.2e}"),
+            Self::Count | Self::Choice(_) => format!("{value:.0}"),
+        }
+    }
+}
+
+impl MeasuredValue {
+    /// It as a number; none for a word.
+    pub fn as_number(self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(value),
+            Self::Count(count) => Some(count as f64),
+            Self::Choice(_) => None,
+        }
+    }
+}
+
+impl From<f64> for MeasuredValue {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+/// In files a count is written as a number is.
+impl Serialize for MeasuredValue {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match *self {
+            Self::Number(value) => serializer.serialize_f64(value),
+            Self::Count(count) => serializer.serialize_f64(count as f64),
+            Self::Choice(word) => serializer.serialize_str(word),
+        }
+    }
+}
+
+/// Makes an enum of quantities out of one row for each: the key with its description as
+/// documentation, `ALL` and `COUNT`, and `quantity()` for the row. What a row leaves out is as in
+/// [`Quantity::BLANK`].
+macro_rules! quantities {
+    (
+        $(#[$attribute:meta])*
+        $name:ident {
+            $($variant:ident {
+                key: $key:literal,
+                description: $description:literal,
+                $($field:ident: $value:expr),* $(,)?
+            })*
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum $name {
+            $(#[doc = concat!($key, ": ", $description)] $variant,)*
+        }
+
+        impl $name {
+            /// Every key, in the order of the rows.
+            pub const ALL: [Self; Self::COUNT] = [$(Self::$variant,)*];
+
+            /// Number of keys.
+            pub const COUNT: usize = [$(stringify!($variant),)*].len();
+
+            const ROWS: &'static [$crate::measure::Quantity; Self::COUNT] = &[$(
+                $crate::measure::Quantity {
+                    key: $key,
+                    description: $description,
+                    $($field: $value,)*
+                    ..$crate::measure::Quantity::BLANK
+                },
+            )*];
+
+            /// Its row of the registry.
+            pub const fn quantity(self) -> &'static $crate::measure::Quantity {
+                &Self::ROWS[self as usize]
+            }
+        }
+    };
+}
+
+pub(super) use quantities;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ANGLE: Quantity = Quantity {
+        key: "drop",
+        symbol: "Δθ",
+        unit: Unit::ANGLE,
+        format: Format::Fixed(2),
+        description: "A fall",
+        source: "Eq. 3",
+        ..Quantity::BLANK
+    };
+
+    #[test]
+    fn a_value_is_written_with_the_unit_and_the_digits_of_its_quantity() {
+        assert_eq!(ANGLE.text(std::f64::consts::FRAC_PI_6), "30.00 °");
+        assert_eq!(ANGLE.text(-0.001), "−0.06 °");
+        assert_eq!(ANGLE.number(-0.001), "-0.06");
+        assert_eq!(ANGLE.text(f64::NAN), "–");
+        assert_eq!(ANGLE.number(f64::NAN), "–");
+        let with = |unit, format| Quantity {
+            unit,
+            format,
+            ..Quantity::BLANK
+        };
+        assert_eq!(with(Unit::PURE, Format::Significant).text(0.61), "0.6100");
+        let heat = with(Unit::same("m²/s²"), Format::Scientific);
+        assert_eq!(heat.text(2.3e-9), "2.30·10⁻⁹ m²/s²");
+        assert_eq!(heat.number(2.3e-9), "2.30e-9");
+        let energy = with(Unit::ENERGY, Format::Prefixed);
+        assert_eq!(energy.text(0.0123), "12.30 mJ");
+        assert_eq!(energy.number(0.0123), "1.23e-2");
+        assert_eq!(with(Unit::LENGTH, Format::Fixed(1)).text(0.05), "50.0 mm");
+    }
+
+    #[test]
+    fn counts_are_whole_and_choices_are_words() {
+        let count = Quantity {
+            format: Format::Count,
+            ..Quantity::BLANK
+        };
+        assert_eq!(count.text(MeasuredValue::Count(7)), "7");
+        assert_eq!(count.text(6.6), "7");
+        let choice = MeasuredValue::Choice("cone");
+        assert_eq!(count.text(choice), "cone");
+        assert_eq!(choice.as_number(), None);
+        let json = |value: MeasuredValue| serde_json::to_string(&value).unwrap();
+        assert_eq!(json(MeasuredValue::Count(7)), "7.0");
+        assert_eq!(json(choice), r#""cone""#);
+    }
+
+    #[test]
+    fn names_hold_key_symbol_unit_and_source() {
+        assert_eq!(ANGLE.title(), "drop Δθ");
+        assert_eq!(ANGLE.label(), "Drop Δθ");
+        assert_eq!(ANGLE.column(), "drop [rad]");
+        assert_eq!(ANGLE.axis(), "drop Δθ [°]");
+        assert_eq!(ANGLE.explanation(), "A fall, Eq. 3");
+        let with_symbol = Quantity {
+            key: "drop Δθ",
+            description: "A fall.",
+            ..ANGLE
+        };
+        assert_eq!(with_symbol.title(), "drop Δθ");
+        let roughness = Quantity {
+            key: "depth",
+            symbol: "h",
+            ..ANGLE
+        };
+        assert_eq!(roughness.title(), "depth h");
+        assert_eq!(with_symbol.explanation(), "A fall, Eq. 3.");
+    }
+}

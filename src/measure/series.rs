@@ -1,30 +1,8 @@
 //! Samples of a run, kept in columns so that a plot or an average can borrow one.
 
-use super::Measure;
+use super::sample::Sample;
+use super::sampled_quantity::Measure;
 use serde::{Deserialize, Serialize};
-
-/// Every measure of a world at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// Steps taken.
-    pub step: u64,
-    /// Simulated time [s].
-    pub time: f64,
-    /// One value per [`Measure`], in SI units; NaN where a measure is undefined.
-    pub values: [f64; Measure::COUNT],
-}
-
-impl Sample {
-    /// The value of one measure.
-    pub fn value(&self, measure: Measure) -> f64 {
-        self.values[measure as usize]
-    }
-
-    /// Gives one measure its value.
-    pub(super) fn set(&mut self, measure: Measure, value: f64) {
-        self.values[measure as usize] = value;
-    }
-}
 
 /// Samples in order of time, column by column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,14 +1,16 @@
 //! The free surface as a straight line in the x–y plane: its angle θ and its roughness h.
 //!
-//! The middle part of the free surface (its chord between the container's walls) is cut into as many bins as fit if none
-//! is narrower than two mean radii, so that a closed row of grains leaves no bin empty; in each bin the grain that
-//! reaches highest is taken, over the whole depth along z, and a straight line is fitted through the centres of these
-//! grains by least squares. Bins and heights are measured along and across the line itself: the fit is repeated in the
-//! frame of the last line until the line no longer moves, so a steep surface is measured as well as a level one. Only
-//! grains that touch something count, unless none does, so a single grain in flight does not lift the surface; two that
-//! meet in flight can, for the moment of their impact.
+//! The middle part of the free surface (its chord between the container's walls) is cut into as
+//! many bins as fit if none is narrower than two mean radii, so that a closed row of grains leaves
+//! no bin empty; in each bin the grain that reaches highest is taken, over the whole depth along z,
+//! and a straight line is fitted through the centres of these grains by least squares. Bins and
+//! heights are measured along and across the line itself: the fit is repeated in the frame of the
+//! last line until the line no longer moves, so a steep surface is measured as well as a level one.
+//! Only grains that touch something count, unless none does, so a single grain in flight does not
+//! lift the surface; two that meet in flight can, for the moment of their impact.
 //!
-//! There is no surface line without a drum or a box, or with fewer than three bins that hold a grain.
+//! There is no surface line without a drum or a box, or with fewer than three bins that hold a
+//! grain.
 
 use crate::world::{Grains, Shape, World};
 use glam::DVec2;
@@ -19,11 +21,12 @@ pub const MIDDLE_SHARE: f64 = 0.7;
 /// Fits of the line at most.
 const MOST_FITS: i32 = 14;
 
-/// Fits that the line follows the whole way; it follows each later one half as far as the one before.
+/// Fits that the line follows the whole way; it follows each later one half as far as the one
+/// before.
 const FREE_FITS: i32 = 6;
 
-/// A line that turns by less than this [rad], and shifts by less than this share of its length, from one fit to the next
-/// is final.
+/// A line that turns by less than this [rad], and shifts by less than this share of its length,
+/// from one fit to the next is final.
 const SETTLED: f64 = 1e-6;
 
 /// A straight line through the top grains' centres.
@@ -39,7 +42,8 @@ pub struct SurfaceLine {
     pub half_length: f64,
     /// Mean distance h of the top grains' centres from the line (Eq. 24 of Kasper et al. 2021) [m].
     pub roughness: f64,
-    /// Curvature of the parabola through the same centres, positive where the surface is convex [1/m].
+    /// Curvature of the parabola through the same centres, positive where the surface is convex
+    /// [1/m].
     pub curvature: f64,
     /// Bins that held a grain.
     pub bins: usize,
@@ -57,8 +61,8 @@ impl SurfaceLine {
     }
 }
 
-/// The line through the free surface of `world`, fitted over the `middle_share` (0 … 1, usually [`MIDDLE_SHARE`]) of its
-/// length.
+/// The line through the free surface of `world`, fitted over the `middle_share` (0 … 1, usually
+/// [`MIDDLE_SHARE`]) of its length.
 pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
     let shape = world.container.shape;
     let grains = Silhouette::of(&world.grains)?;
@@ -66,7 +70,7 @@ pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
     let mut line = None;
     for done in 0..MOST_FITS {
         let (low, high) = chord(shape, guess)?;
-        let middle = Stretch {
+        let middle = FittedPart {
             centre: 0.5 * (low + high),
             half_length: 0.5 * (high - low) * middle_share,
         };
@@ -74,7 +78,8 @@ pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
         let fit = Fit::through(&tops)?;
         let fitted = fit.turned(guess);
         let shift = (fitted.height - guess.height).abs() / (high - low);
-        // Two lines can each make the other by moving one grain over the edge of a bin; the shrinking steps end between.
+        // Two lines can each make the other by moving one grain over the edge of a bin; the
+        // shrinking steps end between.
         guess = guess.towards(fitted, 0.5_f64.powi((done + 1 - FREE_FITS).max(0)));
         line = Some(fit.line(guess, middle, &tops));
         if fit.slope.abs() < SETTLED && shift < SETTLED {
@@ -89,8 +94,8 @@ pub(super) fn mean_radius(grains: &Grains) -> f64 {
     grains.radius.iter().sum::<f64>() / grains.len() as f64
 }
 
-/// A straight line by its angle and its signed distance from the origin, and the frame that goes with it: `s` along the
-/// line, `n` out of the bed, both from the origin.
+/// A straight line by its angle and its signed distance from the origin, and the frame that goes
+/// with it: `s` along the line, `n` out of the bed, both from the origin.
 #[derive(Clone, Copy)]
 struct Guess {
     direction: DVec2,
@@ -124,7 +129,7 @@ impl Guess {
 
 /// A part of a line, in its own coordinate `s` [m].
 #[derive(Clone, Copy)]
-struct Stretch {
+struct FittedPart {
     centre: f64,
     half_length: f64,
 }
@@ -153,8 +158,9 @@ impl Silhouette {
         self.discs.iter().map(|(centre, _)| *centre).sum::<DVec2>() / self.discs.len() as f64
     }
 
-    /// Centres, as (s, n) in the frame of `guess`, of the highest disc in each bin of `middle` that holds one.
-    fn tops(&self, guess: Guess, middle: Stretch) -> Vec<DVec2> {
+    /// Centres, as (s, n) in the frame of `guess`, of the highest disc in each bin of `middle` that
+    /// holds one.
+    fn tops(&self, guess: Guess, middle: FittedPart) -> Vec<DVec2> {
         let length = 2.0 * middle.half_length;
         let bins = (length / (2.0 * self.mean_radius)).floor().max(1.0);
         let start = middle.centre - middle.half_length;
@@ -173,8 +179,8 @@ impl Silhouette {
     }
 }
 
-/// Where to begin: in a drum, the centre of mass lies straight below the middle of a level surface in the bed's own frame,
-/// so its direction tells the angle; in a box, a level surface.
+/// Where to begin: in a drum, the centre of mass lies straight below the middle of a level surface
+/// in the bed's own frame, so its direction tells the angle; in a box, a level surface.
 fn first_guess(shape: Shape, grains: &Silhouette) -> Option<Guess> {
     let mean = grains.mean_position();
     match shape {
@@ -238,8 +244,9 @@ impl Fit {
         slope.is_finite().then_some(Self { mean, slope })
     }
 
-    /// Curvature of the least-squares parabola through `points`, positive where it is convex: `−2c` of the distances
-    /// `c (s² − …)` from this line, with the quadratic made orthogonal to constant and slope [1/m].
+    /// Curvature of the least-squares parabola through `points`, positive where it is convex: `−2c`
+    /// of the distances `c (s² − …)` from this line, with the quadratic made orthogonal to constant
+    /// and slope [1/m].
     fn curvature(&self, points: &[DVec2]) -> f64 {
         let mean_of = |value: &dyn Fn(f64) -> f64| {
             points.iter().map(|p| value(p.x - self.mean.x)).sum::<f64>() / points.len() as f64
@@ -267,7 +274,7 @@ impl Fit {
         }
     }
 
-    fn line(&self, own: Guess, middle: Stretch, tops: &[DVec2]) -> SurfaceLine {
+    fn line(&self, own: Guess, middle: FittedPart, tops: &[DVec2]) -> SurfaceLine {
         let across = (1.0 + self.slope * self.slope).sqrt();
         let distance =
             |top: &DVec2| (top.y - self.mean.y - self.slope * (top.x - self.mean.x)).abs() / across;

@@ -1,13 +1,15 @@
-//! Granular temperature: how much grains move relative to their neighbours (Eqs. 21 and 22 of Kasper et al. 2021).
+//! Granular temperature: how much grains move relative to their neighbours (Eqs. 21 and 22 of
+//! Kasper et al. 2021).
 //!
-//! `Tg = 1/(3 N) Σ |U_i|²` with `U_i = u_i − ū_i`, where `ū_i` is the mean velocity of the grains, without `i`, whose
-//! centres lie within a sphere of radius 7r/3 around the centre of `i`; in a mixture, within 7/6 of the sum of both
-//! radii. A grain with no neighbour has no `U_i` and is left out of the sum and of `N`.
+//! `Tg = 1/(3 N) Σ |U_i|²` with `U_i = u_i − ū_i`, where `ū_i` is the mean velocity of the grains,
+//! without `i`, whose centres lie within a sphere of radius 7r/3 around the centre of `i`; in a
+//! mixture, within 7/6 of the sum of both radii. A grain with no neighbour has no `U_i` and is left
+//! out of the sum and of `N`.
 //!
-//! In the laboratory frame even a rigid rotation has some temperature, because a grain's neighbours are not placed
-//! evenly around it; in the frame that turns with the drum it has none.
+//! In the laboratory frame even a rigid rotation has some temperature, because a grain's neighbours
+//! are not placed evenly around it; in the frame that turns with the drum it has none.
 
-use super::neighbours::for_each_near_pair;
+use super::near_pairs::for_each_near_pair;
 use crate::world::World;
 use glam::DVec3;
 

@@ -1,9 +1,9 @@
 //! Map of the cross-section: the mean velocity of the grains on a square grid over the x–y plane.
 //!
-//! The mean is that of [`mean_velocity`](super::mean_velocity), with the same kernel and reach; a point that no grain
-//! covers, seen along z, has none.
+//! The mean is that of [`mean_velocity`](super::mean_velocity), with the same kernel and reach; a
+//! point that no grain covers, seen along z, has none.
 
-use super::flow::{kernel_reach, weight};
+use super::velocity_kernel::{kernel_reach, weight};
 use crate::world::World;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -67,8 +67,8 @@ impl VelocityMap {
     }
 }
 
-/// The velocities in the cross-section of `world` now, seen from a frame that turns about the z axis at `turning` [rad/s]:
-/// 0 for the laboratory's. None without grains.
+/// The velocities in the cross-section of `world` now, seen from a frame that turns about the z
+/// axis at `turning` [rad/s]: 0 for the laboratory's. None without grains.
 pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
     let grains = &world.grains;
     let places = || grains.position.iter().map(|x| x.truncate());

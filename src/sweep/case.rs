@@ -7,7 +7,9 @@ use crate::headless::{
     FLOW, HeadlessError, PROFILE, SERIES, SUMMARY, SummaryFile, VELOCITY, write_flow,
     write_profile, write_series, write_velocity,
 };
-use crate::measure::{Deposit, FlowProfile, Measure, Series, Summary, VelocityMap, results};
+use crate::measure::{
+    Deposit, FlowProfile, Measure, ResultKey, RunQuantity, Series, Summary, VelocityMap, results,
+};
 use crate::simulation::{Preparation, Provenance, Run, SMALLEST_DROP, Script, TABLES_METADATA};
 use crate::solver::Fault;
 use std::io::{self, Write};
@@ -71,15 +73,12 @@ pub struct Outcome {
 impl Outcome {
     /// Whether a column collapsed.
     pub fn is_column(&self) -> bool {
-        self.result("aspect ratio α").is_some()
+        self.results.entry(RunQuantity::AspectRatio).is_some()
     }
 
-    /// The result called `name`; `√(1/Ga)` beside those of the summary.
-    pub fn result(&self, name: &str) -> Option<f64> {
-        if name == "√(1/Ga)" {
-            return Some(self.results.value("Galilei number Ga")?.powf(-0.5));
-        }
-        self.results.value(name)
+    /// The result `key` as a number in the SI unit.
+    pub fn result(&self, key: impl Into<ResultKey>) -> Option<f64> {
+        self.results.value(key)
     }
 }
 

@@ -118,7 +118,8 @@ impl Plot {
         results.flat_map(|line| self.places(line)).next().is_some()
     }
 
-    /// Where the points of `line` are on the axes; those that have no place, as zero on a logarithmic axis, are left out.
+    /// Where the points of `line` are on the axes; those that have no place, as zero on a
+    /// logarithmic axis, are left out.
     fn places<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = (f64, f64)> + 'a {
         let points = line.points.iter();
         let places = points.map(|(x, y)| (self.x.place(*x), self.y.place(*y)));

@@ -1,37 +1,31 @@
-//! The plots of a sweep of columns: Figs. 5 to 14 and 16 of Man et al. 2023, with its laws drawn in.
+//! The plots of a sweep of columns: Figs. 5 to 14 and 16 of Man et al. 2023, with its laws drawn
+//! in.
 //!
-//! Cases that differ in height alone share a colour. Where the mixing ratio is varied, plots over the aspect ratio have one
-//! panel, a file of its own, for each ratio, as in the paper.
+//! Cases that differ in height alone share a colour. Where the mixing ratio is varied, plots over
+//! the aspect ratio have one panel, a file of its own, for each ratio, as in the paper.
 
 use super::Sweep;
 use super::case::Outcome;
 use super::chart::{Axis, Line, Plot};
 use crate::measure::{
-    CRITICAL_ASPECT_RATIO, Measure, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
-    TALL_REST_TIME_LAW, cone_volume_law, contact_shares_law, run_out_law,
+    CRITICAL_ASPECT_RATIO, Measure, PEAK_TIME_LAW, REST_TIME_LAW, RunQuantity, TALL_ASPECT_RATIO,
+    TALL_REST_TIME_LAW, Unit, cone_volume_law, contact_shares_law, run_out_law,
 };
 
 /// The varied key that makes the points of a curve.
 const HEIGHT: &str = "height";
 /// The varied key that makes the panels of a figure.
 const MIX: &str = "mix";
-/// 1 g cm²/s², the paper's unit of energy [J].
-const PAPERS_ENERGY: f64 = 1e-7;
 /// Part of the axis of effective aspect ratios in which the laws are drawn.
 const LAWS_FROM: f64 = 0.4;
 const LAWS_TO: f64 = 25.0;
-
-const ASPECT: &str = "aspect ratio α";
-const EFFECTIVE: &str = "effective aspect ratio α_eff";
-const PACKED: &str = "φ_i^0.5 α_eff";
-const RUN_OUT: &str = "run-out ℛ";
 
 /// Every plot of these outcomes.
 pub fn column_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
     let figures = Figures { sweep, outcomes };
     let mut plots = figures.courses();
-    plots.extend(figures.panels("run-out-aspect", RUN_OUT, run_out_slopes));
-    plots.extend(figures.panels("height-aspect", "H_∞/R_i", height_slopes));
+    plots.extend(figures.panels("run-out-aspect", RunQuantity::RunOut, run_out_slopes));
+    plots.extend(figures.panels("height-aspect", RunQuantity::RelativeHeight, height_slopes));
     plots.extend(figures.over_effective());
     plots.extend(outcomes.iter().map(shares));
     plots
@@ -57,7 +51,8 @@ impl Figures<'_> {
         self.sweep.variations.iter().any(|v| v.key == key)
     }
 
-    /// The outcomes by their labels without these keys, in the order in which the labels first occur.
+    /// The outcomes by their labels without these keys, in the order in which the labels first
+    /// occur.
     fn groups<'b>(
         &self,
         outcomes: &[&'b Outcome],
@@ -74,8 +69,9 @@ impl Figures<'_> {
         groups
     }
 
-    /// A line of the result `y` over the result `x` for each group of cases that differ in height alone.
-    fn lines(&self, outcomes: &[&Outcome], hidden: &[&str], x: &str, y: &str) -> Vec<Line> {
+    /// A line of the result `y` over the result `x` for each group of cases that differ in height
+    /// alone.
+    fn lines(&self, outcomes: &[&Outcome], hidden: &[&str], [x, y]: [RunQuantity; 2]) -> Vec<Line> {
         let without: Vec<&str> = hidden.iter().copied().chain([HEIGHT]).collect();
         let line = |(label, members): (String, Vec<&Outcome>)| {
             let points = members
@@ -89,18 +85,18 @@ impl Figures<'_> {
     }
 
     /// The result `y` over the aspect ratio (Figs. 8, 9 and 12), one panel for each mixing ratio.
-    fn panels(&self, file: &str, y: &str, laws: fn(&[Line]) -> Vec<Line>) -> Vec<Plot> {
+    fn panels(&self, file: &str, y: RunQuantity, laws: fn(&[Line]) -> Vec<Line>) -> Vec<Plot> {
         let all: Vec<&Outcome> = self.outcomes.iter().collect();
         let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
         let others: Vec<&str> = keys.filter(|key| *key != MIX).collect();
         let panel = |(label, members): (String, Vec<&Outcome>)| {
-            let mut lines = self.lines(&members, &[MIX], ASPECT, y);
+            let mut lines = self.lines(&members, &[MIX], [RunQuantity::AspectRatio, y]);
             lines.extend(laws(&lines));
             Plot {
                 file: format!("{}.svg", named(file, &label)),
-                title: format!("{y} over α {label}"),
-                x: Axis::logarithmic("aspect ratio α"),
-                y: Axis::logarithmic(y),
+                title: format!("{} over α {label}", y.quantity().key),
+                x: axis(RunQuantity::AspectRatio),
+                y: axis(y),
                 lines,
             }
         };
@@ -108,17 +104,18 @@ impl Figures<'_> {
         groups.map(panel).collect()
     }
 
-    /// Run-out, volume of the cone and times over the effective aspect ratio (Figs. 11, 13, 14, 16).
+    /// Run-out, volume of the cone and times over the effective aspect ratio (Figs. 11, 13, 14,
+    /// 16).
     fn over_effective(&self) -> Vec<Plot> {
         let all: Vec<&Outcome> = self.outcomes.iter().collect();
-        let plot = |file: &str, x: &str, y: &str, laws: Vec<Line>| {
-            let mut lines = self.lines(&all, &[], x, y);
+        let plot = |file: &str, x: RunQuantity, y: RunQuantity, laws: Vec<Line>| {
+            let mut lines = self.lines(&all, &[], [x, y]);
             lines.extend(laws);
             Plot {
                 file: format!("{file}.svg"),
-                title: format!("{y} over {x}"),
-                x: Axis::logarithmic(x),
-                y: Axis::logarithmic(y),
+                title: format!("{} over {}", y.quantity().key, x.quantity().key),
+                x: axis(x),
+                y: axis(y),
                 lines,
             }
         };
@@ -138,18 +135,30 @@ impl Figures<'_> {
         let peak = root("0.92 √α_eff", PEAK_TIME_LAW, LAWS_FROM, LAWS_TO);
         let short = root("4.5 √α_eff below 3.5", REST_TIME_LAW, LAWS_FROM, break_at);
         let high = root("3.0 √α_eff above 13", TALL_REST_TIME_LAW, tall, LAWS_TO);
+        let effective = RunQuantity::EffectiveAspectRatio;
+        let packed = RunQuantity::PackedAspectRatio;
+        let volume = RunQuantity::RelativeConeVolume;
+        let (peak_time, rest_time) = (
+            RunQuantity::DimensionlessPeakTime,
+            RunQuantity::DimensionlessRestTime,
+        );
         vec![
-            plot("run-out", EFFECTIVE, RUN_OUT, vec![run_out()]),
-            plot("run-out-packed", PACKED, RUN_OUT, Vec::new()),
-            plot("cone-volume", EFFECTIVE, "V_cone", Vec::new()),
-            plot("cone-volume-ratio", EFFECTIVE, "V_cone/V_init", vec![cone]),
-            plot("peak-time", EFFECTIVE, "T_max", vec![peak]),
-            plot("rest-time", EFFECTIVE, "T_f", vec![short, high]),
+            plot("run-out", effective, RunQuantity::RunOut, vec![run_out()]),
+            plot("run-out-packed", packed, RunQuantity::RunOut, Vec::new()),
+            plot(
+                "cone-volume",
+                effective,
+                RunQuantity::ConeVolume,
+                Vec::new(),
+            ),
+            plot("cone-volume-ratio", effective, volume, vec![cone]),
+            plot("peak-time", effective, peak_time, vec![peak]),
+            plot("rest-time", effective, rest_time, vec![short, high]),
         ]
     }
 
-    /// Front and energy over time (Figs. 5 to 7): a plot of all heights for each group, or of all cases where the height is
-    /// not varied.
+    /// Front and energy over time (Figs. 5 to 7): a plot of all heights for each group, or of all
+    /// cases where the height is not varied.
     fn courses(&self) -> Vec<Plot> {
         let all: Vec<&Outcome> = self.outcomes.iter().collect();
         let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
@@ -159,20 +168,22 @@ impl Figures<'_> {
         } else {
             (vec![(String::new(), all)], Vec::new())
         };
-        let plot =
-            |(label, members): &(String, Vec<&Outcome>), file: &str, y: &str, value: Value| {
-                let line = |outcome: &&Outcome| {
-                    let name = or(self.label(outcome, &hidden), "case");
-                    Line::results(name, over_time(outcome, value))
-                };
-                Plot {
-                    file: format!("courses/{}.svg", named(file, label)),
-                    title: format!("{y} {label}"),
-                    x: Axis::linear("time [s]"),
-                    y: Axis::linear(y),
-                    lines: members.iter().map(line).collect(),
-                }
+        let plot = |(label, members): &(String, Vec<&Outcome>),
+                    file: &str,
+                    y: &str,
+                    value: SampleValue| {
+            let line = |outcome: &&Outcome| {
+                let name = or(self.label(outcome, &hidden), "case");
+                Line::results(name, over_time(outcome, value))
             };
+            Plot {
+                file: format!("courses/{}.svg", named(file, label)),
+                title: format!("{y} {label}"),
+                x: Axis::linear("time [s]"),
+                y: Axis::linear(y),
+                lines: members.iter().map(line).collect(),
+            }
+        };
         let both = |group| {
             [
                 plot(group, "front", "front radius R [mm]", front),
@@ -188,8 +199,13 @@ impl Figures<'_> {
     }
 }
 
+/// The axis of a result, by powers of ten and in the SI unit.
+fn axis(quantity: RunQuantity) -> Axis {
+    Axis::logarithmic(quantity.quantity().key)
+}
+
 /// A number that each sample of a case gives, by the sample's index.
-type Value = fn(&Outcome, usize) -> f64;
+type SampleValue = fn(&Outcome, usize) -> f64;
 
 fn front(outcome: &Outcome, sample: usize) -> f64 {
     1e3 * outcome.series.column(Measure::FrontRadius)[sample]
@@ -197,10 +213,10 @@ fn front(outcome: &Outcome, sample: usize) -> f64 {
 
 fn energy(outcome: &Outcome, sample: usize) -> f64 {
     let of = |measure: Measure| outcome.series.column(measure)[sample];
-    (of(Measure::TranslationalEnergy) + of(Measure::RotationalEnergy)) / PAPERS_ENERGY
+    (of(Measure::TranslationalEnergy) + of(Measure::RotationalEnergy)) * Unit::ERG.factor
 }
 
-fn over_time(outcome: &Outcome, value: Value) -> Vec<(f64, f64)> {
+fn over_time(outcome: &Outcome, value: SampleValue) -> Vec<(f64, f64)> {
     let times = outcome.series.time().iter().enumerate();
     times.map(|(k, time)| (*time, value(outcome, k))).collect()
 }
@@ -209,8 +225,8 @@ fn over_time(outcome: &Outcome, value: Value) -> Vec<(f64, f64)> {
 fn shares(outcome: &Outcome) -> Plot {
     let name = &outcome.case.name;
     let end = outcome.series.time().last().copied().unwrap_or(0.0);
-    let chance = contact_shares_law(outcome.result("second share P_2").unwrap_or(0.0));
-    let kinds: [(&str, Value); 3] = [
+    let chance = contact_shares_law(outcome.result(RunQuantity::SecondShare).unwrap_or(0.0));
+    let kinds: [(&str, SampleValue); 3] = [
         ("P11", |o, k| o.series.column(Measure::FirstPairs)[k]),
         ("P12", |o, k| o.series.column(Measure::MixedPairs)[k]),
         ("P22", |o, k| o.series.column(Measure::SecondPairs)[k]),
@@ -245,7 +261,8 @@ fn height_slopes(lines: &[Line]) -> Vec<Line> {
     slopes(lines, [("∝ α", 1.0), ("∝ α^−0.25", -0.25)])
 }
 
-/// A power law through the lowest column's point and one through the highest one's, each over a third of the range between.
+/// A power law through the lowest column's point and one through the highest one's, each over a
+/// third of the range between.
 fn slopes(lines: &[Line], [low, high]: [(&str, f64); 2]) -> Vec<Line> {
     let points = || lines.iter().flat_map(|line| &line.points);
     let first = points().min_by(|a, b| a.0.total_cmp(&b.0));
@@ -289,10 +306,10 @@ fn or(label: String, otherwise: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::case::CaseEnding;
-    use super::super::plots::plots;
+    use super::super::plot_files::plots;
     use super::super::{Case, Variation};
     use super::*;
-    use crate::measure::{FlowProfile, Sample, Series, Summary, SummaryEntry};
+    use crate::measure::{FlowProfile, MeasuredValue, Sample, Series, Summary, SummaryEntry};
     use crate::scene::Scene;
     use crate::simulation::BedStore;
 
@@ -315,20 +332,27 @@ mod tests {
         }
     }
 
-    /// A case of these varied values that follows the laws: `alpha` high, of the effective aspect ratio 1.2 times that.
+    /// A case of these varied values that follows the laws: `alpha` high, of the effective aspect
+    /// ratio 1.2 times that.
     fn outcome(values: &[&str], alpha: f64) -> Outcome {
         let effective = 1.2 * alpha;
         let entries = [
-            (ASPECT, alpha),
-            (EFFECTIVE, effective),
-            (PACKED, 0.8_f64.sqrt() * effective),
-            (RUN_OUT, run_out_law(effective)),
-            ("H_∞/R_i", alpha.min(0.8)),
-            ("V_cone", 1e-5 * alpha),
-            ("V_cone/V_init", cone_volume_law(effective)),
-            ("T_max", PEAK_TIME_LAW * effective.sqrt()),
-            ("T_f", REST_TIME_LAW * effective.sqrt()),
-            ("second share P_2", 0.3),
+            (RunQuantity::AspectRatio, alpha),
+            (RunQuantity::EffectiveAspectRatio, effective),
+            (RunQuantity::PackedAspectRatio, 0.8_f64.sqrt() * effective),
+            (RunQuantity::RunOut, run_out_law(effective)),
+            (RunQuantity::RelativeHeight, alpha.min(0.8)),
+            (RunQuantity::ConeVolume, 1e-5 * alpha),
+            (RunQuantity::RelativeConeVolume, cone_volume_law(effective)),
+            (
+                RunQuantity::DimensionlessPeakTime,
+                PEAK_TIME_LAW * effective.sqrt(),
+            ),
+            (
+                RunQuantity::DimensionlessRestTime,
+                REST_TIME_LAW * effective.sqrt(),
+            ),
+            (RunQuantity::SecondShare, 0.3),
         ];
         let mut series = Series::default();
         for step in 0..30 {
@@ -346,10 +370,9 @@ mod tests {
                 values: sample,
             });
         }
-        let entry = |(name, value): (&str, f64)| SummaryEntry {
-            name: name.into(),
-            unit: "1",
-            value: Some(value),
+        let entry = |(quantity, value): (RunQuantity, f64)| SummaryEntry {
+            key: quantity.into(),
+            value: Some(MeasuredValue::Number(value)),
             note: String::new(),
         };
         Outcome {
@@ -463,7 +486,8 @@ mod tests {
     #[test]
     fn a_single_case_is_drawn_and_what_did_not_rest_has_no_time() {
         let mut moving = outcome(&["5cm"], 2.0);
-        moving.results.entries.retain(|entry| entry.name != "T_f");
+        let rest = RunQuantity::DimensionlessRestTime.into();
+        moving.results.entries.retain(|entry| entry.key != rest);
         let plots = column_plots(&sweep(&["height=5cm"]), &[moving]);
         assert!(!of(&plots, "rest-time.svg").has_points());
         assert_eq!(names(of(&plots, "run-out.svg"))[0], "cases");

@@ -9,9 +9,10 @@ mod case;
 pub(crate) mod chart;
 mod checkpoint;
 mod column_plots;
+mod drum_plots;
 mod plan;
-mod plots;
-mod table;
+mod plot_files;
+mod results_table;
 mod velocity_plot;
 
 pub use plan::{Case, Variation};
@@ -78,10 +79,10 @@ pub fn run(sweep: &Sweep, interrupted: &AtomicBool) -> Result<SweepEnding, Headl
     let cases = plan::cases(sweep)?;
     let shares: Vec<Share> = cases.iter().map(|_| Share::default()).collect();
     let outcomes = carry_out(sweep, &cases, &shares, interrupted)?;
-    table::write_tables(sweep, &outcomes)?;
-    plots::write_plots(sweep, &outcomes)?;
+    results_table::write_tables(sweep, &outcomes)?;
+    plot_files::write_plots(sweep, &outcomes)?;
     velocity_plot::write_velocity_plots(sweep, &outcomes)?;
-    print!("{}", table::markdown(sweep, &outcomes));
+    print!("{}", results_table::markdown(sweep, &outcomes));
     let faults = count(&outcomes, CaseEnding::Faulted);
     let stopped = outcomes.len() < cases.len() || count(&outcomes, CaseEnding::Interrupted) > 0;
     println!("results in {}", sweep.out.display());

@@ -1,5 +1,5 @@
-//! The velocities in the cross-section of each case at its fastest moment, as in Fig. 4a–d of Kasper et al. 2021: colours
-//! for the speed, arrows for the direction, the drum's rim.
+//! The velocities in the cross-section of each case at its fastest moment, as in Fig. 4a–d of
+//! Kasper et al. 2021: colours for the speed, arrows for the direction, the drum's rim.
 
 use super::Sweep;
 use super::case::{Outcome, write};

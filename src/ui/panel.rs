@@ -58,5 +58,5 @@ pub fn is_column(simulation: &RunView) -> bool {
 /// Whether grains lie in a bed, whose surface is measured.
 pub fn has_bed(simulation: &RunView) -> bool {
     let world = simulation.world();
-    world.is_some_and(|world| Measure::SurfaceAngle.concerns(world))
+    world.is_some_and(|world| Measure::SurfaceAngle.applies_to(world))
 }

@@ -3,8 +3,8 @@
 //! In: what two axes show, all samples of the runs. Out: the file, whole or not at all.
 
 use crate::files::write_whole;
-use crate::measure::{Measure, Series};
-use crate::simulation::{DisplayUnit, Provenance};
+use crate::measure::{Measure, Series, Unit};
+use crate::simulation::Provenance;
 use crate::sweep::chart;
 use crate::ui::words::number;
 use crate::view::save_drawing;
@@ -26,28 +26,20 @@ impl PlotAxis {
     }
 
     /// The unit it is shown in.
-    pub fn unit(self) -> DisplayUnit {
-        match self.0 {
-            None => number::display_unit("s"),
-            Some(measure) => number::display_unit(measure.quantity().unit),
-        }
+    pub fn unit(self) -> Unit {
+        (self.0).map_or(Unit::TIME, |measure| measure.quantity().unit)
     }
 
     /// Name and unit: `Surface angle θ [°]`.
     pub fn label(self) -> String {
         let name = self.0.map_or_else(|| "Time t".to_owned(), number::title);
-        match self.unit().name {
-            "" => name,
-            unit => format!("{name} [{unit}]"),
-        }
+        self.unit().beside(&name)
     }
 
     /// Name and SI unit, as in the files of a run.
     fn column(self) -> String {
-        match self.0.map(Measure::quantity) {
-            None => "time [s]".to_owned(),
-            Some(quantity) => format!("{} [{}]", quantity.name, quantity.unit),
-        }
+        let time = || "time [s]".to_owned();
+        (self.0).map_or_else(time, |measure| measure.quantity().column())
     }
 }
 

@@ -148,7 +148,7 @@ impl ColourBy {
     pub fn applies(self, world: &World) -> bool {
         match self {
             Self::Species => true,
-            Self::Quantity(quantity) => quantity.applies(world),
+            Self::Quantity(quantity) => quantity.applies_to(world),
         }
     }
 }

@@ -13,7 +13,6 @@ use std::path::Path;
 
 /// Folders that still have circles among what stands in them.
 const CIRCLES_LEFT: &[&str] = &[
-    "src/measure",
     "src/run",
     "src/scene",
     "src/scene/file",

@@ -8,6 +8,7 @@ mod energy;
 mod flow;
 mod grain;
 mod packing;
+mod registry;
 mod sample;
 mod series;
 mod surface;

@@ -1,7 +1,7 @@
 //! Kasper et al. 2021: the drum, dry and wet. What holds is asserted here; what does not stands in docs/validation.md.
 
 use super::value;
-use grainfall::measure::{Summary, summarise};
+use grainfall::measure::{Measure, ResultKey, RunQuantity, Summary, summarise};
 use grainfall::scene::Scene;
 use grainfall::simulation::{BedStore, Preparation, Prepared, SMALLEST_DROP};
 use grainfall::solver::advise;
@@ -30,36 +30,41 @@ fn results(settings: &[(&str, &str)]) -> Summary {
 fn dry_drum_of_3_mm_is_a_sawtooth_that_rises_with_the_drum() {
     let dry = results(&[("liquid", "dry")]);
     // 3.0 °/s; θ is read to about 0.1° over 0.2 s.
-    assert!((value(&dry, "rise rate").to_degrees() - 3.0).abs() < 0.1);
-    assert!(value(&dry, "avalanches") >= 5.0);
+    assert!((value(&dry, RunQuantity::RiseRate).to_degrees() - 3.0).abs() < 0.1);
+    assert!(value(&dry, RunQuantity::Avalanches) >= 5.0);
     let (quiet, loud) = (
-        value(&dry, "granular temperature between avalanches"),
-        value(&dry, "granular temperature in avalanches"),
+        value(&dry, RunQuantity::TemperatureBetweenAvalanches),
+        value(&dry, RunQuantity::TemperatureInAvalanches),
     );
     // Rigid rotation alone gives 1.8e-9 m²/s² in the laboratory frame.
     assert!(quiet < 4e-9 && loud > 1e4 * quiet);
-    assert!(value(&dry, "relative energy residual").abs() < 2e-3);
+    assert!(value(&dry, RunQuantity::RelativeEnergyResidual).abs() < 2e-3);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn dry_angle_and_drop_grow_with_the_radius() {
     let [small, large] = ["2mm", "3mm"].map(|r| results(&[("liquid", "dry"), ("radius", r)]));
-    assert!(value(&small, "surface angle") < value(&large, "surface angle"));
-    assert!(value(&small, "drop Δθ") < value(&large, "drop Δθ"));
+    assert!(value(&small, Measure::SurfaceAngle) < value(&large, Measure::SurfaceAngle));
+    assert!(value(&small, RunQuantity::Drop) < value(&large, RunQuantity::Drop));
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn viscosity_lowers_drops_and_temperature_and_the_bed_no_longer_rests() {
     let [dry, water, glycerol] = ["dry", "1", "7"].map(|n| results(&[("liquid", n)]));
-    for name in ["drop Δθ", "granular temperature"] {
-        let [dry, water, glycerol] = [&dry, &water, &glycerol].map(|s| value(s, name));
+    let keys: [ResultKey; 2] = [
+        RunQuantity::Drop.into(),
+        Measure::GranularTemperature.into(),
+    ];
+    for key in keys {
+        let [dry, water, glycerol] = [&dry, &water, &glycerol].map(|s| value(s, key));
         assert!(
             dry > water && water > glycerol,
-            "{name}: {dry} {water} {glycerol}"
+            "{}: {dry} {water} {glycerol}",
+            key.name()
         );
     }
-    let share = "non-rigid share ta/ts";
+    let share = RunQuantity::NonRigidShare;
     assert!(value(&glycerol, share) > value(&water, share));
 }

@@ -4,12 +4,13 @@
 mod kasper2021;
 mod man2023;
 
-use grainfall::measure::Summary;
+use grainfall::measure::{ResultKey, Summary};
 
-/// The result `name`, printed too.
+/// The result `key`, printed too.
 #[track_caller]
-fn value(summary: &Summary, name: &str) -> f64 {
-    let value = summary.value(name).unwrap_or(f64::NAN);
-    println!("{name}: {value:.4e}");
+fn value(summary: &Summary, key: impl Into<ResultKey>) -> f64 {
+    let key = key.into();
+    let value = summary.value(key).unwrap_or(f64::NAN);
+    println!("{}: {value:.4e}", key.name());
     value
 }

@@ -2,7 +2,7 @@
 //! docs/validation.md.
 
 use super::value;
-use grainfall::measure::{Summary, results};
+use grainfall::measure::{Measure, RunQuantity, Summary, results};
 use grainfall::scene::Scene;
 use grainfall::simulation::{BedStore, Preparation, Prepared, SMALLEST_DROP};
 use std::sync::Arc;
@@ -33,23 +33,26 @@ fn results_of(settings: &[(&str, &str)]) -> Summary {
 fn column_of_1_cm_falls_and_stops_as_the_paper_says() {
     let fallen = results_of(&[]);
     // Samples are 0.02 s apart.
-    assert!((value(&fallen, "peak time t_max") - 0.06).abs() < 0.021);
-    let effective = value(&fallen, "effective aspect ratio α_eff");
-    assert!(value(&fallen, "T_max") >= 0.92 * effective.sqrt());
+    assert!((value(&fallen, RunQuantity::PeakTime) - 0.06).abs() < 0.021);
+    let effective = value(&fallen, RunQuantity::EffectiveAspectRatio);
+    assert!(value(&fallen, RunQuantity::DimensionlessPeakTime) >= 0.92 * effective.sqrt());
     assert!(
-        value(&fallen, "rest time t_f").is_finite(),
+        value(&fallen, RunQuantity::RestTime).is_finite(),
         "it has stopped"
     );
     // The paper's shares, ± 0.04 for 2000 grains.
     let shares = [
-        ("pairs of first species", 0.49),
-        ("mixed pairs", 0.42),
-        ("pairs of second species", 0.09),
+        (Measure::FirstPairs, 0.49),
+        (Measure::MixedPairs, 0.42),
+        (Measure::SecondPairs, 0.09),
     ];
-    for (name, share) in shares {
-        assert!((value(&fallen, name) - share).abs() < 0.04, "{name}");
+    for (measure, share) in shares {
+        assert!(
+            (value(&fallen, measure) - share).abs() < 0.04,
+            "{measure:?}"
+        );
     }
-    assert!(value(&fallen, "relative energy residual").abs() < 1e-3);
+    assert!(value(&fallen, RunQuantity::RelativeEnergyResidual).abs() < 1e-3);
 }
 
 #[test]
@@ -57,7 +60,7 @@ fn column_of_1_cm_falls_and_stops_as_the_paper_says() {
 fn friction_holds_the_front_back() {
     let [slippery, rough] = [("0.1", "0.1"), ("0.4", "0.8")].map(|(first, second)| {
         let fallen = results_of(&[("mu11", first), ("mu22", second)]);
-        value(&fallen, "run-out ℛ")
+        value(&fallen, RunQuantity::RunOut)
     });
     assert!(slippery > 1.3 * rough, "{slippery} {rough}");
 }

@@ -1,9 +1,10 @@
-//! The running wet drum beside the laws of Kasper et al. 2021: the drops over viscosity with Eq. 23, the non-rigid share over
-//! √(1/Ga).
+//! The running wet drum beside the laws of Kasper et al. 2021: the drops over viscosity with Eq.
+//! 23, the non-rigid share over √(1/Ga).
 //!
-//! In: the samples since the last change of a parameter. Out: one point on each plot that moves as the run goes on.
+//! In: the samples since the last change of a parameter. Out: one point on each plot that moves as
+//! the run goes on.
 
-use crate::measure::{drop_ratio_law, dry_drum, galilei_number};
+use crate::measure::{RunQuantity, drop_ratio_law, dry_drum};
 use crate::simulation::{Command, Parameter, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::panels::averages::Averages;
@@ -23,7 +24,8 @@ pub struct BesidePaper {
     averages: Averages,
 }
 
-/// One plot: a law, a threshold, and where the run stands. The horizontal axis is one of powers of ten.
+/// One plot: a law, a threshold, and where the run stands. The horizontal axis is one of powers of
+/// ten.
 pub struct Comparison {
     /// What tells it from the others.
     pub id: &'static str,
@@ -72,12 +74,12 @@ impl Panel for BesidePaper {
         let radius = world.grains.radius.first().copied().unwrap_or(0.0);
         let from = last_change(run);
         let summary = self.averages.over(run, from);
-        let drop = summary.value("drop Δθ");
-        let count = summary.value("avalanches").unwrap_or(0.0);
+        let drop = summary.value(RunQuantity::Drop);
+        let count = summary.value(RunQuantity::Avalanches).unwrap_or(0.0);
         let dry = dry_drum(radius).map(|drum| drum.drop);
         let ratio = drop.zip(dry).map(|(drop, dry)| drop / dry);
-        let flowing = summary.value("non-rigid share ta/ts");
-        let inverse_root = galilei_number(world).map(|number| number.powf(-0.5));
+        let flowing = summary.value(RunQuantity::NonRigidShare);
+        let inverse_root = summary.value(RunQuantity::InverseRootGalilei);
         let millipascals = 1e3 * viscosity;
         comparison_ui(
             ui,

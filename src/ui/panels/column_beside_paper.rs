@@ -1,7 +1,8 @@
-//! The collapsing column beside the laws of Man et al. 2023: run-out, volume of the cone and time to rest over the effective
-//! aspect ratio.
+//! The collapsing column beside the laws of Man et al. 2023: run-out, volume of the cone and time
+//! to rest over the effective aspect ratio.
 //!
-//! In: the samples so far. Out: one point on each plot; it moves as the front does and stays where the column comes to rest.
+//! In: the samples so far. Out: one point on each plot; it moves as the front does and stays where
+//! the column comes to rest.
 
 use crate::measure::{
     CRITICAL_ASPECT_RATIO, Collapse, Column, REST_TIME_LAW, TALL_ASPECT_RATIO, TALL_REST_TIME_LAW,

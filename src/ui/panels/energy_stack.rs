@@ -187,14 +187,14 @@ fn numbers_ui(ui: &mut egui::Ui, run: &RunView) {
                 number::title(layer),
                 number::with_prefix(value, "J")
             ))
-            .on_hover_text(layer.quantity().description);
+            .on_hover_text(layer.quantity().explanation());
         });
     }
     let residual = sample.value(Measure::EnergyResidual);
     let row = |measure: Measure, value: f64| Row {
         name: number::title(measure),
         value: number::with_prefix(value, "J"),
-        hint: measure.quantity().description.to_owned(),
+        hint: measure.quantity().explanation(),
     };
     let works = [Measure::GravityWork, Measure::WallWork];
     let rows = works.map(|measure| row(measure, sample.value(measure)));

@@ -157,7 +157,7 @@ impl Explorer {
             &[]
         };
         let shown = moment_shown(simulation).filter(|_| over_time);
-        let units = [x.unit().name, y.unit().name];
+        let units = [x.unit().shown, y.unit().shown];
         // Another pair of quantities begins with bounds of its own.
         let name = format!("{} over {}", y.label(), x.label());
         ui.label(RichText::new(&name).strong());

@@ -1,6 +1,6 @@
 //! Measured numbers of the latest sample, averages over the run, and the energy ledger.
 
-use crate::measure::{Measure, Sample, Summary};
+use crate::measure::{Measure, ResultKey, RunQuantity, Sample, Summary};
 use crate::simulation::{RunView, Simulation};
 use crate::ui::panel::{Panel, is_column};
 use crate::ui::panels::averages::Averages;
@@ -37,35 +37,32 @@ const LATEST: [Measure; 22] = [
     Measure::SecondPairs,
 ];
 
-/// What the averages show, by the summary's names, and what they are called here.
-const AVERAGES: [(&str, &str); 8] = [
-    ("surface angle", "Mean angle ⟨θ⟩"),
-    ("maximum angle θ_m", "Maximum angle θ_m"),
-    ("repose angle θ_r", "Repose angle θ_r"),
-    ("drop Δθ", "Drop ⟨Δθ⟩"),
-    ("avalanches", "Avalanches"),
-    ("rise rate", "Rise rate"),
-    ("granular temperature", "Temperature ⟨Tg⟩"),
-    ("non-rigid share ta/ts", "Flowing share ta/ts"),
+/// The averages of a bed.
+const AVERAGES: [ResultKey; 8] = [
+    ResultKey::OfSamples(Measure::SurfaceAngle),
+    ResultKey::OfRun(RunQuantity::MaximumAngle),
+    ResultKey::OfRun(RunQuantity::ReposeAngle),
+    ResultKey::OfRun(RunQuantity::Drop),
+    ResultKey::OfRun(RunQuantity::Avalanches),
+    ResultKey::OfRun(RunQuantity::RiseRate),
+    ResultKey::OfSamples(Measure::GranularTemperature),
+    ResultKey::OfRun(RunQuantity::NonRigidShare),
 ];
 
 /// What stands in their place of a column.
-const COLLAPSE: [(&str, &str); 12] = [
-    (
-        "effective aspect ratio α_eff",
-        "Effective aspect ratio α_eff",
-    ),
-    ("particle friction μ_p", "Particle friction μ_p"),
-    ("solid fraction φ_i", "Solid fraction φ_i"),
-    ("run-out ℛ", "Run-out"),
-    ("H_∞/R_i", "Height H_∞/R_i"),
-    ("V_cone/V_init", "Cone volume V_cone/V_init"),
-    ("peak energy", "Peak energy per grain"),
-    ("peak time t_max", "Peak time t_max"),
-    ("rest time t_f", "Rest time t_f"),
-    ("T_max", "T_max"),
-    ("T_f", "T_f"),
-    ("flat radius", "Flat radius of the top"),
+const COLLAPSE: [ResultKey; 12] = [
+    ResultKey::OfRun(RunQuantity::EffectiveAspectRatio),
+    ResultKey::OfRun(RunQuantity::ParticleFriction),
+    ResultKey::OfRun(RunQuantity::SolidFraction),
+    ResultKey::OfRun(RunQuantity::RunOut),
+    ResultKey::OfRun(RunQuantity::RelativeHeight),
+    ResultKey::OfRun(RunQuantity::RelativeConeVolume),
+    ResultKey::OfRun(RunQuantity::PeakEnergy),
+    ResultKey::OfRun(RunQuantity::PeakTime),
+    ResultKey::OfRun(RunQuantity::RestTime),
+    ResultKey::OfRun(RunQuantity::DimensionlessPeakTime),
+    ResultKey::OfRun(RunQuantity::DimensionlessRestTime),
+    ResultKey::OfRun(RunQuantity::FlatRadius),
 ];
 
 /// Terms of the energy balance, and whether each is put in, kept or lost.
@@ -110,11 +107,11 @@ impl Panel for Results {
             ui.weak("Numbers appear with the first sample.");
             return;
         };
-        let concerns = |measure: Measure| {
+        let applies = |measure: Measure| {
             let world = run.world();
-            world.is_none_or(|world| measure.concerns(world))
+            world.is_none_or(|world| measure.applies_to(world))
         };
-        latest_ui(ui, &sample, concerns);
+        latest_ui(ui, &sample, applies);
         ui.add_space(6.0);
         if is_column(run) {
             ui.label(RichText::new("The collapse so far").strong());
@@ -123,7 +120,7 @@ impl Panel for Results {
             self.averages_ui(ui, run);
         }
         ui.add_space(6.0);
-        energy_ui(ui, &sample, concerns);
+        energy_ui(ui, &sample, applies);
     }
 }
 
@@ -148,43 +145,38 @@ impl Results {
     }
 }
 
-/// The entries of `summary` that `shown` lists, under the names it gives them.
-fn summary_ui(ui: &mut egui::Ui, summary: &Summary, shown: &[(&str, &str)]) {
+/// The entries of `summary` under these keys.
+fn summary_ui(ui: &mut egui::Ui, summary: &Summary, keys: &[ResultKey]) {
     table_ui(
         ui,
-        shown.iter().map(|&(key, name)| {
-            let entry = summary.entries.iter().find(|entry| entry.name == key);
-            let value = entry.and_then(|entry| entry.value).unwrap_or(f64::NAN);
-            Row {
-                name: name.into(),
-                value: match key {
-                    "avalanches" => number::fixed(value, 0),
-                    _ => number::with_unit(value, entry.map_or("1", |entry| entry.unit)),
-                },
-                hint: entry.map_or_else(String::new, |entry| entry.note.clone()),
-            }
+        keys.iter().map(|&key| Row {
+            name: key.label(),
+            value: summary.text(key),
+            hint: summary
+                .entry(key)
+                .map_or_else(String::new, |entry| entry.note.clone()),
         }),
     );
 }
 
-fn latest_ui(ui: &mut egui::Ui, sample: &Sample, concerns: impl Fn(Measure) -> bool) {
+fn latest_ui(ui: &mut egui::Ui, sample: &Sample, applies: impl Fn(Measure) -> bool) {
     ui.label(RichText::new(format!("At {:.2} s", sample.time)).strong());
     table_ui(
         ui,
         LATEST
             .into_iter()
-            .filter(|m| concerns(*m))
+            .filter(|m| applies(*m))
             .map(|measure| Row {
                 name: number::title(measure),
-                value: number::with_unit(sample.value(measure), measure.quantity().unit),
-                hint: measure.quantity().description.into(),
+                value: measure.quantity().text(sample.value(measure)),
+                hint: measure.quantity().explanation(),
             }),
     );
 }
 
 /// The energy ledger with one prefix for all terms, so that they compare.
-fn energy_ui(ui: &mut egui::Ui, sample: &Sample, concerns: impl Fn(Measure) -> bool) {
-    let energies = ENERGIES.iter().filter(|(measure, _)| concerns(*measure));
+fn energy_ui(ui: &mut egui::Ui, sample: &Sample, applies: impl Fn(Measure) -> bool) {
+    let energies = ENERGIES.iter().filter(|(measure, _)| applies(*measure));
     let largest = energies
         .clone()
         .map(|(measure, _)| sample.value(*measure).abs())
@@ -195,7 +187,7 @@ fn energy_ui(ui: &mut egui::Ui, sample: &Sample, concerns: impl Fn(Measure) -> b
     let terms = energies.map(|&(measure, role)| Row {
         name: format!("{} ({role})", number::title(measure)),
         value: in_prefix(measure),
-        hint: measure.quantity().description.into(),
+        hint: measure.quantity().explanation(),
     });
     let residual = sample.value(Measure::EnergyResidual);
     let share = number::fixed(100.0 * residual.abs() / largest, 3);

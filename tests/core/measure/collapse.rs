@@ -1,7 +1,9 @@
 //! Collapses whose energy and front over time are known, and what samples of a column hold.
 
 use super::*;
-use grainfall::measure::{Collapse, Measure, Sample, Series, results, sample};
+use grainfall::measure::{
+    Collapse, Measure, MeasuredValue, RunQuantity, Sample, Series, results, sample,
+};
 
 /// Samples every 0.02 s of an energy per grain (two thirds of it translation) and a front, up to `end` [s].
 fn course(end: f64, energy: impl Fn(f64) -> f64, front: impl Fn(f64) -> f64) -> Series {
@@ -90,12 +92,12 @@ fn samples_of_a_column_hold_what_concerns_it() {
     let world = three_grains();
     let sample = sample(&world);
     for measure in Measure::ALL {
-        let name = measure.quantity().name;
+        let name = measure.quantity().key;
         let is_common = matches!(
             measure,
             Measure::Bridges | Measure::Ruptures | Measure::ViscousLoss | Measure::CapillaryLoss
         );
-        if measure.concerns(&world) || is_common {
+        if measure.applies_to(&world) || is_common {
             assert!(sample.value(measure).is_finite(), "{name}");
         } else {
             assert!(sample.value(measure).is_nan(), "{name}");
@@ -121,12 +123,8 @@ fn drums_hold_what_they_held_and_nothing_of_columns() {
     assert_eq!(held[..], Measure::ALL[..22]);
     assert_eq!(held.last(), Some(&Measure::CapillaryLoss));
     let sample = sample(&world);
-    for measure in Measure::ALL.into_iter().filter(|m| !m.concerns(&world)) {
-        assert!(
-            sample.value(measure).is_nan(),
-            "{}",
-            measure.quantity().name
-        );
+    for measure in Measure::ALL.into_iter().filter(|m| !m.applies_to(&world)) {
+        assert!(sample.value(measure).is_nan(), "{}", measure.quantity().key);
     }
 }
 
@@ -135,27 +133,47 @@ fn results_of_a_column_are_those_of_its_collapse() {
     let world = three_grains();
     let series = course(1.0, energy, front);
     let summary = results(&series, &world, 0.4, 1.0);
-    let value = |name: &str| summary.value(name).unwrap_or_else(|| panic!("{name}"));
+    let value = |quantity: RunQuantity| {
+        let value = summary.value(quantity);
+        value.unwrap_or_else(|| panic!("{quantity:?}"))
+    };
     assert_eq!((summary.from, summary.samples), (0.0, 51));
-    assert_close(value("peak time t_max"), 0.18, 1e-15);
-    assert_close(value("rest time t_f"), 0.38, 1e-15);
+    assert_close(value(RunQuantity::PeakTime), 0.18, 1e-15);
+    assert_close(value(RunQuantity::RestTime), 0.38, 1e-15);
     let unit = (0.025_f64 / 9.81).sqrt();
-    assert_close(value("T_max") * unit, 0.18, 1e-15);
-    assert_close(value("T_f") * unit, 0.38, 1e-15);
-    assert_close(value("run-out ℛ"), 0.03 / 0.025, 1e-14);
-    assert_close(value("H_∞/R_i"), 1.2, 1e-14);
-    assert_close(value("aspect ratio α"), 2.0, 1e-15);
+    assert_close(
+        value(RunQuantity::DimensionlessPeakTime) * unit,
+        0.18,
+        1e-15,
+    );
+    assert_close(
+        value(RunQuantity::DimensionlessRestTime) * unit,
+        0.38,
+        1e-15,
+    );
+    assert_close(value(RunQuantity::RunOut), 0.03 / 0.025, 1e-14);
+    assert_close(value(RunQuantity::RelativeHeight), 1.2, 1e-14);
+    assert_close(value(RunQuantity::AspectRatio), 2.0, 1e-15);
     // 0.055² · 0.03 / 3 over 0.025² · 0.05
-    assert_close(value("V_cone/V_init"), 0.968, 1e-12);
+    assert_close(value(RunQuantity::RelativeConeVolume), 0.968, 1e-12);
     // Two of three grains: 4/9 · 0.1 + 1/9 · 0.4 + 4/9 · 0.16
-    assert_close(value("particle friction μ_p"), 1.44 / 9.0, 1e-15);
-    assert_eq!(summary.value("surface angle"), None);
-    assert_eq!(summary.value("avalanches"), None);
-    let names: std::collections::HashSet<_> = summary.entries.iter().map(|e| &e.name).collect();
+    assert_close(value(RunQuantity::ParticleFriction), 1.44 / 9.0, 1e-15);
+    assert_eq!(summary.value(Measure::SurfaceAngle), None);
+    assert_eq!(summary.value(RunQuantity::Avalanches), None);
+    let names: std::collections::HashSet<_> =
+        summary.entries.iter().map(|e| e.key.name()).collect();
     assert_eq!(names.len(), summary.entries.len());
     assert!(summary.entries.iter().all(|entry| !entry.note.is_empty()));
+    // A heap of three grains in a row has no flat top.
+    let shape = summary.get(RunQuantity::Shape);
+    assert_eq!(shape, Some(MeasuredValue::Choice("cone")));
+    assert_eq!(summary.value(RunQuantity::Shape), None);
+    assert_eq!(summary.text(RunQuantity::Shape), "cone");
+    let text = serde_json::to_string(&summary).unwrap();
+    assert!(text.contains(r#""name":"deposit shape","unit":"1","value":"cone""#));
+    assert!(text.contains(r#""name":"front radius R_∞","unit":"m","value":0.05"#));
     // While it moves there is no rest time.
     let moving = results(&course(0.16, energy, front), &world, 0.0, 1.0);
-    assert_eq!(moving.value("rest time t_f"), None);
-    assert_eq!(moving.value("T_f"), None);
+    assert_eq!(moving.value(RunQuantity::RestTime), None);
+    assert_eq!(moving.value(RunQuantity::DimensionlessRestTime), None);
 }

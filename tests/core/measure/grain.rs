@@ -67,8 +67,8 @@ fn kinetic_energy_of_grains_adds_up_to_that_of_the_world() {
 #[test]
 fn liquid_is_counted_in_litres_and_only_where_there_is_any() {
     let mut world = squeezed();
-    assert!(!GrainQuantity::Liquid.applies(&world));
-    assert!(GrainQuantity::Pressure.applies(&world));
+    assert!(!GrainQuantity::Liquid.applies_to(&world));
+    assert!(GrainQuantity::Pressure.applies_to(&world));
     world.grains.film[1] = 2e-9;
     assert_close(values(GrainQuantity::Liquid, &world)[1], 2e-6, 1e-20);
 }

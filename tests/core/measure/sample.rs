@@ -1,8 +1,7 @@
 //! Whole samples: what they hold, that they are the same each time, and that no state makes them panic or hang.
 
 use super::*;
-use grainfall::measure::{Measure, QUANTITIES, Sample, sample};
-use std::collections::HashSet;
+use grainfall::measure::{Measure, Sample, sample};
 
 fn bits(sample: &Sample) -> Vec<u64> {
     sample.values.iter().map(|value| value.to_bits()).collect()
@@ -20,17 +19,6 @@ fn turning_bed() -> World {
         touch(&mut world, i, Partner::Grain(i + 1), DVec3::Y * 1e-6);
     }
     world
-}
-
-#[test]
-fn every_measure_has_its_own_name_and_column() {
-    assert_eq!(QUANTITIES.len(), Measure::COUNT);
-    let names: HashSet<_> = QUANTITIES.iter().map(|quantity| quantity.name).collect();
-    assert_eq!(names.len(), Measure::COUNT);
-    for (column, measure) in Measure::ALL.into_iter().enumerate() {
-        assert_eq!(measure as usize, column);
-        assert_eq!(measure.quantity(), &QUANTITIES[column]);
-    }
 }
 
 #[test]

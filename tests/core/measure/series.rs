@@ -1,7 +1,10 @@
 //! Series, avalanches and summaries of curves whose extrema are known.
 
 use super::*;
-use grainfall::measure::{Avalanche, Measure, Sample, Series, avalanches, summarise};
+use grainfall::measure::{
+    Avalanche, DropThreshold, Measure, ResultKey, RunQuantity, Sample, Series, avalanches,
+    summarise,
+};
 use std::f64::consts::PI;
 
 const DEGREE: f64 = PI / 180.0;
@@ -154,7 +157,7 @@ fn rigid_rotation_rises_at_the_drum_speed_between_avalanches() {
         .map(|angle| angle + 0.05 * DEGREE * noise.centred())
         .collect();
     let summary = summarise(&series(&theta, |_| 0.0), 0.0, DEGREE);
-    let rate = summary.value("rise rate").expect("rises") / DEGREE;
+    let rate = summary.value(RunQuantity::RiseRate).expect("rises") / DEGREE;
     // Noise of 0.03° (r.m.s.) at both ends of 0.2 s: 0.2 °/s a slope, of which some 200 overlap in groups of ten.
     assert_close(rate, RISE, 0.15);
 }
@@ -167,33 +170,34 @@ fn summary_averages_the_window_and_nothing_before_it() {
     assert_eq!(summary.samples, 100);
     assert_eq!((summary.from, summary.to), (1.0, 149.0 * INTERVAL));
     // Rounding of 100 additions.
-    assert_close(summary.value("surface angle").expect("θ"), 0.4, 1e-14);
+    assert_close(summary.value(Measure::SurfaceAngle).expect("θ"), 0.4, 1e-14);
     assert_close(
-        summary.value("granular temperature").expect("Tg"),
+        summary.value(Measure::GranularTemperature).expect("Tg"),
         2.75e-9,
         1e-22,
     );
-    assert_eq!(summary.value("non-rigid share ta/ts"), Some(0.25));
-    assert_eq!(summary.value("avalanches"), Some(0.0));
-    assert_eq!(summary.value("drop Δθ"), None);
-    assert_eq!(summary.value("packing fraction"), None);
+    assert_eq!(summary.value(RunQuantity::NonRigidShare), Some(0.25));
+    assert_eq!(summary.value(RunQuantity::Avalanches), Some(0.0));
+    assert_eq!(summary.value(RunQuantity::Drop), None);
+    assert_eq!(summary.value(Measure::PackingFraction), None);
 }
 
 #[test]
 fn summary_quotes_avalanches_for_each_smallest_drop() {
     let theta = sawtooth(&[27.0, 24.0, 27.0, 26.0], &[23.0, 23.2, 24.4, 22.0]);
     let summary = summarise(&series(&theta, |_| 0.0), 0.0, 2.0 * DEGREE);
-    assert_eq!(summary.value("avalanches"), Some(2.0));
-    for (name, count) in [
-        ("avalanches (≥ 0.5°)", 4.0),
-        ("avalanches (≥ 1°)", 3.0),
-        ("avalanches (≥ 2°)", 2.0),
-        ("avalanches (≥ 3°)", 2.0),
+    assert_eq!(summary.value(RunQuantity::Avalanches), Some(2.0));
+    for (threshold, count) in [
+        (DropThreshold::HalfDegree, 4.0),
+        (DropThreshold::OneDegree, 3.0),
+        (DropThreshold::TwoDegrees, 2.0),
+        (DropThreshold::ThreeDegrees, 2.0),
     ] {
-        assert_eq!(summary.value(name), Some(count), "{name}");
+        let key = ResultKey::OfAvalanches(RunQuantity::Avalanches, threshold);
+        assert_eq!(summary.value(key), Some(count), "{}", key.name());
     }
     // Tops of 27° twice, each rounded by the smoothing.
-    let top = summary.value("maximum angle θ_m").expect("θ_m") / DEGREE;
+    let top = summary.value(RunQuantity::MaximumAngle).expect("θ_m") / DEGREE;
     assert_close(top, 27.0, 0.15);
 }
 
@@ -206,18 +210,18 @@ fn temperature_peaks_are_told_apart_from_the_quiet_between() {
         0.0,
         DEGREE,
     );
-    let value = |name| summary.value(name).expect(name);
+    let value = |quantity: RunQuantity| summary.value(quantity).expect("a temperature");
     // The falls last 0.3 s; the margin of the smoothing adds up to 0.1 s of quiet on either side.
-    assert_close(value("granular temperature in avalanches"), 1e-6, 0.45e-6);
-    assert_eq!(value("granular temperature between avalanches"), 1e-10);
+    assert_close(value(RunQuantity::TemperatureInAvalanches), 1e-6, 0.45e-6);
+    assert_eq!(value(RunQuantity::TemperatureBetweenAvalanches), 1e-10);
 }
 
 #[test]
 fn summary_of_nothing_has_entries_without_values() {
     let summary = summarise(&Series::default(), 0.0, DEGREE);
     assert_eq!(summary.samples, 0);
-    assert_eq!(summary.value("surface angle"), None);
-    assert_eq!(summary.value("avalanches"), Some(0.0));
+    assert_eq!(summary.value(Measure::SurfaceAngle), None);
+    assert_eq!(summary.value(RunQuantity::Avalanches), Some(0.0));
 }
 
 #[test]
@@ -227,8 +231,11 @@ fn summary_names_are_its_own_and_it_can_be_written() {
         0.0,
         DEGREE,
     );
-    let names: std::collections::HashSet<_> =
-        summary.entries.iter().map(|entry| &entry.name).collect();
+    let names: std::collections::HashSet<_> = summary
+        .entries
+        .iter()
+        .map(|entry| entry.key.name())
+        .collect();
     assert_eq!(names.len(), summary.entries.len());
     let text = serde_json::to_string(&summary).expect("JSON");
     assert!(

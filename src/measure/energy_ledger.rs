@@ -1,15 +1,23 @@
 //! The energy balance: what is stored, what came in, what was lost, and what remains unexplained.
 //!
-//! Stored energy is read from the world as it is, by the contact laws' own formulas ([`crate::solver::law`]); work and losses are read from the world's own books
-//! ([`crate::world::Ledger`], [`crate::world::Grains::exchanged`]), which the solver and the commands keep.
+//! In: a world. Out: energies [J], none of which is changed here.
+//!
+//! Stored energy is read from the world as it is, by the contact laws' own formulas
+//! ([`crate::physics::law`]); work and losses are read from the world's own books
+//! ([`crate::world::Ledger`], [`crate::world::Grains::exchanged`]), which the solver and the
+//! commands keep.
 
-use super::contacts::overlap;
+use super::contact_network::overlap;
 use crate::physics::{ContactLaw, FeatureRule};
 use crate::world::{Contact, FeatureContact, World};
 use serde::Serialize;
 
-/// All terms of `kinetic + elastic − initial = gravity + walls + commands − dashpots − sliding − rolling −
-/// viscous − capillary + residual`.
+/// All terms of the balance
+///
+/// ```text
+/// kinetic + elastic − initial = gravity + walls + commands
+///     − dashpots − sliding − rolling − viscous − capillary + residual
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EnergyLedger {
     /// Kinetic and elastic energy at the start [J].
@@ -26,15 +34,15 @@ pub struct EnergyLedger {
     pub command_work: f64,
     /// Lost in dashpots since the start [J].
     pub dashpot_loss: f64,
-    /// Lost by tangential springs since the start [J]: in sliding and, with Hertz–Mindlin contacts, as their stiffness
-    /// follows the overlap, which no force does work against.
+    /// Lost by tangential springs since the start [J]: in sliding and, with Hertz–Mindlin contacts,
+    /// as their stiffness follows the overlap, which no force does work against.
     pub sliding_loss: f64,
     /// Lost in rolling since the start [J].
     pub rolling_loss: f64,
     /// Lost to the viscosity of the liquid since the start [J].
     pub viscous_loss: f64,
-    /// Taken by capillary forces since the start [J]: what bridges that broke have cost, and what those that hold would give
-    /// back if their grains came together.
+    /// Taken by capillary forces since the start [J]: what bridges that broke have cost, and what
+    /// those that hold would give back if their grains came together.
     pub capillary_loss: f64,
 }
 
@@ -95,8 +103,8 @@ impl EnergyLedger {
     }
 }
 
-/// Energy stored in the normal and tangential springs of all contacts [J], of polyhedra in those of all features that touch;
-/// a contact that has opened stores none.
+/// Energy stored in the normal and tangential springs of all contacts [J], of polyhedra in those of
+/// all features that touch; a contact that has opened stores none.
 pub fn elastic_energy(world: &World) -> f64 {
     if let Some(polyhedra) = &world.polyhedra {
         return feature_energy(&polyhedra.features, world.law);
@@ -119,8 +127,9 @@ pub fn elastic_energy(world: &World) -> f64 {
         .sum()
 }
 
-/// Energy stored in the springs of polyhedra [J]: `½ K_n δ² + ½ k_t ξ²` of every pair of features. Where the features of two
-/// bodies share one contact, each has the part `Σδ²/(Σδ)²` of `K_n`; their `k_t` is kept with them.
+/// Energy stored in the springs of polyhedra [J]: `½ K_n δ² + ½ k_t ξ²` of every pair of features.
+/// Where the features of two bodies share one contact, each has the part `Σδ²/(Σδ)²` of `K_n`;
+/// their `k_t` is kept with them.
 fn feature_energy(features: &[FeatureContact], law: ContactLaw) -> f64 {
     let ContactLaw::Hooke {
         normal_stiffness,

@@ -1,7 +1,7 @@
 //! Pairs of grains that are near each other, found with a cell grid.
 //!
-//! In: centres and a reach. Out: a visit to each pair closer than the reach, once, in an order that depends on nothing
-//! but the centres.
+//! In: centres and a reach. Out: a visit to each pair closer than the reach, once, in an order that
+//! depends on nothing but the centres.
 
 use glam::{DVec3, UVec3};
 use std::ops::Range;

@@ -1,9 +1,10 @@
-//! Measures of the contact network: coordination number, shares of the pairs of species, largest overlap.
+//! Measures of the contact network: coordination number, shares of the pairs of species, largest
+//! overlap.
 
 use crate::world::{Contact, FeatureContact, Partner, Polyhedra, World};
 
-/// Mean number of other grains that a grain touches, `2 N_c / N` over all grains (rattlers and flying grains too); walls
-/// do not count. NaN without grains.
+/// Mean number of other grains that a grain touches, `2 N_c / N` over all grains (rattlers and
+/// flying grains too); walls do not count. NaN without grains.
 pub fn coordination_number(world: &World) -> f64 {
     let between_grains = world
         .contacts
@@ -13,9 +14,9 @@ pub fn coordination_number(world: &World) -> f64 {
     2.0 * between_grains as f64 / world.grains.len() as f64
 }
 
-/// Shares of the touching pairs of grains in which both are of the first species, one of either, both of the second:
-/// `P11, P12, P22`. Walls do not count, and a pair counts once however many of its features touch. NaN where nothing
-/// touches or there are more than two species.
+/// Shares of the touching pairs of grains in which both are of the first species, one of either,
+/// both of the second: `P11, P12, P22`. Walls do not count, and a pair counts once however many of
+/// its features touch. NaN where nothing touches or there are more than two species.
 pub fn contact_shares(world: &World) -> [f64; 3] {
     let species = &world.grains.species;
     let mut counts = [0.0; 3];
@@ -35,8 +36,8 @@ pub fn contact_shares(world: &World) -> [f64; 3] {
     counts.map(|count| count / all)
 }
 
-/// Largest overlap of all contacts, walls too, relative to the smaller grain's radius, of polyhedra to the smaller rounding
-/// radius; zero where nothing touches.
+/// Largest overlap of all contacts, walls too, relative to the smaller grain's radius, of polyhedra
+/// to the smaller rounding radius; zero where nothing touches.
 pub fn largest_overlap(world: &World) -> f64 {
     if let Some(polyhedra) = &world.polyhedra {
         let overlaps = polyhedra.features.iter();

@@ -1,76 +1,88 @@
-//! Numbers of each grain, to colour a picture by.
+//! Numbers of each grain, to colour a picture by: one row of the registry for each.
+//!
+//! In: a world. Out: one value per grain, in the unit that people read.
 
+use super::quantity::{Format, Scope, Unit, quantities};
 use crate::geometry::sphere_volume;
 use crate::world::{Partner, World};
 
-/// Litres per cubic metre.
-const LITRES: f64 = 1e3;
-
-/// A number that each grain of a world has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum GrainQuantity {
-    /// Speed of the centre in the laboratory frame [m/s].
-    Speed,
-    /// Magnitude of the angular velocity [rad/s].
-    Spin,
-    /// Touching partners, walls too.
-    Coordination,
-    /// Kinetic energy of translation and rotation [J].
-    KineticEnergy,
-    /// Largest of the forces at its contacts [N].
-    LargestForce,
-    /// Mean normal stress, positive where the grain is pressed [Pa]: `−tr σ/3` of the virial of its forces over its
-    /// volume, half of a pair's to each of the two (Christoffersen et al. 1981).
-    Pressure,
-    /// Liquid on it, its part in bridges included [L].
-    Liquid,
+quantities! {
+    /// A number that each grain of a world has.
+    GrainQuantity {
+        Speed {
+            key: "speed",
+            description: "Speed of the centre in the laboratory frame.",
+            short_label: "Speed",
+            unit: Unit::same("m/s"),
+            format: Format::Prefixed,
+        }
+        Spin {
+            key: "spin",
+            description: "Magnitude of the angular velocity.",
+            short_label: "Spin",
+            unit: Unit::same("rad/s"),
+            format: Format::Prefixed,
+        }
+        Coordination {
+            key: "coordination number",
+            description: "Touching partners, walls too.",
+            short_label: "Coordination number",
+            format: Format::Count,
+        }
+        KineticEnergy {
+            key: "kinetic energy",
+            description: "Kinetic energy of translation and rotation.",
+            short_label: "Kinetic energy",
+            unit: Unit::ENERGY,
+            format: Format::Prefixed,
+        }
+        LargestForce {
+            key: "largest contact force",
+            description: "Largest of the forces at its contacts.",
+            short_label: "Largest contact force",
+            unit: Unit::same("N"),
+            format: Format::Prefixed,
+        }
+        Pressure {
+            key: "pressure",
+            description: "Mean normal stress, positive where the grain is pressed: −tr σ/3 of the \
+                          virial of its forces over its volume, half of a pair's to each of the \
+                          two.",
+            short_label: "Pressure",
+            unit: Unit::same("Pa"),
+            format: Format::Prefixed,
+            source: "Christoffersen et al. 1981",
+        }
+        Liquid {
+            key: "liquid",
+            description: "Liquid on it, its part in bridges included.",
+            short_label: "Liquid",
+            unit: Unit::LIQUID,
+            format: Format::Prefixed,
+            scope: Scope::Liquids,
+        }
+    }
 }
 
 impl GrainQuantity {
-    /// All of them, in the order of a menu.
-    pub const ALL: [Self; 7] = [
-        Self::Speed,
-        Self::Spin,
-        Self::Coordination,
-        Self::KineticEnergy,
-        Self::LargestForce,
-        Self::Pressure,
-        Self::Liquid,
-    ];
-
     /// What people call it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "Speed",
-            Self::Spin => "Spin",
-            Self::Coordination => "Coordination number",
-            Self::KineticEnergy => "Kinetic energy",
-            Self::LargestForce => "Largest contact force",
-            Self::Pressure => "Pressure",
-            Self::Liquid => "Liquid",
-        }
+        self.quantity().short_label
     }
 
-    /// Unit, to which prefixes may be added; empty for a count.
+    /// The unit that people read, to which prefixes may be added; empty for a count.
     pub fn unit(self) -> &'static str {
-        match self {
-            Self::Coordination => "",
-            Self::Speed => "m/s",
-            Self::Spin => "rad/s",
-            Self::KineticEnergy => "J",
-            Self::LargestForce => "N",
-            Self::Pressure => "Pa",
-            Self::Liquid => "L",
-        }
+        self.quantity().unit.shown
     }
 
     /// Whether grains of `world` have it.
-    pub fn applies(self, world: &World) -> bool {
+    pub fn applies_to(self, world: &World) -> bool {
         self != Self::Liquid || world.wetting().is_some()
     }
 
-    /// That of each grain of `world`, appended to `values`.
+    /// That of each grain of `world` in the shown unit, appended to `values`.
     pub fn append(self, world: &World, values: &mut Vec<f64>) {
+        let litres = Unit::LIQUID.factor;
         let grains = &world.grains;
         match self {
             Self::Speed => values.extend(grains.velocity.iter().map(|v| v.length())),
@@ -87,7 +99,7 @@ impl GrainQuantity {
             }
             Self::LargestForce => append_largest_forces(world, values),
             Self::Pressure => append_pressures(world, values),
-            Self::Liquid => values.extend(grains.film.iter().map(|film| LITRES * film)),
+            Self::Liquid => values.extend(grains.film.iter().map(|film| litres * film)),
         }
     }
 }

@@ -1,14 +1,15 @@
 //! Packing fraction φ of the bed, by one method for every container.
 //!
-//! The bed is cut by a plane parallel to the surface line, two mean radii below it, and φ is the volume of the grains
-//! below the plane over the volume of the container below the plane. Grains that the plane cuts count with the exact
-//! volume of their cap (a polyhedron with that of the sphere of its volume), so φ is smooth in time; the loose layer at the surface stays outside. The layers at the walls,
-//! where grains pack less densely, are included: in narrow drums φ falls as the grains grow. Volumes shared by
-//! overlapping grains count twice (a relative error of about 1e-5 in a bed at rest).
+//! The bed is cut by a plane parallel to the surface line, two mean radii below it, and φ is the
+//! volume of the grains below the plane over the volume of the container below the plane. Grains
+//! that the plane cuts count with the exact volume of their cap (a polyhedron with that of the
+//! sphere of its volume), so φ is smooth in time; the loose layer at the surface stays outside. The
+//! layers at the walls, where grains pack less densely, are included: in narrow drums φ falls as
+//! the grains grow. Volumes shared by overlapping grains count twice (a relative error of about
+//! 1e-5 in a bed at rest).
 
-use super::SurfaceLine;
 use super::column::volume;
-use super::surface::mean_radius;
+use super::surface::{SurfaceLine, mean_radius};
 use crate::world::{Shape, World};
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -16,8 +17,8 @@ use std::f64::consts::PI;
 /// Depth of the cutting plane below the surface line, in mean radii.
 const DEPTH: f64 = 2.0;
 
-/// Packing fraction of the bed of `world` below `surface`; NaN where the container has no inside or the bed is too
-/// shallow.
+/// Packing fraction of the bed of `world` below `surface`; NaN where the container has no inside or
+/// the bed is too shallow.
 pub fn packing_fraction(world: &World, surface: &SurfaceLine) -> f64 {
     let normal = surface.normal();
     let height = surface.midpoint.dot(normal) - DEPTH * mean_radius(&world.grains);
@@ -43,13 +44,15 @@ fn radius(world: &World, i: usize) -> f64 {
     }
 }
 
-/// Volume of the part of a sphere of radius `r` that lies below a plane `height` above its centre [m³].
+/// Volume of the part of a sphere of radius `r` that lies below a plane `height` above its centre
+/// [m³].
 fn sphere_below(r: f64, height: f64) -> f64 {
     let depth = (r + height).clamp(0.0, 2.0 * r);
     PI * depth * depth * (r - depth / 3.0)
 }
 
-/// Volume of the container below the plane `normal · x = height` [m³]; NaN for a shape without an inside.
+/// Volume of the container below the plane `normal · x = height` [m³]; NaN for a shape without an
+/// inside.
 fn container_below(shape: Shape, normal: DVec2, height: f64) -> f64 {
     match shape {
         Shape::Planes | Shape::Column { .. } => f64::NAN,
@@ -66,7 +69,8 @@ fn container_below(shape: Shape, normal: DVec2, height: f64) -> f64 {
     }
 }
 
-/// Area of the part of a disc that lies below a chord at signed distance `height` from its centre [m²].
+/// Area of the part of a disc that lies below a chord at signed distance `height` from its centre
+/// [m²].
 fn segment_area(radius: f64, height: f64) -> f64 {
     let h = height.clamp(-radius, radius);
     radius * radius * (-h / radius).acos() + h * (radius * radius - h * h).sqrt()

@@ -1,55 +1,20 @@
-//! The plots of a sweep: of columns those in `column_plots`, of drums results over viscosity for each radius, as in Figs. 2 and 5
-//! to 8 of Kasper et al. 2021, with its laws and thresholds drawn in; θ(t) and Tg(t) of each case (Fig. 3); velocity profiles
-//! (Fig. 4e). A sweep that varies no liquid has its results over what it does vary.
+//! The plots of a sweep of drums, as Figs. 2 to 8 of Kasper et al. 2021: results over viscosity for
+//! each radius, with the paper's laws and thresholds drawn in; θ(t) and Tg(t) of each case;
+//! velocity profiles. A sweep that varies no liquid has its results over what it does vary.
 
 use super::Sweep;
-use super::case::{CaseEnding, Outcome, write};
+use super::case::Outcome;
 use super::chart::{Axis, Line, Plot};
-use super::column_plots::column_plots;
-use crate::headless::HeadlessError;
-use crate::measure::{Measure, NON_RIGID_TEMPERATURE, Series, drop_ratio_law};
+use crate::measure::{Measure, NON_RIGID_TEMPERATURE, ResultKey, RunQuantity, drop_ratio_law};
 use crate::scene::SceneGrains;
-use crate::simulation::Provenance;
 use std::collections::BTreeMap;
 
-const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-
-/// Writes every plot that the outcomes have points for.
-///
-/// # Errors
-/// When a file cannot be written.
-pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
-    for plot in plots(sweep, outcomes).filter(Plot::has_points) {
-        let text = plot.draw().map_err(|reason| {
-            HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
-        })?;
-        let path = sweep.out.join("plots").join(&plot.file);
-        let text = Provenance::of_scene(&sweep.scene).in_svg(&text);
-        write(&path, |file| file.write_all(text.as_bytes()))?;
-    }
-    Ok(())
-}
-
-/// Every plot of these outcomes. What a case came to before it met a fault is no result, nor is where one stood that was
-/// stopped before it began: they are in no plot.
-pub(super) fn plots(sweep: &Sweep, outcomes: &[Outcome]) -> impl Iterator<Item = Plot> {
-    let has_begun =
-        |outcome: &Outcome| outcome.series.time().last().is_some_and(|time| *time > 0.0);
-    let is_sound = |outcome: &&Outcome| outcome.ending != CaseEnding::Faulted && has_begun(outcome);
-    let sound: Vec<Outcome> = outcomes.iter().filter(is_sound).cloned().collect();
-    let plots = if sound.iter().any(Outcome::is_column) {
-        column_plots(sweep, &sound)
-    } else {
-        drum_plots(sweep, &sound)
-    };
-    plots.into_iter()
-}
-
-fn drum_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
+/// Every plot of these outcomes.
+pub fn drum_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
     let over = Over::of(sweep, outcomes);
     let mut plots: Vec<Plot> = RESULTS
         .iter()
-        .map(|shown| over.plot(shown, outcomes))
+        .map(|result| over.plot(result, outcomes))
         .collect();
     plots.extend(drop_ratios(outcomes));
     plots.extend(over_galilei(outcomes));
@@ -58,67 +23,43 @@ fn drum_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
     plots
 }
 
-/// A result to show: its file, its name among the results, factor to the shown unit, axis label.
-struct Shown {
+/// A result that has a plot of its own: its file and whether the axis goes by powers of ten.
+struct ResultPlot {
     file: &'static str,
-    result: &'static str,
-    factor: f64,
-    label: &'static str,
-    logarithmic: bool,
+    key: ResultKey,
+    is_logarithmic: bool,
 }
 
-const fn shown(
-    file: &'static str,
-    result: &'static str,
-    factor: f64,
-    label: &'static str,
-    logarithmic: bool,
-) -> Shown {
-    Shown {
+const fn linear(file: &'static str, key: ResultKey) -> ResultPlot {
+    ResultPlot {
         file,
-        result,
-        factor,
-        label,
-        logarithmic,
+        key,
+        is_logarithmic: false,
     }
 }
 
-const RESULTS: &[Shown] = &[
-    shown(
+const RESULTS: [ResultPlot; 6] = [
+    linear(
         "surface-angle.svg",
-        "surface angle",
-        DEGREES,
-        "surface angle θ [°]",
-        false,
+        ResultKey::OfSamples(Measure::SurfaceAngle),
     ),
-    shown("drop.svg", "drop Δθ", DEGREES, "drop Δθ [°]", false),
-    shown(
-        "granular-temperature.svg",
-        "granular temperature",
-        1.0,
-        "granular temperature Tg [m²/s²]",
-        true,
-    ),
-    shown(
+    linear("drop.svg", ResultKey::OfRun(RunQuantity::Drop)),
+    ResultPlot {
+        file: "granular-temperature.svg",
+        key: ResultKey::OfSamples(Measure::GranularTemperature),
+        is_logarithmic: true,
+    },
+    linear(
         "flowing-share.svg",
-        "non-rigid share ta/ts",
-        1.0,
-        "non-rigid share ta/ts",
-        false,
+        ResultKey::OfRun(RunQuantity::NonRigidShare),
     ),
-    shown(
+    linear(
         "packing-fraction.svg",
-        "packing fraction",
-        1.0,
-        "packing fraction φ",
-        false,
+        ResultKey::OfSamples(Measure::PackingFraction),
     ),
-    shown(
+    linear(
         "surface-roughness.svg",
-        "surface roughness",
-        1e3,
-        "surface roughness h [mm]",
-        false,
+        ResultKey::OfSamples(Measure::SurfaceRoughness),
     ),
 ];
 
@@ -146,25 +87,27 @@ impl Over {
         }
     }
 
-    fn plot(&self, shown: &Shown, outcomes: &[Outcome]) -> Plot {
-        let point = |outcome: &Outcome| {
-            Some((
-                (self.value)(outcome)?,
-                shown.factor * outcome.result(shown.result)?,
-            ))
-        };
+    fn plot(&self, result: &ResultPlot, outcomes: &[Outcome]) -> Plot {
+        let label = result.key.quantity().axis();
         Plot {
-            file: shown.file.to_owned(),
-            title: shown.label.to_owned(),
+            file: result.file.to_owned(),
             x: self.axis.clone(),
-            y: if shown.logarithmic {
-                Axis::logarithmic(shown.label)
+            y: if result.is_logarithmic {
+                Axis::logarithmic(&label)
             } else {
-                Axis::linear(shown.label)
+                Axis::linear(&label)
             },
-            lines: by_radius(outcomes, point),
+            title: label,
+            lines: by_radius(outcomes, |outcome| {
+                Some(((self.value)(outcome)?, in_shown_unit(outcome, result.key)?))
+            }),
         }
     }
+}
+
+/// The result `key` of a case in the unit that people read.
+fn in_shown_unit(outcome: &Outcome, key: ResultKey) -> Option<f64> {
+    Some(key.quantity().unit.factor * outcome.result(key)?)
 }
 
 /// Where dry drums stand on an axis of viscosities [mPa s].
@@ -213,12 +156,13 @@ fn by_radius(outcomes: &[Outcome], point: impl Fn(&Outcome) -> Option<(f64, f64)
 fn drop_ratios(outcomes: &[Outcome]) -> Option<Plot> {
     let dry = |wet: &Outcome| {
         let mut dry = outcomes.iter().filter(|o| viscosity(o).is_none());
-        dry.find(|o| radius(o) == radius(wet))?.result("drop Δθ")
+        dry.find(|o| radius(o) == radius(wet))?
+            .result(RunQuantity::Drop)
     };
     let mut lines = by_radius(outcomes, |outcome| {
         Some((
             viscosity(outcome)?,
-            outcome.result("drop Δθ")? / dry(outcome)?,
+            outcome.result(RunQuantity::Drop)? / dry(outcome)?,
         ))
     });
     lines.push(Line::law(
@@ -239,10 +183,11 @@ fn drop_ratios(outcomes: &[Outcome]) -> Option<Plot> {
 
 /// Non-rigid share and drop over √(1/Ga) (Fig. 7).
 fn over_galilei(outcomes: &[Outcome]) -> Vec<Plot> {
-    let number = |outcome: &Outcome| outcome.result("√(1/Ga)");
-    let plot = |file: &str, label: &str, factor: f64, result: &str| {
+    let across = RunQuantity::InverseRootGalilei;
+    let plot = |file: &str, quantity: RunQuantity| {
         let mut lines = by_radius(outcomes, |outcome| {
-            Some((number(outcome)?, factor * outcome.result(result)?))
+            let value = in_shown_unit(outcome, quantity.into())?;
+            Some((outcome.result(across)?, value))
         });
         let highest = lines
             .iter()
@@ -254,22 +199,18 @@ fn over_galilei(outcomes: &[Outcome]) -> Vec<Plot> {
             points: vec![(1.0, 0.0), (1.0, highest)],
             is_law: true,
         });
+        let (label, across) = (quantity.quantity().axis(), across.quantity().axis());
         Plot {
             file: file.into(),
-            title: format!("{label} over √(1/Ga)"),
-            x: Axis::logarithmic("√(1/Ga)"),
-            y: Axis::linear(label),
+            title: format!("{label} over {across}"),
+            x: Axis::logarithmic(&across),
+            y: Axis::linear(&label),
             lines,
         }
     };
     vec![
-        plot(
-            "flowing-share-galilei.svg",
-            "non-rigid share ta/ts",
-            1.0,
-            "non-rigid share ta/ts",
-        ),
-        plot("drop-galilei.svg", "drop Δθ [°]", DEGREES, "drop Δθ"),
+        plot("flowing-share-galilei.svg", RunQuantity::NonRigidShare),
+        plot("drop-galilei.svg", RunQuantity::Drop),
     ]
 }
 
@@ -303,18 +244,18 @@ fn profiles(outcomes: &[Outcome]) -> Vec<Plot> {
 /// θ(t) and Tg(t) of a case (Fig. 3).
 fn courses(outcome: &Outcome) -> [Plot; 2] {
     let name = &outcome.case.name;
-    let points = |series: &Series, measure: Measure, factor: f64| {
+    let points = |measure: Measure| {
+        let factor = measure.quantity().unit.factor;
+        let series = &outcome.series;
         let values = series.time().iter().zip(series.column(measure));
-        let points = values.map(|(time, value)| (*time, factor * value));
-        points
+        values
+            .map(|(time, value)| (*time, factor * value))
             .filter(|(_, value)| value.is_finite())
             .collect::<Vec<_>>()
     };
-    let angle = points(&outcome.series, Measure::SurfaceAngle, DEGREES);
-    let temperature: Vec<_> = points(&outcome.series, Measure::GranularTemperature, 1.0)
-        .into_iter()
-        .filter(|(_, value)| *value > 0.0)
-        .collect();
+    let angle = points(Measure::SurfaceAngle);
+    let mut temperature = points(Measure::GranularTemperature);
+    temperature.retain(|(_, value)| *value > 0.0);
     let end = outcome.series.time().last().copied().unwrap_or(0.0);
     let curve = |points| Line {
         name: name.clone(),
@@ -331,14 +272,14 @@ fn courses(outcome: &Outcome) -> [Plot; 2] {
             file: format!("courses/{name}-angle.svg"),
             title: format!("surface angle, {name}"),
             x: Axis::linear("time [s]"),
-            y: Axis::linear("surface angle θ [°]"),
+            y: Axis::linear(&Measure::SurfaceAngle.quantity().axis()),
             lines: vec![curve(angle)],
         },
         Plot {
             file: format!("courses/{name}-temperature.svg"),
             title: format!("granular temperature, {name}"),
             x: Axis::linear("time [s]"),
-            y: Axis::logarithmic("granular temperature Tg [m²/s²]"),
+            y: Axis::logarithmic(&Measure::GranularTemperature.quantity().axis()),
             lines: vec![curve(temperature), threshold],
         },
     ]

@@ -1,0 +1,137 @@
+//! Numbers as people read them: a few digits, a prefix, powers of ten in superscript.
+//!
+//! In: a number. Out: text. Which unit and which digits a measured quantity has is not decided here
+//! but in its row of the registry ([`super::Quantity`]).
+
+/// What stands where there is no number.
+pub const NOTHING: &str = "–";
+
+/// `value` with about four digits, small and large ones as `1.23·10⁻⁹`; a dash for what is no
+/// number.
+pub fn short(value: f64) -> String {
+    written(value, significant)
+}
+
+/// `value` with `decimals` digits after the point; a dash for what is not finite.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if value.is_finite() {
+        typeset(&format!("{value:.decimals$}"))
+    } else {
+        NOTHING.into()
+    }
+}
+
+/// `value` with the prefix of its unit that leaves one to three digits before the point: `12.3 mJ`.
+pub fn with_prefix(value: f64, unit: &str) -> String {
+    let (prefix, factor) = prefix_for(value.abs());
+    format!("{} {prefix}{unit}", short(value * factor))
+}
+
+/// The prefix in which `magnitude` has one to three digits before the point, and the factor that
+/// goes with it.
+pub fn prefix_for(magnitude: f64) -> (&'static str, f64) {
+    const PREFIXES: [(&str, f64); 7] = [
+        ("p", 1e12),
+        ("n", 1e9),
+        ("µ", 1e6),
+        ("m", 1e3),
+        ("", 1.0),
+        ("k", 1e-3),
+        ("M", 1e-6),
+    ];
+    if magnitude == 0.0 || !magnitude.is_finite() {
+        return ("", 1.0);
+    }
+    let fits = |(_, factor): &&(&str, f64)| magnitude * factor >= 1.0;
+    PREFIXES
+        .iter()
+        .rev()
+        .find(fits)
+        .copied()
+        .unwrap_or(PREFIXES[0])
+}
+
+/// `10⁻⁹` for −9.
+pub fn power_of_ten(exponent: i32) -> String {
+    format!("10{}", raised(&exponent.to_string()))
+}
+
+/// `text` with a capital first letter.
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+/// `value` as `plain` has it, in the signs of print; `–` for NaN, `∞` for what is infinite.
+pub(super) fn written(value: f64, plain: impl Fn(f64) -> String) -> String {
+    if value.is_nan() {
+        NOTHING.into()
+    } else if value.is_infinite() {
+        "∞".into()
+    } else {
+        typeset(&plain(value))
+    }
+}
+
+/// A finite `value` with about four digits in plain characters: `24.31`, `2.00e-9`.
+pub(super) fn significant(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude == 0.0 {
+        "0".into()
+    } else if (1e-3..1e5).contains(&magnitude) {
+        let decimals = (3 - magnitude.log10().floor() as i32).clamp(0, 5);
+        format!("{value:.*}", decimals as usize)
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// A number in plain characters in those of print: a true minus sign, `2.00·10⁻⁹` for `2.00e-9`.
+fn typeset(plain: &str) -> String {
+    let (mantissa, exponent) = match plain.split_once('e') {
+        Some((mantissa, exponent)) => (mantissa, format!("·10{}", raised(exponent))),
+        None => (plain, String::new()),
+    };
+    format!("{}{exponent}", mantissa.replacen('-', "−", 1))
+}
+
+/// A whole number in superscript.
+fn raised(exponent: &str) -> String {
+    let superscript = |digit: char| match digit {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        _ => digit
+            .to_digit(10)
+            .and_then(|value| char::from_u32('⁰' as u32 + value))
+            .unwrap_or(digit),
+    };
+    exponent.chars().map(superscript).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_about_four_digits_and_powers_of_ten_stand_high() {
+        assert_eq!(short(24.305_1), "24.31");
+        assert_eq!(short(-0.05), "−0.05000");
+        assert_eq!(short(2.0e-9), "2.00·10⁻⁹");
+        assert_eq!(short(-9.999e-10), "−1.00·10⁻⁹");
+        assert_eq!(short(0.0), "0");
+        assert_eq!(short(f64::NAN), "–");
+        assert_eq!(short(f64::INFINITY), "∞");
+        assert_eq!(power_of_ten(-40), "10⁻⁴⁰");
+        assert_eq!(fixed(-0.25, 1), "−0.2");
+    }
+
+    #[test]
+    fn a_prefix_leaves_one_to_three_digits_before_the_point() {
+        assert_eq!(with_prefix(1.25e-5, "s"), "12.50 µs");
+        assert_eq!(with_prefix(0.0651, "J"), "65.10 mJ");
+        assert_eq!(with_prefix(0.0, "J"), "0 J");
+    }
+}

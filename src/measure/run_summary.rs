@@ -1,0 +1,175 @@
+//! Results of a run, as the papers quote them: of a bed, averages over the last part of it; of a
+//! column, what it did and left.
+//!
+//! In: a [`Series`], the last state of its run, and the time from which the results of a bed count.
+//! Out: a [`Summary`].
+
+use super::avalanches::Avalanche;
+use super::collapse::Collapse;
+use super::column::Column;
+use super::flow::NON_RIGID_TEMPERATURE;
+use super::quantity::MeasuredValue;
+use super::result_key::{DropThreshold, ResultKey};
+use super::run_quantity::RunQuantity;
+use super::sampled_quantity::Measure;
+use super::series::Series;
+use super::summary::Summary;
+use super::wet_bed::{capillary_number, galilei_number};
+use super::window::{Window, largest, mean, median, share_from};
+use crate::world::World;
+
+/// The measures of which a bed's results give the mean.
+const MEANS: [Measure; 10] = [
+    Measure::SurfaceAngle,
+    Measure::GranularTemperature,
+    Measure::CorotatingTemperature,
+    Measure::PackingFraction,
+    Measure::CoordinationNumber,
+    Measure::MeanSpeed,
+    Measure::SurfaceRoughness,
+    Measure::SurfaceCurvature,
+    Measure::Bridges,
+    Measure::DrumTorque,
+];
+
+/// What the results of a column take from its last sample.
+const COLUMN_AT_END: [Measure; 8] = [
+    Measure::FrontRadius99,
+    Measure::FrontRadius95,
+    Measure::ClusterRadius,
+    Measure::ApexHeight,
+    Measure::FirstPairs,
+    Measure::MixedPairs,
+    Measure::SecondPairs,
+    Measure::CoordinationNumber,
+];
+
+/// The terms of the energy balance that a residual is compared with.
+const TURNOVER: [Measure; 7] = [
+    Measure::KineticEnergy,
+    Measure::ElasticEnergy,
+    Measure::GravityWork,
+    Measure::WallWork,
+    Measure::DashpotLoss,
+    Measure::SlidingLoss,
+    Measure::RollingLoss,
+];
+
+/// Results of a run of which `series` holds the samples and `world` the last state. A column's
+/// begin at its release; a bed's count from `from_time` [s] on, with avalanches of at least
+/// `smallest_drop` [rad].
+pub fn results(series: &Series, world: &World, from_time: f64, smallest_drop: f64) -> Summary {
+    let column = Column::of(world).zip(Collapse::of(series));
+    let Some((column, collapse)) = column else {
+        let mut summary = summarise(series, from_time, smallest_drop);
+        add_case(&mut summary, world);
+        return summary;
+    };
+    let window = Window::of(series, 0.0);
+    let mut summary = window.summary(0.0);
+    summary.add_collapse(world, &column, &collapse);
+    for measure in COLUMN_AT_END {
+        let note = format!("at the end. {}", measure.quantity().explanation());
+        summary.add_noted(measure, window.at_end(measure), note);
+    }
+    add_overlap(&mut summary, &window);
+    add_energies(&mut summary, &window);
+    summary
+}
+
+/// Results of the part of `series` from `from_time` [s] on, with avalanches of at least
+/// `smallest_drop` [rad].
+pub fn summarise(series: &Series, from_time: f64, smallest_drop: f64) -> Summary {
+    let window = Window::of(series, from_time);
+    let mut summary = window.summary(from_time);
+    let found = window.avalanches(smallest_drop);
+    add_means(&mut summary, &window);
+    add_flow(&mut summary, &window, &found);
+    add_avalanches(&mut summary, &found, ResultKey::OfRun);
+    for threshold in DropThreshold::ALL {
+        let found = window.avalanches(threshold.angle());
+        add_avalanches(&mut summary, &found, |quantity| {
+            ResultKey::OfAvalanches(quantity, threshold)
+        });
+    }
+    add_energies(&mut summary, &window);
+    summary
+}
+
+/// Adds what depends on the drum and its liquid alone, and the regime that the results show.
+fn add_case(summary: &mut Summary, world: &World) {
+    let or_nan = |number: Option<f64>| number.unwrap_or(f64::NAN);
+    summary.add(
+        RunQuantity::CapillaryNumber,
+        or_nan(capillary_number(world)),
+    );
+    summary.add(RunQuantity::GalileiNumber, or_nan(galilei_number(world)));
+    let regime = summary.regime();
+    let word = regime.map(|regime| MeasuredValue::Choice(regime.word()));
+    summary.add_value(RunQuantity::Regime, word);
+}
+
+fn add_means(summary: &mut Summary, window: &Window) {
+    for measure in MEANS {
+        let note = "mean over the samples of the window".to_owned();
+        summary.add_noted(measure, mean(window.column(measure)), note);
+    }
+    let ruptures = window.rate(Measure::Ruptures);
+    summary.add(RunQuantity::RupturesPerSecond, ruptures);
+    summary.add(RunQuantity::DrumPower, window.rate(Measure::WallWork));
+    add_overlap(summary, window);
+}
+
+fn add_overlap(summary: &mut Summary, window: &Window) {
+    let overlap = largest(window.column(Measure::LargestOverlap));
+    let note = "largest of the samples of the window".to_owned();
+    summary.add_noted(Measure::LargestOverlap, overlap, note);
+}
+
+fn add_flow(summary: &mut Summary, window: &Window, found: &[Avalanche]) {
+    let falling = window.falling(found);
+    let temperature = window.column(Measure::GranularTemperature);
+    let during = |state: bool| -> Vec<f64> {
+        let chosen = temperature.iter().zip(&falling);
+        chosen
+            .filter(|(_, falls)| **falls == state)
+            .map(|(value, _)| *value)
+            .collect()
+    };
+    let share = share_from(temperature, NON_RIGID_TEMPERATURE);
+    summary.add(RunQuantity::NonRigidShare, share);
+    let hot = mean(&during(true));
+    summary.add(RunQuantity::TemperatureInAvalanches, hot);
+    let quiet = median(during(false));
+    summary.add(RunQuantity::TemperatureBetweenAvalanches, quiet);
+    let rate = median(window.rise_rates(&falling));
+    summary.add(RunQuantity::RiseRate, rate);
+}
+
+/// Adds the numbers of the avalanches `found`, under the keys that `key` gives them.
+fn add_avalanches(
+    summary: &mut Summary,
+    found: &[Avalanche],
+    key: impl Fn(RunQuantity) -> ResultKey,
+) {
+    let of = |value: fn(&Avalanche) -> f64| mean(&found.iter().map(value).collect::<Vec<_>>());
+    let count = MeasuredValue::Count(found.len());
+    summary.add_value(key(RunQuantity::Avalanches), Some(count));
+    summary.add(key(RunQuantity::MaximumAngle), of(|a| a.theta_m));
+    summary.add(key(RunQuantity::ReposeAngle), of(|a| a.theta_r));
+    summary.add(key(RunQuantity::Drop), of(Avalanche::drop));
+}
+
+fn add_energies(summary: &mut Summary, window: &Window) {
+    for measure in TURNOVER.into_iter().chain([
+        Measure::ViscousLoss,
+        Measure::CapillaryLoss,
+        Measure::EnergyResidual,
+    ]) {
+        let note = "at the end, since the start of the run".to_owned();
+        summary.add_noted(measure, window.at_end(measure), note);
+    }
+    let turnover = largest(&TURNOVER.map(|term| window.at_end(term).abs()));
+    let residual = window.at_end(Measure::EnergyResidual) / turnover;
+    summary.add(RunQuantity::RelativeEnergyResidual, residual);
+}

@@ -1,0 +1,133 @@
+//! The samples of a series from some time on, and what is averaged over them.
+//!
+//! In: a [`Series`]. Out: means, medians and rates; NaN where no sample has a value.
+
+use super::avalanches::{Avalanche, SMOOTHING_TIME, avalanches};
+use super::sampled_quantity::Measure;
+use super::series::Series;
+use super::summary::Summary;
+
+/// Time over which the slope of a rise is taken [s].
+const SLOPE_TIME: f64 = 0.2;
+
+/// The samples that count.
+pub struct Window<'a> {
+    series: &'a Series,
+    first: usize,
+    time: &'a [f64],
+}
+
+impl<'a> Window<'a> {
+    /// Those from `from_time` [s] on.
+    pub fn of(series: &'a Series, from_time: f64) -> Self {
+        let first = series.first_at(from_time);
+        Self {
+            series,
+            first,
+            time: &series.time()[first..],
+        }
+    }
+
+    /// A summary of these samples without entries.
+    pub fn summary(&self, from_time: f64) -> Summary {
+        Summary {
+            from: self.time.first().copied().unwrap_or(from_time),
+            to: self.time.last().copied().unwrap_or(from_time),
+            samples: self.time.len(),
+            entries: Vec::new(),
+        }
+    }
+
+    /// The values of a measure [SI].
+    pub fn column(&self, measure: Measure) -> &'a [f64] {
+        &self.series.column(measure)[self.first..]
+    }
+
+    /// The last of them.
+    pub fn at_end(&self, measure: Measure) -> f64 {
+        self.column(measure).last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Change of a measure over the window per second; NaN where it has no length.
+    pub fn rate(&self, measure: Measure) -> f64 {
+        let values = self.column(measure);
+        match (values, self.time) {
+            ([first, .., last], [from, .., to]) => (last - first) / (to - from),
+            _ => f64::NAN,
+        }
+    }
+
+    /// The avalanches whose drop is at least `smallest_drop` [rad].
+    pub fn avalanches(&self, smallest_drop: f64) -> Vec<Avalanche> {
+        avalanches(self.time, self.column(Measure::SurfaceAngle), smallest_drop)
+    }
+
+    /// For each sample, whether θ falls there in one of `falls` (widened by the smoothing).
+    pub fn falling(&self, falls: &[Avalanche]) -> Vec<bool> {
+        let margin = 0.5 * SMOOTHING_TIME;
+        let mut next = falls.iter().peekable();
+        self.time
+            .iter()
+            .map(|&t| {
+                while next.next_if(|fall| fall.end + margin < t).is_some() {}
+                next.peek().is_some_and(|fall| fall.start - margin <= t)
+            })
+            .collect()
+    }
+
+    /// Slopes of θ over [`SLOPE_TIME`] at each sample that stands, for that time, in one rise
+    /// [rad/s].
+    pub fn rise_rates(&self, falling: &[bool]) -> Vec<f64> {
+        let theta = self.column(Measure::SurfaceAngle);
+        let mut rates = Vec::new();
+        let mut start = 0;
+        let mut rise_start = 0;
+        for (end, &t) in self.time.iter().enumerate() {
+            if falling[end] {
+                rise_start = end + 1;
+                continue;
+            }
+            start = rise_start.max(start);
+            while start + 1 < end && t - self.time[start + 1] >= SLOPE_TIME - 1e-9 {
+                start += 1;
+            }
+            let span = t - self.time[start];
+            if span >= SLOPE_TIME - 1e-9 {
+                rates.push((theta[end] - theta[start]) / span);
+            }
+        }
+        rates
+    }
+}
+
+/// Mean of the finite values; NaN without any.
+pub fn mean(values: &[f64]) -> f64 {
+    let (sum, count) = values
+        .iter()
+        .filter(|value| value.is_finite())
+        .fold((0.0, 0_u32), |(sum, count), value| (sum + value, count + 1));
+    sum / f64::from(count)
+}
+
+/// Median of the finite values; NaN without any.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.retain(|value| value.is_finite());
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => values[n / 2],
+        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
+
+/// Largest of the finite values; NaN without any.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NAN, f64::max)
+}
+
+/// Share of the finite values that are at least `threshold`; NaN without any.
+pub fn share_from(values: &[f64], threshold: f64) -> f64 {
+    let finite = values.iter().filter(|value| value.is_finite());
+    let above = finite.clone().filter(|value| **value >= threshold).count();
+    above as f64 / finite.count() as f64
+}

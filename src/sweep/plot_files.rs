@@ -1,0 +1,42 @@
+//! The plots of a sweep as SVG files: those of columns, or those of drums.
+//!
+//! In: what became of the cases. Out: one file for each plot that has points.
+
+use super::Sweep;
+use super::case::{CaseEnding, Outcome, write};
+use super::chart::Plot;
+use super::column_plots::column_plots;
+use super::drum_plots::drum_plots;
+use crate::headless::HeadlessError;
+use crate::simulation::Provenance;
+
+/// Writes every plot that the outcomes have points for.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
+    for plot in plots(sweep, outcomes).filter(Plot::has_points) {
+        let text = plot.draw().map_err(|reason| {
+            HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
+        })?;
+        let path = sweep.out.join("plots").join(&plot.file);
+        let text = Provenance::of_scene(&sweep.scene).in_svg(&text);
+        write(&path, |file| file.write_all(text.as_bytes()))?;
+    }
+    Ok(())
+}
+
+/// Every plot of these outcomes. What a case came to before it met a fault is no result, nor is
+/// where one stood that was stopped before it began: they are in no plot.
+pub(super) fn plots(sweep: &Sweep, outcomes: &[Outcome]) -> impl Iterator<Item = Plot> {
+    let has_begun =
+        |outcome: &Outcome| outcome.series.time().last().is_some_and(|time| *time > 0.0);
+    let is_sound = |outcome: &&Outcome| outcome.ending != CaseEnding::Faulted && has_begun(outcome);
+    let sound: Vec<Outcome> = outcomes.iter().filter(is_sound).cloned().collect();
+    let plots = if sound.iter().any(Outcome::is_column) {
+        column_plots(sweep, &sound)
+    } else {
+        drum_plots(sweep, &sound)
+    };
+    plots.into_iter()
+}

@@ -1,0 +1,188 @@
+//! The table of all results, one row per case.
+//!
+//! In: what became of the cases of a sweep. Out: `table.csv` and `table.md`, with the columns that
+//! suit drums or columns. Units and digits come from the registry of quantities.
+
+use super::Sweep;
+use super::case::{CaseEnding, Outcome, write};
+use crate::headless::HeadlessError;
+use crate::measure::numeral::NOTHING;
+use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary, Unit};
+use crate::simulation::{Provenance, TABLES_METADATA};
+
+/// A column: the result it shows under a short head, in the unit and with the digits of the
+/// registry or others.
+struct TableColumn {
+    head: &'static str,
+    key: ResultKey,
+    unit: Unit,
+    format: Format,
+}
+
+impl TableColumn {
+    const fn new(head: &'static str, key: ResultKey) -> Self {
+        let quantity = key.quantity();
+        Self {
+            head,
+            key,
+            unit: quantity.unit,
+            format: quantity.format,
+        }
+    }
+
+    const fn of_samples(head: &'static str, measure: Measure) -> Self {
+        Self::new(head, ResultKey::OfSamples(measure))
+    }
+
+    const fn of_run(head: &'static str, quantity: RunQuantity) -> Self {
+        Self::new(head, ResultKey::OfRun(quantity))
+    }
+
+    const fn drop_from(head: &'static str, threshold: DropThreshold) -> Self {
+        Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold))
+    }
+
+    const fn with_digits(self, digits: usize) -> Self {
+        Self {
+            format: Format::Fixed(digits),
+            ..self
+        }
+    }
+
+    fn head(&self) -> String {
+        self.unit.beside(self.head)
+    }
+
+    fn cell(&self, results: &Summary) -> String {
+        results.get(self.key).map_or_else(
+            || NOTHING.to_owned(),
+            |value| (self.key.quantity()).number_as(value, self.unit, self.format),
+        )
+    }
+}
+
+const DRUM: &[TableColumn] = &[
+    TableColumn::of_samples("θ", Measure::SurfaceAngle),
+    TableColumn::of_run("θ_m", RunQuantity::MaximumAngle),
+    TableColumn::of_run("θ_r", RunQuantity::ReposeAngle),
+    TableColumn::of_run("Δθ", RunQuantity::Drop),
+    TableColumn::of_run("drops", RunQuantity::Avalanches),
+    TableColumn::drop_from("Δθ ≥ 0.5°", DropThreshold::HalfDegree),
+    TableColumn::drop_from("Δθ ≥ 2°", DropThreshold::TwoDegrees),
+    TableColumn::drop_from("Δθ ≥ 3°", DropThreshold::ThreeDegrees),
+    TableColumn::of_samples("Tg", Measure::GranularTemperature),
+    TableColumn::of_samples("Tg′", Measure::CorotatingTemperature),
+    TableColumn::of_run("ta/ts", RunQuantity::NonRigidShare),
+    TableColumn::of_run("√(1/Ga)", RunQuantity::InverseRootGalilei),
+    TableColumn::of_run("Ca", RunQuantity::CapillaryNumber),
+    TableColumn::of_samples("φ", Measure::PackingFraction),
+    TableColumn::of_samples("Z", Measure::CoordinationNumber),
+    TableColumn::of_samples("h", Measure::SurfaceRoughness),
+    TableColumn::of_samples("κ", Measure::SurfaceCurvature),
+    TableColumn::of_samples("bridges", Measure::Bridges),
+    TableColumn::of_run("ruptures", RunQuantity::RupturesPerSecond),
+    TableColumn::of_run("drum power", RunQuantity::DrumPower),
+    TableColumn::of_samples("viscous loss", Measure::ViscousLoss),
+    TableColumn::of_samples("largest overlap", Measure::LargestOverlap).with_digits(4),
+    TableColumn::of_run("energy residual", RunQuantity::RelativeEnergyResidual),
+];
+
+const COLLAPSE: &[TableColumn] = &[
+    TableColumn::of_run("α", RunQuantity::AspectRatio),
+    TableColumn::of_run("α_eff", RunQuantity::EffectiveAspectRatio),
+    TableColumn::of_run("φ_i", RunQuantity::SolidFraction),
+    TableColumn::of_run("R_∞", RunQuantity::FinalFront),
+    TableColumn::of_samples("R_99", Measure::FrontRadius99),
+    TableColumn::of_samples("R_95", Measure::FrontRadius95),
+    TableColumn::of_samples("R_c", Measure::ClusterRadius),
+    TableColumn::of_run("ℛ", RunQuantity::RunOut),
+    TableColumn::of_run("H_∞", RunQuantity::FinalHeight),
+    TableColumn::of_samples("H_a", Measure::ApexHeight),
+    TableColumn::of_run("H_∞/R_i", RunQuantity::RelativeHeight),
+    TableColumn::of_run("V_cone/V_init", RunQuantity::RelativeConeVolume),
+    TableColumn::of_run("t_max", RunQuantity::PeakTime),
+    TableColumn::of_run("t_f", RunQuantity::RestTime),
+    TableColumn::of_run("T_max", RunQuantity::DimensionlessPeakTime),
+    TableColumn::of_run("T_f", RunQuantity::DimensionlessRestTime),
+    TableColumn {
+        unit: Unit::ERG,
+        ..TableColumn::of_run("peak energy", RunQuantity::PeakEnergy).with_digits(2)
+    },
+    TableColumn::of_samples("P11", Measure::FirstPairs),
+    TableColumn::of_samples("P12", Measure::MixedPairs),
+    TableColumn::of_samples("P22", Measure::SecondPairs),
+    TableColumn::of_run("deposit shape", RunQuantity::Shape),
+    TableColumn::of_samples("Z", Measure::CoordinationNumber),
+    TableColumn::of_samples("largest overlap", Measure::LargestOverlap).with_digits(4),
+    TableColumn::of_run("energy residual", RunQuantity::RelativeEnergyResidual),
+];
+
+/// The columns that suit what was run.
+fn columns(outcomes: &[Outcome]) -> &'static [TableColumn] {
+    if outcomes.iter().any(Outcome::is_column) {
+        COLLAPSE
+    } else {
+        DRUM
+    }
+}
+
+/// Writes `table.csv` and `table.md`.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
+    let columns = columns(outcomes);
+    write(&sweep.out.join("table.csv"), |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        writer.write_record(heads(sweep, columns))?;
+        for outcome in outcomes {
+            writer.write_record(cells(outcome, columns))?;
+        }
+        writer.flush()
+    })?;
+    write(&sweep.out.join(TABLES_METADATA), |file| {
+        Provenance::of_scene(&sweep.scene).write_tables(&["table.csv"], file)
+    })?;
+    let text = markdown(sweep, outcomes);
+    write(&sweep.out.join("table.md"), |file| {
+        file.write_all(text.as_bytes())
+    })
+}
+
+/// The table in Markdown.
+pub fn markdown(sweep: &Sweep, outcomes: &[Outcome]) -> String {
+    let columns = columns(outcomes);
+    let heads = heads(sweep, columns);
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let rows = outcomes
+        .iter()
+        .map(|outcome| line(&cells(outcome, columns)));
+    let rule = line(&vec!["---".to_owned(); heads.len()]);
+    [line(&heads), rule].into_iter().chain(rows).collect()
+}
+
+fn heads(sweep: &Sweep, columns: &[TableColumn]) -> Vec<String> {
+    let varied = sweep
+        .variations
+        .iter()
+        .map(|variation| variation.key.clone());
+    let results = columns.iter().map(TableColumn::head);
+    let fixed = ["time [s]", "ended", "state"].map(str::to_owned);
+    varied.chain(results).chain(fixed).collect()
+}
+
+fn cells(outcome: &Outcome, columns: &[TableColumn]) -> Vec<String> {
+    let values = outcome.case.values.iter().cloned();
+    let results = columns.iter().map(|column| column.cell(&outcome.results));
+    let ended = match outcome.ending {
+        CaseEnding::Done => "done",
+        CaseEnding::Interrupted => "stopped",
+        CaseEnding::Faulted => "fault",
+    };
+    let fixed = [
+        format!("{:.2}", outcome.results.to),
+        ended.to_owned(),
+        outcome.hash[..8].to_owned(),
+    ];
+    values.chain(results).chain(fixed).collect()
+}
