@@ -336,9 +336,9 @@ impl Lab {
         if is_first {
             self.saved.revision = self.revision();
         }
-        if generation != self.generation() {
-            let time = self.world().map(|world| world.time());
-            self.rate.follow(time.unwrap_or_default());
+        let time = self.world().map(|world| world.time());
+        if let Some(time) = time.filter(|_| generation != self.generation()) {
+            self.rate.follow(time);
         }
     }
 

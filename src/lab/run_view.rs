@@ -6,7 +6,7 @@
 use super::update::RunNews;
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
 use crate::run::{
-    Command, Parameter, ParameterInfo, Past, Record, StampedCommand, StepTimes, time_step,
+    Branch, Command, Parameter, ParameterInfo, Past, StampedCommand, StepTimes, time_step,
 };
 use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
@@ -30,7 +30,7 @@ pub struct RunView {
     /// What the engine has told last; nothing while the run is prepared.
     news: Option<RunNews>,
     /// What was changed and measured; empty while the run is prepared.
-    record: Arc<Record>,
+    branch: Arc<Branch>,
     past: Past,
     profile: Profile,
     avalanches: Avalanches,
@@ -54,7 +54,7 @@ impl RunView {
             warnings: advice.warning.iter().cloned().collect(),
             advice,
             news: None,
-            record: Arc::default(),
+            branch: Arc::default(),
             past: Past::default(),
             profile: Profile::default(),
             avalanches: Avalanches::default(),
@@ -93,7 +93,7 @@ impl RunView {
     /// The samples of the present branch so far, one every [`crate::run::SAMPLE_INTERVAL`]; those after the state shown
     /// too.
     pub fn series(&self) -> &Series {
-        &self.record.series
+        &self.branch.series
     }
 
     /// The last sample at or before the state shown.
@@ -106,7 +106,7 @@ impl RunView {
 
     /// The flowing layer so far.
     pub fn flow(&self) -> &FlowHistory {
-        &self.record.flow
+        &self.branch.flow
     }
 
     /// The avalanches so far, of [`SMALLEST_DROP`] at least.
@@ -116,12 +116,12 @@ impl RunView {
 
     /// The commands carried out in the present branch since time zero; those after the state shown too.
     pub fn commands(&self) -> &[StampedCommand] {
-        self.record.history.commands()
+        self.branch.history.commands()
     }
 
     /// Index of the first command of each change: a drag or a button may take several.
     pub fn changes(&self) -> &[usize] {
-        self.record.history.changes()
+        self.branch.history.changes()
     }
 
     /// Changes whenever [`RunView::commands`] is another list.
@@ -233,15 +233,15 @@ impl RunView {
             self.generation = next_number();
             self.heed(self.extremes.advise(&news.world));
         }
-        let count = |record: &Record| (record.number, record.history.commands().len());
-        if count(&self.record) != count(&news.record) {
+        let count = |branch: &Branch| (branch.number, branch.history.commands().len());
+        if count(&self.branch) != count(&news.branch) {
             self.revision = next_number();
         }
-        if self.record.number != news.record.number {
+        if self.branch.number != news.branch.number {
             self.avalanches = Avalanches::default();
         }
-        self.record = news.record.clone();
-        self.avalanches.follow(&self.record.series);
+        self.branch = news.branch.clone();
+        self.avalanches.follow(&self.branch.series);
         self.past = std::mem::take(&mut news.past);
         self.profile = std::mem::take(&mut news.profile);
         self.news = Some(news);

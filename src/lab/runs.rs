@@ -54,7 +54,7 @@ impl LabRun {
     fn new(timeline: Timeline) -> Self {
         Self {
             shown: Arc::new(timeline.run().world().clone()),
-            shown_at: timeline.position(),
+            shown_at: timeline.steps_and_commands(),
             timeline,
             fault: None,
             profile: Profile::default(),
@@ -68,12 +68,12 @@ impl LabRun {
     fn news(&mut self, is_renewed: bool) -> RunNews {
         if is_renewed {
             self.shown = Arc::new(self.timeline.run().world().clone());
-            self.shown_at = self.timeline.position();
+            self.shown_at = self.timeline.steps_and_commands();
         }
         RunNews {
             world: self.shown.clone(),
             parameters: self.timeline.run().parameters().clone(),
-            record: Arc::new(self.timeline.record().clone()),
+            branch: Arc::new(self.timeline.branch().clone()),
             past: self.timeline.past(),
             fault: self.fault.clone(),
             profile: self.profile.clone(),
@@ -333,7 +333,7 @@ impl Runs {
         };
         self.comparison = None;
         let first = &mut self.list[0].timeline;
-        let newest = first.adopt(second.timeline.record().clone(), second.timeline.end());
+        let newest = first.adopt(second.timeline.branch().clone(), second.timeline.end());
         if keep == Half::Right {
             first.take_up(newest);
         }
@@ -346,9 +346,9 @@ impl Runs {
     /// When the file cannot be written.
     pub fn save(&mut self, path: &Path, original: &Scene) -> io::Result<()> {
         let second: Option<(_, Option<Snapshot>)> = (self.list.get(1))
-            .map(|second| (second.timeline.record().clone(), second.timeline.end()));
+            .map(|second| (second.timeline.branch().clone(), second.timeline.end()));
         let timeline = &mut self.list[0].timeline;
-        let kept = second.map(|(record, end)| timeline.adopt(record, end));
+        let kept = second.map(|(branch, end)| timeline.adopt(branch, end));
         let title = &timeline.run().scene().title;
         let session = Session::of(title, timeline).of_original(original);
         if let Some(index) = kept {
@@ -376,7 +376,7 @@ impl Runs {
         if !self.are_in_step() {
             return None;
         }
-        let moved = (self.list.iter()).any(|run| run.shown_at != run.timeline.position());
+        let moved = (self.list.iter()).any(|run| run.shown_at != run.timeline.steps_and_commands());
         let is_renewed = self.is_news || (moved && !self.are_on_the_way());
         self.is_news = false;
         Some(RunsNews {

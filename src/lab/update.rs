@@ -3,7 +3,7 @@
 //! In: nothing. Out: plain values that travel between threads. States, samples and commands are shared, not copied.
 
 use super::Status;
-use crate::run::{Parameter, ParameterInfo, Past, Record};
+use crate::run::{Branch, Parameter, ParameterInfo, Past};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ pub struct RunNews {
     /// The parameters that can change while it goes on.
     pub parameters: Arc<[ParameterInfo]>,
     /// What was changed and measured, up to its end.
-    pub record: Arc<Record>,
+    pub branch: Arc<Branch>,
     /// What lies behind and ahead of the state.
     pub past: Past,
     /// What stopped it, if something did.

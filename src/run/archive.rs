@@ -1,17 +1,18 @@
-//! A timeline as a file can keep it: every run there has been once, however often it is come back to, and the states it
-//! takes to go on at once.
+//! A timeline as a file can keep it: every branch once, however often it is referred to, and the states it takes to go on
+//! without computing them again.
 //!
 //! In: what a [`super::Timeline`] holds. Out: an [`Archive`], which postcard turns into bytes. Shapes of polyhedra, which
-//! never change, are kept with the bed alone.
+//! never change, are kept with the bed alone. Files are read and written by [`super::Session`].
 
 use super::Snapshot;
-use super::history::{Moment, Record};
-use super::timeline::Changed;
+use super::branch::Branch;
+use super::history::Moment;
+use super::undo::{Changed, Destination, UndoEntry};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most memory that states other than the one shown take [bytes]: without them, ends of runs are computed again.
+/// Most memory that states other than the one shown take [bytes]: without them, ends of branches are computed again.
 const MOST_STATES: usize = 64 << 20;
 
 /// All that a timeline is.
@@ -19,30 +20,30 @@ const MOST_STATES: usize = 64 << 20;
 pub struct Archive {
     /// The state at time zero, before any command.
     pub bed: World,
-    /// Every run there has been and is still known; the first is the present one.
-    pub records: Vec<Record>,
+    /// Every branch that is still known; the first is the present one.
+    pub branches: Vec<Branch>,
     /// States of them; the first is the one shown.
     pub states: Vec<ArchivedState>,
-    /// Runs kept beside the present one, by index.
+    /// Branches kept beside the present one, by index.
     pub kept: Vec<usize>,
     /// Changes that can be taken back.
-    pub undo: Vec<ArchivedTurn>,
+    pub undo: Vec<ArchivedEntry>,
     /// Changes that were taken back.
-    pub redo: Vec<ArchivedTurn>,
-    /// Runs begun so far.
+    pub redo: Vec<ArchivedEntry>,
+    /// Branches begun so far.
     pub begun: u32,
 }
 
-/// A state of the run of this index.
+/// A state of the branch of this index.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct ArchivedState {
-    pub record: usize,
+    pub branch: usize,
     pub snapshot: Snapshot,
 }
 
 /// A change that was made or taken back.
 #[derive(Clone, Serialize, Deserialize)]
-pub struct ArchivedTurn {
+pub struct ArchivedEntry {
     pub what: Changed,
     pub destination: ArchivedDestination,
 }
@@ -50,14 +51,51 @@ pub struct ArchivedTurn {
 /// Where the other side of a change lies.
 #[derive(Clone, Serialize, Deserialize)]
 pub enum ArchivedDestination {
-    /// Earlier in the present run.
+    /// Earlier in the present branch.
     Earlier { commands: usize, moment: Moment },
-    /// A step of the run of this index.
-    Other { record: usize, step: u64 },
+    /// A step of the branch of this index.
+    Other { branch: usize, step: u64 },
+}
+
+impl ArchivedEntry {
+    /// `entry` with the branch it leads to by its index in `table`.
+    pub fn of(entry: &UndoEntry, table: &mut Table) -> Self {
+        let destination = match &entry.destination {
+            Destination::Earlier { commands, moment } => ArchivedDestination::Earlier {
+                commands: *commands,
+                moment: *moment,
+            },
+            Destination::Other { branch, step } => ArchivedDestination::Other {
+                branch: table.index(branch),
+                step: *step,
+            },
+        };
+        Self {
+            what: entry.what.clone(),
+            destination,
+        }
+    }
+
+    /// The entry again, with the branch it leads to out of `branches`; none where there is no such branch.
+    pub fn unpack(self, branches: &[Arc<Branch>]) -> Option<UndoEntry> {
+        let destination = match self.destination {
+            ArchivedDestination::Earlier { commands, moment } => {
+                Destination::Earlier { commands, moment }
+            }
+            ArchivedDestination::Other { branch, step } => Destination::Other {
+                branch: branches.get(branch)?.clone(),
+                step,
+            },
+        };
+        Some(UndoEntry {
+            what: self.what,
+            destination,
+        })
+    }
 }
 
 impl Archive {
-    /// The states to keep: the one `shown`, then as many `ends` of runs as there is room for.
+    /// The states to keep: the one `shown`, then as many `ends` of branches as there is room for.
     pub fn states(
         shown: ArchivedState,
         ends: impl Iterator<Item = (usize, Arc<Snapshot>)>,
@@ -68,15 +106,15 @@ impl Archive {
             snapshot: shown.snapshot.sharing(None),
             ..shown
         }];
-        for (record, snapshot) in ends {
-            let is_shown = record == 0 && (snapshot.step(), snapshot.commands()) == at;
+        for (branch, snapshot) in ends {
+            let is_shown = branch == 0 && (snapshot.step(), snapshot.commands()) == at;
             let memory = snapshot.memory();
             if is_shown || memory > room {
                 continue;
             }
             room -= memory;
             states.push(ArchivedState {
-                record,
+                branch,
                 snapshot: (*snapshot).clone().sharing(None),
             });
         }
@@ -90,48 +128,48 @@ impl Archive {
 
     /// Whether all that it refers to is there.
     pub fn is_whole(&self) -> bool {
-        let turns = self.undo.iter().chain(&self.redo);
-        let of_turns = turns.filter_map(|turn| match turn.destination {
-            ArchivedDestination::Other { record, .. } => Some(record),
+        let entries = self.undo.iter().chain(&self.redo);
+        let of_entries = entries.filter_map(|entry| match entry.destination {
+            ArchivedDestination::Other { branch, .. } => Some(branch),
             ArchivedDestination::Earlier { .. } => None,
         });
-        let of_states = self.states.iter().map(|state| state.record);
-        let mut named = self.kept.iter().copied().chain(of_turns).chain(of_states);
-        self.states.first().is_some_and(|shown| shown.record == 0)
-            && named.all(|record| record < self.records.len())
+        let of_states = self.states.iter().map(|state| state.branch);
+        let mut named = self.kept.iter().copied().chain(of_entries).chain(of_states);
+        self.states.first().is_some_and(|shown| shown.branch == 0)
+            && named.all(|branch| branch < self.branches.len())
     }
 }
 
-/// Gives every run its index, the present one 0.
+/// Gives every branch its index, the present one 0.
 pub struct Table<'a> {
-    present: &'a Record,
-    others: Vec<Arc<Record>>,
+    present: &'a Branch,
+    others: Vec<Arc<Branch>>,
 }
 
 impl<'a> Table<'a> {
-    /// With the present run alone.
-    pub fn of(present: &'a Record) -> Self {
+    /// With the present branch alone.
+    pub fn of(present: &'a Branch) -> Self {
         Self {
             present,
             others: Vec::new(),
         }
     }
 
-    /// The index of `record`.
-    pub fn index(&mut self, record: &Arc<Record>) -> usize {
+    /// The index of `branch`.
+    pub fn index(&mut self, branch: &Arc<Branch>) -> usize {
         let known = self
             .others
             .iter()
-            .position(|other| Arc::ptr_eq(other, record));
+            .position(|other| Arc::ptr_eq(other, branch));
         1 + known.unwrap_or_else(|| {
-            self.others.push(record.clone());
+            self.others.push(branch.clone());
             self.others.len() - 1
         })
     }
 
-    /// The runs, each at its index.
-    pub fn records(self) -> Vec<Record> {
-        let others = self.others.iter().map(|record| (**record).clone());
+    /// The branches, each at its index.
+    pub fn branches(self) -> Vec<Branch> {
+        let others = self.others.iter().map(|branch| (**branch).clone());
         [self.present.clone()].into_iter().chain(others).collect()
     }
 }

@@ -1,11 +1,14 @@
-//! States along all runs there have been, kept within a budget of memory, so that any moment can be come back to without
-//! going there from time zero.
+//! Keyframes: states along all branches, kept within a budget of memory. An earlier moment is computed from the keyframe
+//! before it instead of from time zero.
 //!
-//! A keyframe is taken wherever some work was done since the last. Where the budget is spent, every second one goes and the
-//! next are taken half as often: keyframes stay evenly spread over the work, however long a run becomes.
+//! In: the computing time that was spent, and the state now. Out: the last keyframe before a step of a branch. A keyframe
+//! is due after some computing time since the last one. When the budget is spent, every second one is dropped and the next
+//! are taken half as often, so they stay evenly spread over the computing time, however long a run becomes. Computing from
+//! a keyframe on is the timeline's work.
 
 use super::Snapshot;
-use super::history::{History, Place};
+use super::branch::Branch;
+use super::history::{History, Position};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -27,7 +30,7 @@ pub struct Keyframes {
 }
 
 struct Keyframe {
-    place: Place,
+    position: Position,
     snapshot: Arc<Snapshot>,
     memory: usize,
 }
@@ -60,10 +63,15 @@ impl Keyframes {
         self.work = Duration::ZERO;
     }
 
-    /// Keeps the `snapshot` that `take` takes at `place`, unless there is one; what it costs spaces the next.
-    pub fn keep(&mut self, place: Place, take: impl FnOnce() -> Snapshot) {
+    /// Keeps the `snapshot` that `take` takes at `position`, unless there is one; what it costs spaces the next.
+    pub fn keep(&mut self, position: Position, take: impl FnOnce() -> Snapshot) {
         self.restart();
-        if self.budget == 0 || self.list.iter().any(|keyframe| keyframe.place == place) {
+        if self.budget == 0
+            || self
+                .list
+                .iter()
+                .any(|keyframe| keyframe.position == position)
+        {
             return;
         }
         let started = std::time::Instant::now();
@@ -78,7 +86,7 @@ impl Keyframes {
         }
         self.memory += memory;
         self.list.push(Keyframe {
-            place,
+            position,
             snapshot,
             memory,
         });
@@ -86,11 +94,18 @@ impl Keyframes {
 
     /// The last state at or before `step` of the run with `history`.
     pub fn nearest(&self, history: &History, step: u64) -> Option<&Arc<Snapshot>> {
-        let on_the_way =
-            |keyframe: &&Keyframe| keyframe.place.step() <= step && history.passes(&keyframe.place);
+        let on_the_way = |keyframe: &&Keyframe| {
+            keyframe.position.step() <= step && history.passes(&keyframe.position)
+        };
         let kept = self.list.iter().filter(on_the_way);
-        kept.max_by_key(|keyframe| (keyframe.place.step(), keyframe.snapshot.commands()))
+        kept.max_by_key(|keyframe| (keyframe.position.step(), keyframe.snapshot.commands()))
             .map(|keyframe| &keyframe.snapshot)
+    }
+
+    /// The state at the end of `branch`, where that was kept.
+    pub fn end(&self, branch: &Branch) -> Option<&Arc<Snapshot>> {
+        let nearest = self.nearest(&branch.history, branch.end.step);
+        nearest.filter(|snapshot| snapshot.step() == branch.end.step)
     }
 
     fn thin(&mut self) {

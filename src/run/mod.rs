@@ -11,14 +11,15 @@
 //! | `steps` | which step was when, where the time step changed |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `trajectory` | the run itself: world, solver, samples, snapshots |
-//! | `timeline` | runs as something to hold: seek, branch, undo |
-//! | `history`, `keyframes` | what tells runs apart and what is known of them; states to come back to |
+//! | `timeline` | all branches of a run: seek, branch, undo |
+//! | `branch`, `history`, `undo`, `keyframes` | what is known of a branch, what tells branches apart, what can be taken back, states along them |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
 //! | `session`, `archive`, `shared` | all of that in one file |
 //! | `claim`, `provenance` | a state and what leads to it, as files state it; in a few words, for exported files |
 
 mod archive;
 mod bed;
+mod branch;
 mod claim;
 mod command;
 mod history;
@@ -35,11 +36,13 @@ mod start;
 mod steps;
 mod timeline;
 mod trajectory;
+mod undo;
 
 pub use bed::BedStore;
+pub use branch::Branch;
 pub use claim::{Claim, VERSION, fingerprint};
 pub use command::{Command, Parameter, StampedCommand};
-pub use history::{History, Moment, Record};
+pub use history::{History, Moment};
 pub(crate) use parameter::time_step;
 pub use parameter::{DisplayUnit, ParameterInfo};
 pub use preparation::{Preparation, Prepared, make_bed};
@@ -48,6 +51,7 @@ pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use start::{StartInfo, StartParameter, start_parameters};
 pub use steps::StepTimes;
-pub use timeline::{Changed, Past, Timeline};
+pub use timeline::{Past, Timeline};
 pub(crate) use trajectory::check;
 pub use trajectory::{Checkpoint, CommandError, Run, SAMPLE_INTERVAL, Snapshot};
+pub use undo::Changed;

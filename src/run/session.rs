@@ -80,7 +80,7 @@ impl Session {
     /// `timeline` as it is now; `name` is what people call its scene.
     pub fn of(name: &str, timeline: &Timeline) -> Self {
         let run = timeline.run();
-        let commands = timeline.record().history.commands();
+        let commands = timeline.branch().history.commands();
         Self {
             claim: Claim::of(name, run.scene(), commands, run.world()),
             archive: timeline.archive(),

@@ -1,35 +1,33 @@
-//! Runs as something to hold: go back, look, change something and run on, take it back.
+//! All branches of a run: go back, look, change something and run on, take it back.
 //!
-//! In: steps to go to and changes to make. Out: the run at that step, and the records of all runs there have been. A moment
-//! is come back to from the keyframe before it by computing again what followed, commands included: the same bits. A
-//! change made while an earlier moment is shown begins another run; the one that is left is kept beside it.
+//! In: steps to go to and changes to make. Out: the run at that step, and all branches there have been. To show an earlier
+//! moment, the state is restored from the keyframe before it and what followed is computed again, commands included, which
+//! gives the same bits. A change made while an earlier moment is shown begins another branch; the one that is left is kept.
+//! How fast to go, and for how long, is decided elsewhere.
 
-use super::archive::{Archive, ArchivedDestination, ArchivedState, ArchivedTurn, Table};
-use super::history::{Moment, Place, Record};
+use super::archive::{Archive, ArchivedEntry, ArchivedState, Table};
+use super::branch::Branch;
+use super::history::{Moment, Position};
 use super::keyframes::Keyframes;
+use super::undo::{Changed, Destination, UndoEntry, UndoList};
 use super::{Command, CommandError, Parameter, Run, Script, Snapshot};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Most changes that can be taken back.
-const MOST_UNDONE: usize = 200;
-/// Most runs kept beside the present one.
+/// Most branches kept beside the present one.
 const MOST_KEPT: usize = 8;
 
-/// The present run with all that came before it.
+/// The present branch with all that came before it.
 pub struct Timeline {
     run: Run,
-    record: Record,
     keyframes: Keyframes,
-    kept: Vec<Arc<Record>>,
-    undo: Vec<Turn>,
-    redo: Vec<Turn>,
+    kept: Vec<Arc<Branch>>,
+    changes: UndoList,
     journey: Option<Journey>,
     news: News,
-    /// Runs begun so far.
+    /// Branches begun so far.
     begun: u32,
 }
 
@@ -40,36 +38,10 @@ struct Journey {
     to: u64,
 }
 
-/// A change that was made or taken back: what it was, and where to go for the other side of it.
-struct Turn {
-    what: Changed,
-    destination: Destination,
-}
-
-enum Destination {
-    /// Earlier in the present run: after its first commands, at a moment.
-    Earlier { commands: usize, moment: Moment },
-    /// A step of another run.
-    Other { record: Arc<Record>, step: u64 },
-}
-
-/// What a change was about.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Changed {
-    /// One parameter.
-    Parameter(Parameter),
-    /// Several at once.
-    Parameters,
-    /// The run started afresh.
-    Start,
-    /// Another of the kept runs was taken up.
-    Run,
-}
-
 /// What came about since it was last asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct News {
-    /// Another run is the present one.
+    /// Another branch is the present one.
     pub switched: bool,
     /// The state is one that a person asked to see: the nearest keyframe or the end of the way.
     pub arrived: bool,
@@ -78,65 +50,28 @@ pub struct News {
 /// What lies behind and ahead of the state shown.
 #[derive(Clone, Debug, Default)]
 pub struct Past {
-    /// Which of all runs the present one is, counted from 1.
+    /// Which of all branches the present one is, counted from 1.
     pub number: u32,
-    /// The last moment of the present run so far.
+    /// The last moment of the present branch so far.
     pub end: Moment,
     /// What an undo would take back.
     pub undo: Option<Changed>,
     /// What a redo would bring back.
     pub redo: Option<Changed>,
-    /// Runs that were left for others, the oldest first.
-    pub kept: Vec<Arc<Record>>,
+    /// Branches that were left for others, the oldest first.
+    pub kept: Vec<Arc<Branch>>,
     /// Memory that keyframes take [bytes].
     pub memory: usize,
-}
-
-impl Turn {
-    fn archive(&self, table: &mut Table) -> ArchivedTurn {
-        let destination = match &self.destination {
-            Destination::Earlier { commands, moment } => ArchivedDestination::Earlier {
-                commands: *commands,
-                moment: *moment,
-            },
-            Destination::Other { record, step } => ArchivedDestination::Other {
-                record: table.index(record),
-                step: *step,
-            },
-        };
-        ArchivedTurn {
-            what: self.what.clone(),
-            destination,
-        }
-    }
-
-    fn unpack(archived: ArchivedTurn, records: &[Arc<Record>]) -> Option<Self> {
-        let destination = match archived.destination {
-            ArchivedDestination::Earlier { commands, moment } => {
-                Destination::Earlier { commands, moment }
-            }
-            ArchivedDestination::Other { record, step } => Destination::Other {
-                record: records.get(record)?.clone(),
-                step,
-            },
-        };
-        Some(Self {
-            what: archived.what,
-            destination,
-        })
-    }
 }
 
 impl Timeline {
     /// The timeline of `run`, which is at its end, with keyframes in `budget` bytes.
     pub fn new(run: Run, budget: usize) -> Self {
         Self {
-            record: Record::of(&run, 1),
             run,
             keyframes: Keyframes::new(budget),
             kept: Vec::new(),
-            undo: Vec::new(),
-            redo: Vec::new(),
+            changes: UndoList::default(),
             journey: None,
             news: News::default(),
             begun: 1,
@@ -145,21 +80,23 @@ impl Timeline {
 
     /// All of it, as a file can keep it.
     pub fn archive(&self) -> Archive {
-        let mut table = Table::of(&self.record);
-        let kept = self.kept.iter().map(|record| table.index(record)).collect();
-        let mut turns =
-            |turns: &[Turn]| turns.iter().map(|turn| turn.archive(&mut table)).collect();
-        let (undo, redo) = (turns(&self.undo), turns(&self.redo));
-        let records = table.records();
+        let mut table = Table::of(self.run.branch());
+        let kept = self.kept.iter().map(|branch| table.index(branch)).collect();
+        let mut entries = |entries: &[UndoEntry]| -> Vec<ArchivedEntry> {
+            let entries = entries.iter();
+            let archived = entries.map(|entry| ArchivedEntry::of(entry, &mut table));
+            archived.collect()
+        };
+        let (undo, redo) = (entries(&self.changes.undo), entries(&self.changes.redo));
+        let branches = table.branches();
         let shown = ArchivedState {
-            record: 0,
+            branch: 0,
             snapshot: self.run.snapshot(),
         };
-        let ends = records.iter().enumerate().filter_map(|(record, known)| {
-            let snapshot = self.keyframes.nearest(&known.history, known.end.step)?;
-            let is_end = snapshot.step() == known.end.step;
-            is_end.then(|| (record, snapshot.clone()))
-        });
+        let ends = branches
+            .iter()
+            .enumerate()
+            .filter_map(|(index, branch)| Some((index, self.keyframes.end(branch)?.clone())));
         let states = Archive::states(shown, ends);
         Archive {
             bed: (**self.run.bed()).clone(),
@@ -168,24 +105,23 @@ impl Timeline {
             undo,
             redo,
             begun: self.begun,
-            records,
+            branches,
         }
     }
 
-    /// The timeline of `scene` that was put into `archive`, on `threads` threads, with keyframes in `budget` bytes.
+    /// The timeline of `scene` that was put into `archive`, on `threads` threads, with keyframes in `budget` bytes. What
+    /// an archive that is not whole refers to and does not hold is left out.
     pub fn unpack(archive: Archive, scene: Arc<Scene>, threads: usize, budget: usize) -> Self {
-        let records: Vec<Arc<Record>> = archive.records.into_iter().map(Arc::new).collect();
-        let turn = |turn| Turn::unpack(turn, &records);
+        let branches: Vec<Arc<Branch>> = archive.branches.into_iter().map(Arc::new).collect();
+        let entry = |entry: ArchivedEntry| entry.unpack(&branches);
         let mut timeline = Self {
-            record: records
-                .first()
-                .map(|first| (**first).clone())
-                .unwrap_or_default(),
             kept: (archive.kept.iter())
-                .filter_map(|index| records.get(*index).cloned())
+                .filter_map(|index| branches.get(*index).cloned())
                 .collect(),
-            undo: archive.undo.into_iter().filter_map(turn).collect(),
-            redo: archive.redo.into_iter().filter_map(turn).collect(),
+            changes: UndoList {
+                undo: archive.undo.into_iter().filter_map(entry).collect(),
+                redo: archive.redo.into_iter().filter_map(entry).collect(),
+            },
             run: Run::new(scene, archive.bed, threads),
             keyframes: Keyframes::new(budget),
             journey: None,
@@ -195,19 +131,22 @@ impl Timeline {
             },
             begun: archive.begun,
         };
+        if let Some(present) = branches.first() {
+            timeline.run.replace_branch((**present).clone());
+        }
         let bed = timeline.run.bed().clone();
         for (index, state) in archive.states.into_iter().enumerate() {
             let snapshot = state.snapshot.sharing(Some(&bed));
             if index == 0 {
-                let record = &timeline.record;
-                (timeline.run).restore(&snapshot, record.history.commands(), &record.series);
+                timeline.run.show(&snapshot);
             }
-            if let Some(record) = records.get(state.record) {
-                let place = record.history.place(snapshot.commands(), snapshot.step());
-                timeline.keyframes.keep(place, || snapshot);
+            if let Some(branch) = branches.get(state.branch) {
+                let history = &branch.history;
+                let position = history.position(snapshot.commands(), snapshot.step());
+                timeline.keyframes.keep(position, || snapshot);
             }
         }
-        timeline.follow_record();
+        timeline.run.follow_branch();
         timeline
     }
 
@@ -216,10 +155,7 @@ impl Timeline {
     /// # Errors
     /// As [`Run::schedule`].
     pub fn schedule(&mut self, plan: Script) -> Result<(), CommandError> {
-        self.run.schedule(plan.clone())?;
-        self.record.plan = plan;
-        self.record.follow(&self.run, true);
-        Ok(())
+        self.run.schedule(plan)
     }
 
     /// The run at the moment shown.
@@ -227,39 +163,38 @@ impl Timeline {
         &self.run
     }
 
-    /// The present run as far as it has come.
-    pub fn record(&self) -> &Record {
-        &self.record
+    /// The present branch as far as it has come.
+    pub fn branch(&self) -> &Branch {
+        self.run.branch()
     }
 
     /// Steps taken and commands carried out at the moment shown.
-    pub(crate) fn position(&self) -> (u64, usize) {
+    pub(crate) fn steps_and_commands(&self) -> (u64, usize) {
         (self.step(), self.run.commands().len())
     }
 
-    /// The state at the end of the present run, where that is at hand.
+    /// The state at the end of the present branch, where that is at hand.
     pub(crate) fn end(&self) -> Option<Snapshot> {
-        if self.is_at_end() {
+        if self.run.is_at_end() {
             return Some(self.run.snapshot());
         }
-        let (history, end) = (&self.record.history, self.record.end.step);
-        let nearest = self.keyframes.nearest(history, end)?;
-        (nearest.step() == end).then(|| (**nearest).clone())
+        let end = self.keyframes.end(self.branch())?;
+        Some((**end).clone())
     }
 
-    /// Runs that were left for others, the oldest first.
-    pub fn kept(&self) -> &[Arc<Record>] {
+    /// Branches that were left for others, the oldest first.
+    pub fn kept(&self) -> &[Arc<Branch>] {
         &self.kept
     }
 
     /// What lies behind and ahead.
     pub fn past(&self) -> Past {
-        let what = |turns: &[Turn]| turns.last().map(|turn| turn.what.clone());
+        let branch = self.branch();
         Past {
-            number: self.record.number,
-            end: self.record.end,
-            undo: what(&self.undo),
-            redo: what(&self.redo),
+            number: branch.number,
+            end: branch.end,
+            undo: self.changes.next_undo().cloned(),
+            redo: self.changes.next_redo().cloned(),
             kept: self.kept.clone(),
             memory: self.keyframes.memory(),
         }
@@ -305,9 +240,6 @@ impl Timeline {
         if self.keyframes.after(started.elapsed()) {
             self.keep_keyframe();
         }
-        if self.is_at_end() {
-            self.record.follow(&self.run, false);
-        }
         let there = |journey: &Journey| self.step() >= journey.to;
         if self.journey.as_ref().is_some_and(there) || outcome.is_err() {
             self.stop();
@@ -315,38 +247,35 @@ impl Timeline {
         outcome
     }
 
-    /// Goes ahead in what was recorded, to the last keyframe at or before `step`: for those who want to see it faster than
+    /// Goes ahead in the present branch to the last keyframe at or before `step`: for those who want to see it faster than
     /// it can be computed.
     pub fn skip_towards(&mut self, step: u64) {
-        let step = step.min(self.record.end.step);
-        let ahead = self.keyframes.nearest(&self.record.history, step);
-        if let Some(snapshot) = ahead
-            .filter(|snapshot| snapshot.step() > self.step())
-            .cloned()
-        {
-            let commands = self.record.history.commands();
-            self.run.restore(&snapshot, commands, &self.record.series);
-            self.follow_record();
+        let step = step.min(self.branch().end.step);
+        let ahead = self.keyframes.nearest(&self.branch().history, step);
+        let ahead = ahead.filter(|snapshot| snapshot.step() > self.step());
+        if let Some(snapshot) = ahead.cloned() {
+            self.run.show(&snapshot);
+            self.run.follow_branch();
         }
     }
 
-    /// Goes to `step` of the present run, at most to its end.
+    /// Goes to `step` of the present branch, at most to its end.
     pub fn seek(&mut self, step: u64) {
-        let here = self.place();
+        let here = self.position();
         self.keep_end();
-        self.travel(here, step.min(self.record.end.step));
+        self.travel(here, step.min(self.branch().end.step));
     }
 
-    /// Carries out `command` at the moment shown. In the past this begins another run and keeps the one that is left. It is
-    /// part of the change before it where it `joins`.
+    /// Carries out `command` at the moment shown. At an earlier moment this begins another branch and keeps the one that
+    /// is left. It is part of the change before it where it `joins`.
     ///
     /// # Errors
     /// As [`Run::apply`].
     pub fn change(&mut self, command: Command, joins: bool) -> Result<(), CommandError> {
-        self.change_by(command, joins, Run::apply)
+        self.change_by(command, joins, Run::apply_change)
     }
 
-    /// The same in one of two runs that keep one time: the step stays.
+    /// The same in one of two runs that keep one time: the time step follows no limit.
     ///
     /// # Errors
     /// As [`Run::apply`].
@@ -362,20 +291,18 @@ impl Timeline {
         &mut self,
         command: Command,
         joins: bool,
-        apply: fn(&mut Run, Command) -> Result<(), CommandError>,
+        apply: fn(&mut Run, Command, bool) -> Result<(), CommandError>,
     ) -> Result<(), CommandError> {
         self.run.check(&command)?;
         let Command::Set { parameter, .. } = &command else {
             return Ok(());
         };
         let joins = self.begin_change(parameter, joins);
-        apply(&mut self.run, command)?;
-        self.record.follow(&self.run, joins);
-        Ok(())
+        apply(&mut self.run, command, joins)
     }
 
     /// Notes that `command` was carried out in the run beside this one and not here: an undo takes it back in both, and
-    /// where it was made in the past both go on from there.
+    /// where it was made at an earlier moment both go on from there.
     ///
     /// # Errors
     /// As [`Timeline::change`].
@@ -395,48 +322,43 @@ impl Timeline {
     fn begin_change(&mut self, parameter: &Parameter, joins: bool) -> bool {
         self.stop();
         let what = Changed::Parameter(parameter.clone());
-        let moment = Moment::of(&self.run);
-        let joins = joins && self.is_at_end() && !self.undo.is_empty() && self.redo.is_empty();
+        let moment = Moment::of(self.run.world());
+        let joins = joins && self.run.is_at_end() && self.changes.can_join();
         if joins {
-            self.join(what);
-        } else {
-            self.keep_end();
-            let destination = if self.is_at_end() {
-                let commands = self.run.commands().len();
-                Destination::Earlier { commands, moment }
-            } else {
-                let record = self.branch();
-                Destination::Other {
-                    record,
-                    step: moment.step,
-                }
-            };
-            self.turn(Turn { what, destination });
+            self.changes.join(what);
+            return joins;
         }
+        self.keep_end();
+        let destination = if self.run.is_at_end() {
+            let commands = self.run.commands().len();
+            Destination::Earlier { commands, moment }
+        } else {
+            Destination::Other {
+                branch: self.begin_branch(),
+                step: moment.step,
+            }
+        };
+        self.changes.note(UndoEntry { what, destination });
         joins
     }
 
-    /// Starts afresh at time zero with the present values, keeping the run that is left.
+    /// Starts afresh at time zero with the present values, keeping the branch that is left.
     pub fn reset(&mut self) {
-        self.start_afresh(Run::reset);
+        self.restart(&self.run.values());
     }
 
-    /// Starts afresh at time zero with these `values`, keeping the run that is left.
+    /// Starts afresh at time zero with these `values`, keeping the branch that is left.
     pub(crate) fn restart(&mut self, values: &[(Parameter, f64)]) {
-        self.start_afresh(|run| run.restart_with(values));
-    }
-
-    fn start_afresh(&mut self, start: impl FnOnce(&mut Run)) {
         self.stop();
         self.keep_end();
         let step = self.step();
-        start(&mut self.run);
         let number = self.next_number();
-        let left = self.switch(Record::of(&self.run, number));
-        // A run that had only just begun is nothing to come back to.
+        let left = self.run.start_afresh(values, number);
+        let left = self.keep_left(left);
+        // A branch that had only just begun is nothing to come back to.
         if !left.is_fresh() {
-            let destination = Destination::Other { record: left, step };
-            self.turn(Turn {
+            let destination = Destination::Other { branch: left, step };
+            self.changes.note(UndoEntry {
                 what: Changed::Start,
                 destination,
             });
@@ -445,44 +367,42 @@ impl Timeline {
 
     /// Takes the last change back: goes to its moment, as if it had not been made.
     pub fn undo(&mut self) {
-        if let Some(turn) = self.undo.pop() {
-            let back = self.go(turn);
-            self.redo.push(back);
+        if let Some(entry) = self.changes.undo.pop() {
+            let back = self.go(entry);
+            self.changes.redo.push(back);
         }
     }
 
     /// Brings the last change that was taken back to where it was.
     pub fn redo(&mut self) {
-        if let Some(turn) = self.redo.pop() {
-            let back = self.go(turn);
-            self.undo.push(back);
+        if let Some(entry) = self.changes.redo.pop() {
+            let back = self.go(entry);
+            self.changes.undo.push(back);
         }
     }
 
-    /// Shows the end of the kept run of `index`, if there is one, and keeps the present run.
+    /// Shows the end of the kept branch of `index`, if there is one, and keeps the present branch.
     pub fn take_up(&mut self, index: usize) {
-        if let Some(record) = self.kept.get(index).cloned() {
-            let step = record.end.step;
-            let back = self.go(Turn {
+        if let Some(branch) = self.kept.get(index).cloned() {
+            let step = branch.end.step;
+            let back = self.go(UndoEntry {
                 what: Changed::Run,
-                destination: Destination::Other { record, step },
+                destination: Destination::Other { branch, step },
             });
-            self.turn(back);
+            self.changes.note(back);
         }
     }
 
-    /// Keeps the run of `record`, which began from the same bed, beside the present one, with the state at its `end`
-    /// where that is known; returns its index.
-    pub(crate) fn adopt(&mut self, mut record: Record, end: Option<Snapshot>) -> usize {
-        record.number = self.next_number();
+    /// Keeps `branch`, which began from the same bed, beside the present one, with the state at its `end` where that is
+    /// known; returns its index.
+    pub(crate) fn adopt(&mut self, mut branch: Branch, end: Option<Snapshot>) -> usize {
+        branch.number = self.next_number();
         if let Some(end) = end {
-            let place = record.history.place(end.commands(), end.step());
-            self.keyframes.keep(place, || end);
+            let position = branch.history.position(end.commands(), end.step());
+            self.keyframes.keep(position, || end);
         }
-        self.kept.push(Arc::new(record));
-        if self.kept.len() > MOST_KEPT {
-            self.kept.remove(0);
-        }
+        self.kept.push(Arc::new(branch));
+        self.drop_oldest();
         self.kept.len() - 1
     }
 
@@ -491,7 +411,7 @@ impl Timeline {
         self.run.use_threads(threads);
     }
 
-    /// Keeps the run of `index` no longer.
+    /// Keeps the branch of `index` no longer.
     pub fn forget(&mut self, index: usize) {
         if index < self.kept.len() {
             self.kept.remove(index);
@@ -507,131 +427,99 @@ impl Timeline {
         self.run.world().clock.step
     }
 
-    fn is_at_end(&self) -> bool {
-        self.step() >= self.record.end.step
-            && self.run.commands().len() >= self.record.history.commands().len()
-    }
-
-    fn place(&self) -> Place {
-        (self.record.history).place(self.run.commands().len(), self.step())
+    fn position(&self) -> Position {
+        let (step, commands) = self.steps_and_commands();
+        self.branch().history.position(commands, step)
     }
 
     fn keep_keyframe(&mut self) {
-        let place = self.place();
-        self.keyframes.keep(place, || self.run.snapshot());
+        let position = self.position();
+        self.keyframes.keep(position, || self.run.snapshot());
     }
 
-    /// Keeps the end of the present run where that is shown, so that it can be come back to at once.
+    /// Keeps the end of the present branch where that is shown, so that it can be shown again at once.
     fn keep_end(&mut self) {
-        if self.is_at_end() {
+        if self.run.is_at_end() {
             self.keep_keyframe();
         }
     }
 
-    /// Notes a change that was made; what was taken back before is out of reach of a redo.
-    fn turn(&mut self, turn: Turn) {
-        self.redo.clear();
-        self.undo.push(turn);
-        if self.undo.len() > MOST_UNDONE {
-            self.undo.remove(0);
-        }
-    }
-
-    /// Makes a command about `what` part of the last change.
-    fn join(&mut self, what: Changed) {
-        if let Some(last) = self.undo.last_mut()
-            && last.what != what
-        {
-            last.what = Changed::Parameters;
-        }
-    }
-
-    /// Leaves the present run for one that has its past until now; returns the one that is left.
-    fn branch(&mut self) -> Arc<Record> {
+    /// Leaves the present branch for one that has its past until now; returns the one that is left.
+    fn begin_branch(&mut self) -> Arc<Branch> {
         let number = self.next_number();
-        let commands = self.run.commands().len();
-        let mut record = (self.record).until(commands, Moment::of(&self.run), number);
-        record.flow.clone_from(self.run.flow());
-        let left = self.switch(record);
-        self.follow_record();
+        let left = self.run.begin_branch(number);
+        let left = self.keep_left(left);
+        self.run.follow_branch();
         left
     }
 
-    /// Makes `record` the present one and returns the one that is left, which is kept where it holds more.
-    fn switch(&mut self, record: Record) -> Arc<Record> {
-        let left = Arc::new(std::mem::replace(&mut self.record, record));
-        self.kept.push(left.clone());
-        let (present, newest) = (&self.record, self.kept.len() - 1);
-        let rivals = self.kept.clone();
-        let mut index = 0;
-        self.kept.retain(|kept| {
-            let own = index;
-            index += 1;
-            let contained = |other: &Arc<Record>| kept.is_part_of(other);
-            let in_newest = own != newest && rivals.last().is_some_and(contained);
-            kept.went_on() && !kept.is_part_of(present) && !in_newest
-        });
-        if self.kept.len() > MOST_KEPT {
-            self.kept.remove(0);
+    /// Keeps the branch that was `left` for the present one, where it holds more than others do.
+    fn keep_left(&mut self, left: Branch) -> Arc<Branch> {
+        let left = Arc::new(left);
+        let present = self.run.branch();
+        let holds_more = |branch: &Arc<Branch>| branch.went_on() && !branch.is_part_of(present);
+        self.kept
+            .retain(|kept| holds_more(kept) && !kept.is_part_of(&left));
+        if holds_more(&left) {
+            self.kept.push(left.clone());
         }
+        self.drop_oldest();
         self.news.switched = true;
         left
     }
 
-    /// Goes where `turn` leads; returns the turn that leads back.
-    fn go(&mut self, turn: Turn) -> Turn {
-        let here = self.place();
+    fn drop_oldest(&mut self) {
+        if self.kept.len() > MOST_KEPT {
+            self.kept.remove(0);
+        }
+    }
+
+    /// Goes where `entry` leads; returns the entry that leads back.
+    fn go(&mut self, entry: UndoEntry) -> UndoEntry {
+        let here = self.position();
         self.keep_end();
-        let (record, step) = match turn.destination {
+        let (branch, step) = match entry.destination {
             Destination::Earlier { commands, moment } => {
                 let number = self.next_number();
-                (self.record.until(commands, moment, number), moment.step)
+                (self.branch().until(commands, moment, number), moment.step)
             }
-            Destination::Other { record, step } => ((*record).clone(), step),
+            Destination::Other { branch, step } => ((*branch).clone(), step),
         };
-        let left = self.switch(record);
+        let left = self.run.replace_branch(branch);
+        let left = self.keep_left(left);
         self.travel(here, step);
-        Turn {
-            what: turn.what,
+        UndoEntry {
+            what: entry.what,
             destination: Destination::Other {
-                record: left,
+                branch: left,
                 step: here.step(),
             },
         }
     }
 
-    /// Sets out from `here` for `step` of the present run: from the nearest keyframe, where that is nearer.
-    fn travel(&mut self, here: Place, step: u64) {
-        let history = &self.record.history;
+    /// Sets out from `here` for `step` of the present branch: from the nearest keyframe, where that is nearer.
+    fn travel(&mut self, here: Position, step: u64) {
+        let history = &self.branch().history;
         let start = self.keyframes.nearest(history, step).cloned();
         let passes = here.step() <= step && history.passes(&here);
-        let nearer = start
-            .as_ref()
-            .is_none_or(|start| start.step() <= here.step());
+        let is_nearest = |start: &Arc<Snapshot>| start.step() <= here.step();
         match start {
-            _ if passes && nearer => {}
+            start if passes && start.as_ref().is_none_or(is_nearest) => {}
             Some(snapshot) => {
-                self.run
-                    .restore(&snapshot, history.commands(), &self.record.series);
+                self.run.show(&snapshot);
                 self.keyframes.restart();
             }
             None => {
-                self.run.restart();
+                self.run.rewind();
                 self.keyframes.restart();
             }
         }
-        self.follow_record();
+        self.run.follow_branch();
         let from = self.step();
         self.journey = Some(Journey { from, to: step });
         self.news.arrived = true;
         if from >= step {
             self.stop();
         }
-    }
-
-    /// Lets the run go on as the record says and, after its end, as was planned.
-    fn follow_record(&mut self) {
-        let (rest, recorded) = self.record.rest(self.run.commands().len());
-        self.run.follow(rest, recorded);
     }
 }

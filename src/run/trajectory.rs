@@ -4,6 +4,8 @@
 //! [`Sample`] every [`SAMPLE_INTERVAL`] of simulated time. Nothing here knows of wall-clock time, ticks or threads:
 //! however a run is sliced, the same scene, seed and commands give the same bits.
 
+use super::branch::Branch;
+use super::history::Moment;
 use super::parameter::{self, ParameterInfo};
 use super::script::Script;
 use super::{Command, Parameter, StampedCommand};
@@ -24,14 +26,19 @@ pub struct Run {
     bed: Arc<World>,
     world: World,
     solver: Solver,
-    commands: Vec<StampedCommand>,
+    /// What was changed and measured, up to its end; the state may be an earlier one of it.
+    branch: Branch,
+    /// Commands of the branch that were carried out before the state.
+    commands: usize,
+    /// Samples of the branch that were taken until the state.
+    samples: usize,
+    /// The flowing layer up to the state, where that is not the branch's end.
+    flow: Option<Arc<FlowHistory>>,
+    next_sample: u64,
     script: Script,
-    /// How many of the script's commands are those of a record, which says what the step became.
+    /// How many of the script's commands are recorded already, with what the time step became.
     recorded: usize,
     extremes: Extremes,
-    series: Series,
-    flow: Arc<FlowHistory>,
-    next_sample: u64,
 }
 
 /// Where a run stood: all it takes to go on from there, together with the run's commands and samples until then.
@@ -81,8 +88,10 @@ impl Snapshot {
 pub struct Checkpoint {
     world: World,
     commands: Vec<StampedCommand>,
-    series: Series,
-    flow: FlowHistory,
+    #[serde(with = "super::shared")]
+    series: Arc<Series>,
+    #[serde(with = "super::shared")]
+    flow: Arc<FlowHistory>,
     next_sample: u64,
 }
 
@@ -124,14 +133,16 @@ impl Run {
             world: (*bed).clone(),
             bed,
             solver: Solver::new(threads),
-            commands: Vec::new(),
+            branch: Branch::begin(1),
+            commands: 0,
+            samples: 0,
+            flow: None,
+            next_sample: 0,
             script: Script::default(),
             recorded: 0,
-            series: Series::default(),
-            flow: Arc::default(),
-            next_sample: 0,
         };
         run.take_due_sample();
+        run.note_end();
         run
     }
 
@@ -150,19 +161,30 @@ impl Run {
         &self.bed
     }
 
-    /// The samples so far.
+    /// The samples of the run, one every [`SAMPLE_INTERVAL`]; where the state is an earlier one, those after it too.
     pub fn series(&self) -> &Series {
-        &self.series
+        &self.branch.series
     }
 
-    /// The flowing layer so far.
+    /// The flowing layer up to the state.
     pub fn flow(&self) -> &Arc<FlowHistory> {
-        &self.flow
+        self.flow.as_ref().unwrap_or(&self.branch.flow)
     }
 
-    /// The commands carried out since time zero.
+    /// The commands carried out from time zero up to the state.
     pub fn commands(&self) -> &[StampedCommand] {
-        &self.commands
+        &self.branch.history.commands()[..self.commands]
+    }
+
+    /// What was changed and measured up to the end, wherever the state is.
+    pub(crate) fn branch(&self) -> &Branch {
+        &self.branch
+    }
+
+    /// Whether the state is the last of its branch, so that going on from it adds to the branch.
+    pub(crate) fn is_at_end(&self) -> bool {
+        self.world.clock.step >= self.branch.end.step
+            && self.commands >= self.branch.history.commands().len()
     }
 
     /// The parameters that can change while the run goes on.
@@ -190,52 +212,68 @@ impl Run {
     /// # Errors
     /// A [`CommandError`] when one of them cannot be carried out in this scene; none is taken then.
     pub fn schedule(&mut self, script: Script) -> Result<(), CommandError> {
-        self.check_all(&script)?;
-        self.follow(script, 0);
-        Ok(())
+        self.follow(script, 0)
     }
 
-    /// The same for all the commands of a recorded run: no step follows a limit but by a command.
+    /// The same for all the commands of a recorded run: no time step follows a limit but by a command.
     ///
     /// # Errors
     /// As [`Run::schedule`].
     pub fn replay(&mut self, script: Script) -> Result<(), CommandError> {
-        self.check_all(&script)?;
-        self.follow(script, usize::MAX);
+        self.follow(script, usize::MAX)
+    }
+
+    fn follow(&mut self, script: Script, recorded: usize) -> Result<(), CommandError> {
+        script
+            .commands()
+            .try_for_each(|command| self.check(command))?;
+        self.branch.plan = script.clone();
+        (self.script, self.recorded) = (script, recorded);
+        self.apply_due(true);
         Ok(())
     }
 
-    fn check_all(&self, script: &Script) -> Result<(), CommandError> {
-        let mut commands = script.commands();
-        commands.try_for_each(|command| check(&self.parameters, &self.world, command))
+    /// Goes on as the branch says and, after its end, as was planned.
+    pub(crate) fn follow_branch(&mut self) {
+        (self.script, self.recorded) = self.branch.rest(self.commands);
+        self.apply_due(false);
     }
 
-    /// Carries out `script`, which was checked, from here on instead of what was scheduled. Its first
-    /// `recorded` commands are those of a record.
-    pub(crate) fn follow(&mut self, script: Script, recorded: usize) {
-        self.script = script;
-        self.recorded = recorded;
-        self.carry_out_due();
-    }
-
-    /// Carries out `command` now and keeps it. What concerns the player alone (play, pause, step, seek …) is passed over.
-    /// Where the scene's step follows its limit and the command moves that, a command about the step comes after it.
+    /// Carries out `command` now and keeps it. What concerns the clock alone (play, pause, step, seek …) is passed over.
+    /// Where the scene's time step follows its limit and the command moves that limit, a command about the time step is
+    /// carried out after it.
     ///
     /// # Errors
     /// A [`CommandError`] when the scene has no such parameter or the value is out of its range; nothing changes then.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
-        self.check(&command)?;
-        self.followed(|run| run.carry_out(command));
-        Ok(())
+        self.apply_change(command, false)
     }
 
-    /// The same, and the step stays: for one of two runs that keep one time.
+    /// As [`Run::apply`]; the command is part of the change before it where it `joins`.
     ///
     /// # Errors
     /// As [`Run::apply`].
-    pub(crate) fn apply_at_this_step(&mut self, command: Command) -> Result<(), CommandError> {
+    pub(crate) fn apply_change(
+        &mut self,
+        command: Command,
+        joins: bool,
+    ) -> Result<(), CommandError> {
         self.check(&command)?;
-        self.carry_out(command);
+        self.followed(|run| run.execute(command, joins));
+        Ok(())
+    }
+
+    /// The same, and the time step stays: for one of two runs that keep one time.
+    ///
+    /// # Errors
+    /// As [`Run::apply`].
+    pub(crate) fn apply_at_this_step(
+        &mut self,
+        command: Command,
+        joins: bool,
+    ) -> Result<(), CommandError> {
+        self.check(&command)?;
+        self.execute(command, joins);
         Ok(())
     }
 
@@ -252,6 +290,12 @@ impl Run {
     /// # Errors
     /// The solver's [`Fault`]; the world is then a good state some steps before the fault.
     pub fn advance_to(&mut self, step: u64) -> Result<(), Fault> {
+        let outcome = self.advance_and_sample(step);
+        self.note_end();
+        outcome
+    }
+
+    fn advance_and_sample(&mut self, step: u64) -> Result<(), Fault> {
         while self.world.clock.step < step {
             let sample_step = sample_step(&self.world, self.next_sample);
             let script_step = self.script.next_step().unwrap_or(u64::MAX);
@@ -259,7 +303,7 @@ impl Run {
             let steps = stop - self.world.clock.step;
             self.solver.advance(&mut self.world, steps)?;
             self.take_due_sample();
-            self.carry_out_due();
+            self.apply_due(false);
         }
         Ok(())
     }
@@ -268,9 +312,9 @@ impl Run {
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             world: self.world.clone(),
-            commands: self.commands.clone(),
-            series: self.series.clone(),
-            flow: (*self.flow).clone(),
+            commands: self.commands().to_vec(),
+            series: self.branch.series.clone(),
+            flow: self.flow().clone(),
             next_sample: self.next_sample,
         }
     }
@@ -279,9 +323,16 @@ impl Run {
     /// before it are not carried out again.
     pub fn resume(&mut self, checkpoint: Checkpoint) {
         self.world = checkpoint.world;
-        self.commands = checkpoint.commands;
-        self.series = checkpoint.series;
-        self.flow = Arc::new(checkpoint.flow);
+        self.commands = checkpoint.commands.len();
+        self.samples = checkpoint.series.len();
+        self.branch = Branch {
+            history: Arc::new(checkpoint.commands.into_iter().collect()),
+            series: checkpoint.series,
+            flow: checkpoint.flow,
+            end: Moment::of(&self.world),
+            ..Branch::begin(self.branch.number)
+        };
+        self.flow = None;
         self.next_sample = checkpoint.next_sample;
         while self.script.take_due(self.world.clock.step).is_some() {}
     }
@@ -290,35 +341,68 @@ impl Run {
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {
             world: self.world.clone(),
-            commands: self.commands.len(),
-            samples: self.series.len(),
-            flow: self.flow.clone(),
+            commands: self.commands,
+            samples: self.samples,
+            flow: self.flow().clone(),
             next_sample: self.next_sample,
         }
     }
 
-    /// Goes to a `snapshot` of a run of the same scene that had these `commands` and this `series` then or later; what
-    /// it forgets after them is up to the caller to schedule.
-    pub fn restore(&mut self, snapshot: &Snapshot, commands: &[StampedCommand], series: &Series) {
-        self.world.clone_from(&snapshot.world);
-        self.commands.clear();
-        let kept = snapshot.commands.min(commands.len());
-        self.commands.extend_from_slice(&commands[..kept]);
-        self.series.copy_first(series, snapshot.samples);
-        self.forget_script();
-        self.flow.clone_from(&snapshot.flow);
-        self.next_sample = snapshot.next_sample;
+    /// Goes back to a `snapshot` of this run and forgets what followed it.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        let end = Moment::of(&snapshot.world);
+        self.branch = (self.branch).until(snapshot.commands, end, self.branch.number);
+        self.show(snapshot);
     }
 
-    /// Goes to time zero, before any command.
-    pub fn restart(&mut self) {
-        self.world.clone_from(&self.bed);
-        self.commands.clear();
+    /// Goes to a `snapshot` of the present branch; what followed it there stays known.
+    pub(crate) fn show(&mut self, snapshot: &Snapshot) {
+        self.world.clone_from(&snapshot.world);
+        self.commands = snapshot.commands.min(self.branch.history.commands().len());
+        self.samples = snapshot.samples.min(self.branch.series.len());
+        self.flow = Some(snapshot.flow.clone());
+        self.next_sample = snapshot.next_sample;
         self.forget_script();
-        self.series.truncate(0);
-        self.flow = Arc::default();
-        self.next_sample = 0;
+        self.note_end();
+    }
+
+    /// Goes to time zero, before any command of the present branch; what followed there stays known.
+    pub(crate) fn rewind(&mut self) {
+        self.world.clone_from(&self.bed);
+        (self.commands, self.samples, self.next_sample) = (0, 0, 0);
+        self.flow = Some(Arc::default());
+        self.forget_script();
         self.take_due_sample();
+        self.note_end();
+    }
+
+    /// Is about `branch` from now on, of which the state need not be one, and returns the branch that is left. The caller
+    /// goes to a state of it next.
+    pub(crate) fn replace_branch(&mut self, branch: Branch) -> Branch {
+        std::mem::replace(&mut self.branch, branch)
+    }
+
+    /// Ends the present branch at the state, which becomes the beginning of one of this `number`; returns the branch that
+    /// is left.
+    pub(crate) fn begin_branch(&mut self, number: u32) -> Branch {
+        let end = Moment::of(&self.world);
+        let branch = self.branch.until(self.commands, end, number);
+        let left = self.replace_branch(branch);
+        self.note_end();
+        left
+    }
+
+    /// Goes to time zero and begins a branch of this `number` there. Those of the `values` that differ from the bed's
+    /// become commands at step zero, all of them one change. Returns the branch that is left.
+    pub(crate) fn start_afresh(&mut self, values: &[(Parameter, f64)], number: u32) -> Branch {
+        let left = self.replace_branch(Branch::begin(number));
+        self.rewind();
+        for (parameter, value) in values {
+            if parameter.read(&self.world).is_some_and(|own| own != *value) {
+                self.set(parameter, *value, true);
+            }
+        }
+        left
     }
 
     fn forget_script(&mut self) {
@@ -326,25 +410,25 @@ impl Run {
         self.recorded = 0;
     }
 
-    fn carry_out_due(&mut self) {
+    fn apply_due(&mut self, joins: bool) {
         let step = self.world.clock.step;
         while self.recorded > 0
             && let Some(command) = self.script.take_due(step)
         {
             self.recorded -= 1;
-            self.carry_out(command);
+            self.execute(command, joins);
         }
         if self.script.next_step().is_some_and(|due| due <= step) {
             self.followed(|run| {
                 while let Some(command) = run.script.take_due(step) {
-                    run.carry_out(command);
+                    run.execute(command, joins);
                 }
             });
         }
     }
 
-    /// Makes a change; where the step follows its limit and that has moved, takes the largest stable
-    /// step from here on.
+    /// Makes a change; where the time step follows its limit and that has moved, takes the largest stable time step from
+    /// here on, as part of the change.
     fn followed(&mut self, change: impl FnOnce(&mut Self)) {
         if self.scene.time_step != TimeStep::Following {
             return change(self);
@@ -354,29 +438,36 @@ impl Run {
         let advice = self.advice();
         let largest = advice.largest();
         if largest != before && largest != advice.time_step {
-            self.set(&Parameter::TimeStep, largest);
+            self.set(&Parameter::TimeStep, largest, true);
         }
     }
 
-    fn carry_out(&mut self, command: Command) {
+    fn execute(&mut self, command: Command, joins: bool) {
         match command {
-            Command::Reset => self.reset(),
-            Command::Set { parameter, value } => self.set(&parameter, value),
+            Command::Reset => {
+                self.start_afresh(&self.values(), self.branch.number);
+            }
+            Command::Set { parameter, value } => self.set(&parameter, value, joins),
             _ => {}
         }
     }
 
-    fn set(&mut self, parameter: &Parameter, value: f64) {
+    fn set(&mut self, parameter: &Parameter, value: f64, joins: bool) {
         let parameter = parameter::canonical(parameter, &self.world.materials);
         parameter::write(&parameter, value, &self.scene, &mut self.world);
-        if parameter == Parameter::TimeStep {
-            self.script.keep_times(&self.world.clock);
+        // On the way to a later moment of the branch the command is in it already.
+        if self.commands == self.branch.history.commands().len() {
+            if parameter == Parameter::TimeStep {
+                self.script.keep_times(&self.world.clock);
+            }
+            let command = StampedCommand {
+                step: self.world.clock.step,
+                time: self.world.time(),
+                command: Command::Set { parameter, value },
+            };
+            Arc::make_mut(&mut self.branch.history).push(command, joins);
         }
-        self.commands.push(StampedCommand {
-            step: self.world.clock.step,
-            time: self.world.time(),
-            command: Command::Set { parameter, value },
-        });
+        self.commands += 1;
     }
 
     /// Present values of the parameters and of the time step.
@@ -390,32 +481,33 @@ impl Run {
         values.collect()
     }
 
-    /// Back to the bed with the present values.
-    pub(crate) fn reset(&mut self) {
-        self.restart_with(&self.values());
-    }
-
-    /// Back to the bed. Those of the `values` that differ from the bed's become commands at step zero.
-    pub(crate) fn restart_with(&mut self, values: &[(Parameter, f64)]) {
-        self.restart();
-        for (parameter, value) in values {
-            if parameter.read(&self.world).is_some_and(|own| own != *value) {
-                self.set(parameter, *value);
-            }
-        }
-    }
-
     fn take_due_sample(&mut self) {
         if sample_step(&self.world, self.next_sample) > self.world.clock.step {
             return;
         }
         let (sample, surface) = sample_and_surface(&self.world);
         if let Some(line) = surface {
-            Arc::make_mut(&mut self.flow).add(&self.world, &sample, &line);
+            let flow = self.flow.as_mut().unwrap_or(&mut self.branch.flow);
+            Arc::make_mut(flow).add(&self.world, &sample, &line);
         }
-        self.series.push(sample);
+        // On the way to a later moment of the branch the sample is in it already.
+        if self.samples == self.branch.series.len() {
+            Arc::make_mut(&mut self.branch.series).push(sample);
+        }
+        self.samples += 1;
         while sample_step(&self.world, self.next_sample) <= self.world.clock.step {
             self.next_sample += 1;
+        }
+    }
+
+    /// Notes the state as the branch's end, where it is at or beyond it.
+    fn note_end(&mut self) {
+        if self.is_at_end() {
+            self.branch.end = Moment::of(&self.world);
+            self.branch.plan.keep_times(&self.world.clock);
+            if let Some(flow) = self.flow.take() {
+                self.branch.flow = flow;
+            }
         }
     }
 }

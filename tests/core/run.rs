@@ -96,8 +96,7 @@ fn restored_run_continues_bit_for_bit() {
         bits(run.series()),
         run.commands().to_vec(),
     );
-    let (commands_then, series_then) = (run.commands().to_vec(), run.series().clone());
-    run.restore(&snapshot, &commands_then, &series_then);
+    run.restore(&snapshot);
     assert_eq!(run.commands().len(), 1, "later commands are forgotten");
     run.advance_to(1500).unwrap();
     run.apply(set(Parameter::DrumSpeed, 0.5)).unwrap();

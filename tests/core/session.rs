@@ -44,7 +44,7 @@ fn explored(lab: &Explored) -> Timeline {
 
 /// What can be done with a session next, each way on its own.
 const NEXT: [fn(&mut Timeline); 5] = [
-    |timeline| timeline.seek(timeline.record().end.step),
+    |timeline| timeline.seek(timeline.branch().end.step),
     |timeline| timeline.seek(0),
     Timeline::undo,
     |timeline| timeline.take_up(0),
@@ -64,10 +64,10 @@ fn reopens_to_the_same_bits(lab: &Explored) {
     for memory in [PLENTY, 0] {
         let same = reopened(&path, memory);
         assert_eq!(hash(&same), hash(&timeline));
-        assert_eq!(bits(&same.record().series), bits(&timeline.record().series));
+        assert_eq!(bits(&same.branch().series), bits(&timeline.branch().series));
         assert_eq!(bits(same.run().series()), bits(timeline.run().series()));
         assert_eq!(same.run().commands(), timeline.run().commands());
-        let changes = |timeline: &Timeline| timeline.record().history.changes().to_vec();
+        let changes = |timeline: &Timeline| timeline.branch().history.changes().to_vec();
         assert_eq!(changes(&same), changes(&timeline));
         let (past, before) = (same.past(), timeline.past());
         assert_eq!((past.number, past.end), (before.number, before.end));
@@ -87,7 +87,7 @@ fn reopens_to_the_same_bits(lab: &Explored) {
             go_on(timeline, step + lab.unit / 3);
         }
         assert_eq!(hash(&same), hash(&timeline), "way {index}");
-        assert_eq!(bits(&same.record().series), bits(&timeline.record().series));
+        assert_eq!(bits(&same.branch().series), bits(&timeline.branch().series));
         timeline = reopened(&path, PLENTY);
     }
     let claim = Claim::read(&path).unwrap();

@@ -154,7 +154,7 @@ fn step_that_follows_its_limit_changes_with_it_and_is_recorded() {
     assert_eq!(commands[2].command, set(Parameter::TimeStep, glycerol));
     assert_eq!((commands[2].step, commands.len()), (400, 3));
     assert_eq!(
-        timeline.record().history.changes(),
+        timeline.branch().history.changes(),
         [0, 1],
         "both are one change"
     );

@@ -183,8 +183,8 @@ fn recorded(memory: usize) -> (Timeline, Vec<StateHash>) {
 fn scrub_lands_on_the_same_bits_mid_avalanche_with_liquid() {
     for memory in [0, LITTLE, PLENTY] {
         let (mut timeline, hashes) = recorded(memory);
-        let series = bits(&timeline.record().series);
-        let flows = flowing(&timeline.record().series).len();
+        let series = bits(&timeline.branch().series);
+        let flows = flowing(&timeline.branch().series).len();
         assert!(
             flows >= 12,
             "it flows for two thirds of the time: {flows} samples"
@@ -197,7 +197,7 @@ fn scrub_lands_on_the_same_bits_mid_avalanche_with_liquid() {
             seek(&mut timeline, unit() * index as u64);
             assert_eq!(hash(&timeline), hashes[index], "place {index}");
         }
-        assert_eq!(bits(&timeline.record().series), series);
+        assert_eq!(bits(&timeline.branch().series), series);
         assert_eq!(bits(timeline.run().series()), series);
         assert!(timeline.past().memory <= memory);
         // What was seen again goes on as if nobody had gone back.
@@ -207,8 +207,8 @@ fn scrub_lands_on_the_same_bits_mid_avalanche_with_liquid() {
         go_on(&mut straight, 13 * unit());
         assert_eq!(hash(&timeline), hash(&straight));
         assert_eq!(
-            bits(&timeline.record().series),
-            bits(&straight.record().series)
+            bits(&timeline.branch().series),
+            bits(&straight.branch().series)
         );
         assert_eq!(timeline.run().flow(), straight.run().flow());
         assert!(timeline.kept().is_empty() && timeline.past().redo.is_none());
@@ -231,13 +231,13 @@ fn scrub_that_is_turned_round_on_the_way_lands_all_the_same() {
 #[test]
 fn branch_is_a_run_of_its_own_and_keeps_the_one_that_is_left() {
     let (mut timeline, hashes) = recorded(PLENTY);
-    let left = bits(&timeline.record().series);
-    let flowing = flowing(&timeline.record().series);
+    let left = bits(&timeline.branch().series);
+    let flowing = flowing(&timeline.branch().series);
     let at = flowing[flowing.len() / 2];
     seek(&mut timeline, at);
     change(&mut timeline, wet_friction(0.9));
     assert_eq!(
-        timeline.record().end.step,
+        timeline.branch().end.step,
         at,
         "what came later is another run"
     );
@@ -252,7 +252,7 @@ fn branch_is_a_run_of_its_own_and_keeps_the_one_that_is_left() {
     straight.schedule(script).unwrap();
     straight.advance_to(12 * unit()).unwrap();
     assert_eq!(straight.world().hash(), branch);
-    assert_eq!(bits(straight.series()), bits(&timeline.record().series));
+    assert_eq!(bits(straight.series()), bits(&timeline.branch().series));
 
     assert_eq!(timeline.kept().len(), 1);
     assert_eq!(bits(&timeline.kept()[0].series), left);
@@ -283,7 +283,7 @@ fn undo_and_redo_walk_through_the_changes_bit_for_bit() {
             undo(&mut timeline);
             assert_eq!(timeline.run().world().clock.step, index * unit());
             assert_eq!(hash(&timeline), before[index as usize]);
-            assert_eq!(timeline.record().end.step, index * unit());
+            assert_eq!(timeline.branch().end.step, index * unit());
         }
         assert_eq!(timeline.past().undo, None);
         undo(&mut timeline);
@@ -342,7 +342,7 @@ fn drag_is_one_change() {
         go_on(&mut timeline, 210 + 10 * index as u64);
     }
     let (step, end) = (timeline.run().world().clock.step, hash(&timeline));
-    assert_eq!(timeline.record().history.changes(), [0]);
+    assert_eq!(timeline.branch().history.changes(), [0]);
     undo(&mut timeline);
     assert_eq!(
         (hash(&timeline), timeline.run().commands().len()),
@@ -393,7 +393,7 @@ fn refused_change_leaves_the_future_alone() {
     let (mut timeline, _) = recorded(PLENTY);
     seek(&mut timeline, 1000);
     timeline.change(friction(7.0), false).unwrap_err();
-    assert_eq!(timeline.record().end.step, 12 * unit());
+    assert_eq!(timeline.branch().end.step, 12 * unit());
     assert!(timeline.kept().is_empty());
 }
 
@@ -430,7 +430,7 @@ fn scrub_lands_on_the_same_bits_mid_collapse_with_polyhedra() {
     let mut fastest = 0.0_f64;
     for memory in [0, PLENTY] {
         let (mut timeline, hashes) = lab.recorded(memory);
-        let series = bits(&timeline.record().series);
+        let series = bits(&timeline.branch().series);
         let places: &[usize] = match memory {
             0 => &[9, 4],
             _ => &[12, 3, 11, 5, 0, 7, 6, 6, 12],
@@ -440,7 +440,7 @@ fn scrub_lands_on_the_same_bits_mid_collapse_with_polyhedra() {
             assert_eq!(hash(&timeline), hashes[index], "place {index}");
             fastest = fastest.max(top_speed(&timeline));
         }
-        assert_eq!(bits(&timeline.record().series), series);
+        assert_eq!(bits(&timeline.branch().series), series);
         let (mut straight, _) = lab.recorded(0);
         lab.seek(&mut timeline, 10);
         for timeline in [&mut timeline, &mut straight] {

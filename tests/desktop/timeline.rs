@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use grainfall::measure::{Avalanche, Measure, Sample, Series};
 use grainfall::scene::{LIQUID_CASES, SceneGrains, TimeStep};
-use grainfall::simulation::{Command, Parameter, Record, SAMPLE_INTERVAL, Simulation, Status};
+use grainfall::simulation::{Branch, Command, Parameter, SAMPLE_INTERVAL, Simulation, Status};
 use grainfall::ui::{AvalanchePlots, Curves, Level, Request, checks, stable_step};
 use std::sync::Arc;
 use std::time::Duration;
@@ -226,10 +226,10 @@ fn clickable_plots() -> Harness<'static, Vec<f64>> {
             values: [0.3; Measure::COUNT],
         });
     }
-    let left = Record {
+    let left = Branch {
         number: 1,
         series: Arc::new(measured),
-        ..Record::default()
+        ..Branch::default()
     };
     let kept = [("Run 1".to_owned(), Arc::new(left))];
     let mut plots = AvalanchePlots::default();

@@ -3,7 +3,7 @@
 //! In: the simulation. Out: requests to show a moment, to take up or to forget a run, to save the
 //! list.
 
-use crate::simulation::{Command, Half, Parameter, Record, RunView, Simulation};
+use crate::simulation::{Branch, Command, Half, Parameter, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::plots::run_curves::line_sample_ui;
 use crate::ui::request::Request;
@@ -196,8 +196,8 @@ fn kept_runs_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Reques
 }
 
 /// The last change of a kept run, by which one knows it again.
-fn describe(record: &Record, simulation: &RunView) -> String {
-    let last = record.history.commands().last();
+fn describe(branch: &Branch, simulation: &RunView) -> String {
+    let last = branch.history.commands().last();
     let Some((stamped, Command::Set { parameter, value })) =
         last.map(|stamped| (stamped, &stamped.command))
     else {

@@ -5,7 +5,7 @@
 //! two runs side by side.
 
 use crate::measure::{Avalanche, Series};
-use crate::simulation::{Half, Record, RunView, Simulation};
+use crate::simulation::{Branch, Half, RunView, Simulation};
 use crate::ui::playback::moment_shown;
 use crate::ui::plots::decimate::decimate;
 use crate::ui::theme::{COMPARED_DASH, Palette};
@@ -34,7 +34,7 @@ pub struct Curves<'a> {
 }
 
 /// A run that was left for another, with its name.
-pub type KeptRun = (String, Arc<Record>);
+pub type KeptRun = (String, Arc<Branch>);
 
 /// The lines of one plot.
 pub struct Lines {
@@ -109,7 +109,7 @@ impl Lines {
 pub fn kept_runs(simulation: &Simulation) -> Vec<KeptRun> {
     let of = |run: &RunView, beside: &str| -> Vec<KeptRun> {
         let named =
-            |record: &Arc<Record>| (format!("Run {}{beside}", record.number), record.clone());
+            |branch: &Arc<Branch>| (format!("Run {}{beside}", branch.number), branch.clone());
         run.past().kept.iter().map(named).collect()
     };
     let mut kept = of(simulation, "");
