@@ -3,7 +3,7 @@
 //! In: the keys of `container`. Out: a [`SceneContainer`] with the papers' values where a key is left
 //! out. Whether the values make sense is for [`crate::scene`]'s checks.
 
-use super::{either, metres, missing_length, per_second};
+use super::keys::{either, metres, missing_length, per_second};
 use crate::scene::error::Problem;
 use crate::scene::{SceneContainer, ScenePlane, SceneTube};
 use glam::DVec3;

@@ -3,7 +3,7 @@
 //! In: the keys of `grains` and the container, whose volume a bulk fraction is of. Out:
 //! [`SceneGrains`]. Whether the values make sense is for [`crate::scene`]'s checks.
 
-use super::{ROUNDING, either, metres, missing_length};
+use super::keys::{either, metres, missing_length};
 use crate::scene::check::{check_container, fraction, volume};
 use crate::scene::error::Problem;
 use crate::scene::shape::rotation;
@@ -15,6 +15,9 @@ use glam::{DQuat, DVec3};
 use serde::Deserialize;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
+
+/// Sphero-radius of the grains of Man et al. 2023 [m].
+const SPHERO_RADIUS: f64 = 1e-4;
 
 #[derive(Deserialize)]
 #[serde(rename = "Grains", deny_unknown_fields)]
@@ -190,7 +193,7 @@ impl CellsFile {
         let rounding = either("grains.rounding", self.rounding, "_mm", rounding)?;
         Ok(SceneCells {
             cell: cell.unwrap_or(0.002),
-            rounding: rounding.unwrap_or(ROUNDING),
+            rounding: rounding.unwrap_or(SPHERO_RADIUS),
             solid_fraction: self.solid_fraction.unwrap_or(0.8),
             bulk_fraction: self.bulk_fraction.unwrap_or(whole),
             packing: None,
@@ -264,7 +267,7 @@ impl GrainFile {
             self.rounding_mm.map(metres),
         )?;
         let shape = self.shape.map_or(SceneShape::Sphere, |shape| {
-            shape.into_shape(rounding.unwrap_or(ROUNDING))
+            shape.into_shape(rounding.unwrap_or(SPHERO_RADIUS))
         });
         let radius = if shape.is_sphere() {
             if rounding.is_some() {

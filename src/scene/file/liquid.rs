@@ -1,6 +1,6 @@
 //! How a file spells the liquid: a case of Table 1 of Kasper et al. 2021, or values of its own.
 
-use super::either;
+use super::keys::either;
 use crate::physics::{BridgeLaw, Liquid, LiquidCase, PAPER_VOLUME};
 use crate::scene::error::Problem;
 use serde::Deserialize;

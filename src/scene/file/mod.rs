@@ -7,6 +7,7 @@
 
 mod container;
 mod grains;
+mod keys;
 mod liquid;
 
 pub(super) use grains::count_of;
@@ -20,7 +21,6 @@ use grains::GrainsFile;
 use liquid::LiquidFile;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::f64::consts::PI;
 use std::fmt;
 use std::path::Path;
 
@@ -112,9 +112,6 @@ const POLYHEDRA_LAW: ContactLaw = ContactLaw::Hooke {
     features: FeatureRule::Full,
 };
 
-/// Rounding of Man et al. 2023 [m].
-const ROUNDING: f64 = 1e-4;
-
 /// Materials in the order of the file, which is the order of their indices.
 struct NamedMaterials(Vec<(String, MaterialFile)>);
 
@@ -188,39 +185,4 @@ impl NamedMaterials {
         };
         self.0.into_iter().map(with_name).collect()
     }
-}
-
-fn metres(millimetres: f64) -> f64 {
-    millimetres / 1000.0
-}
-
-/// [rad/s]
-fn per_second(turns_per_minute: f64) -> f64 {
-    turns_per_minute * 2.0 * PI / 60.0
-}
-
-/// The value that one of two keys gives, in SI units.
-fn either(
-    path: &str,
-    si: Option<f64>,
-    suffix: &str,
-    converted: Option<f64>,
-) -> Result<Option<f64>, Problem> {
-    if si.is_some() && converted.is_some() {
-        let key = path.rsplit('.').next().unwrap_or(path);
-        return Err(Problem::new(
-            path,
-            format!("is given twice, as `{key}` and as `{key}{suffix}`"),
-            "one of the two",
-        ));
-    }
-    Ok(si.or(converted))
-}
-
-fn missing_length(holder: &str, key: &str) -> Problem {
-    Problem::new(
-        holder,
-        format!("has no `{key}`"),
-        format!("a length in m, or in mm as `{key}_mm`"),
-    )
 }
