@@ -8,7 +8,8 @@
 //! commands keep.
 
 use super::contact_network::overlap;
-use crate::physics::{ContactLaw, FeatureRule};
+use crate::physics::ContactLaw;
+use crate::physics::law::FeatureSprings;
 use crate::world::{Contact, FeatureContact, World};
 use serde::Serialize;
 
@@ -131,14 +132,13 @@ pub fn elastic_energy(world: &World) -> f64 {
 /// Where the features of two bodies share one contact, each has the part `Σδ²/(Σδ)²` of `K_n`;
 /// their `k_t` is kept with them.
 fn feature_energy(features: &[FeatureContact], law: ContactLaw) -> f64 {
-    let ContactLaw::Hooke {
-        normal_stiffness,
-        features: rule,
-        ..
-    } = law
-    else {
+    let Some(springs) = law.feature_springs() else {
         return f64::NAN;
     };
+    let FeatureSprings {
+        normal_stiffness,
+        rule,
+    } = springs;
     let of_pair = |pair: &[FeatureContact]| {
         let (mut sum, mut squares, mut tangential) = (0.0, 0.0, 0.0);
         for feature in pair.iter().filter(|feature| feature.overlap > 0.0) {
@@ -146,10 +146,7 @@ fn feature_energy(features: &[FeatureContact], law: ContactLaw) -> f64 {
             squares += feature.overlap * feature.overlap;
             tangential += feature.stiffness * feature.spring.length_squared();
         }
-        let part = match rule {
-            FeatureRule::Shared if sum > 0.0 => squares / (sum * sum),
-            FeatureRule::Full | FeatureRule::Shared => 1.0,
-        };
+        let part = rule.part(sum, squares);
         0.5 * (part * normal_stiffness * squares + tangential)
     };
     let of_one_pair =

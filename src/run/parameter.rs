@@ -5,7 +5,7 @@
 
 use super::{Parameter, relabel};
 use crate::measure::elastic_energy;
-use crate::scene::{BridgeLaw, ContactLaw, Scene, SceneContainer, SceneLiquid};
+use crate::scene::{BridgeLaw, Scene, SceneContainer, SceneLiquid};
 use crate::world::{Liquid, MaterialId, Materials, PairProperties, World};
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -141,20 +141,9 @@ impl Parameter {
 
     /// Where it stands in the equations of the papers, in the contact law of `scene`.
     pub fn equation(&self, scene: &Scene) -> &'static str {
-        let hertzian = scene.law == ContactLaw::HertzMindlin;
         match self {
-            Self::Friction(..) | Self::WetFriction(..) if hertzian => {
-                "|F_t| ≤ μ |F_n|, Eq. 20 of Kasper et al. 2021"
-            }
-            Self::Friction(..) | Self::WetFriction(..) => {
-                "|F_t| ≤ μ K_n δ, Coulomb's bound in Man et al. 2023"
-            }
-            Self::Restitution(..) if hertzian => {
-                "β = ln e / √(ln² e + π²) in both dashpots, Eqs. 5–9 of Kasper et al. 2021"
-            }
-            Self::Restitution(..) => {
-                "γ_n = 2 √(ln² e (K_n/m_e) / (π² + ln² e)), from Eq. 3.4 of Man et al. 2023"
-            }
+            Self::Friction(..) | Self::WetFriction(..) => scene.law.words().friction,
+            Self::Restitution(..) => scene.law.words().restitution,
             Self::RollingFriction(..) => "q = −μ_R k_n δ r* ω/|ω|, Eq. 10 of Kasper et al. 2021",
             Self::DrumSpeed => "v = Ω × r on rim and end plates",
             Self::Gravity => "F = m g",

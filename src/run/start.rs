@@ -92,7 +92,7 @@ const fn unit(name: &'static str) -> DisplayUnit {
 impl StartParameter {
     /// Its value in `scene`, in SI units; `None` where that has no such number, or it does not act there.
     pub fn read(&self, scene: &Scene) -> Option<f64> {
-        let hertzian = scene.law == ContactLaw::HertzMindlin;
+        let hertzian = scene.law.told(|law| law.uses_elastic_constants());
         let material = |name: &String| scene.material(name).map(|(_, material)| material);
         match self {
             Self::GrainCount => match &scene.grains {
@@ -131,12 +131,10 @@ impl StartParameter {
             Self::Density(name) => {
                 Some(material(name)?.density).filter(|_| scene.has_grains_of(name))
             }
-            Self::NormalStiffness => match scene.law {
-                ContactLaw::Hooke {
-                    normal_stiffness, ..
-                } => Some(normal_stiffness),
-                ContactLaw::HertzMindlin => None,
-            },
+            Self::NormalStiffness => {
+                let springs = scene.law.feature_springs()?;
+                Some(springs.normal_stiffness)
+            }
             Self::TimeStep => Some(advise(scene).time_step),
             Self::Seed => Some(scene.seed as f64),
         }

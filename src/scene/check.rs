@@ -114,10 +114,6 @@ const SMALLEST_GAP: Rule = Rule {
     accepts: |x| (1e-6..=10.0).contains(&x),
     expected: "a gap between 1e-6 and 10 radii",
 };
-const STIFFNESS: Rule = Rule {
-    accepts: |x| (1e-3..=1e12).contains(&x),
-    expected: "a stiffness between 1e-3 N/m and 1e12 N/m",
-};
 const DURATION: Rule = Rule {
     accepts: |x| x > 0.0 && x <= 1e6,
     expected: "a time above 0 s and at most 1e6 s",
@@ -296,7 +292,7 @@ impl Scene {
 
     /// What only spheres can have.
     fn check_suits_polyhedra(&self) -> Checked {
-        if self.law == ContactLaw::HertzMindlin {
+        if self.law.feature_springs().is_none() {
             return Err(Problem::new(
                 "law",
                 "is the one of spheres, but the scene has polyhedra",
@@ -672,22 +668,13 @@ fn check_liquid(liquid: &SceneLiquid) -> Checked {
 }
 
 fn check_law(law: ContactLaw) -> Checked {
-    match law {
-        ContactLaw::HertzMindlin => Ok(()),
-        ContactLaw::Hooke {
-            normal_stiffness,
-            tangential_stiffness,
-            ..
-        } => {
-            STIFFNESS.check(normal_stiffness, || "law.normal_stiffness".to_owned())?;
-            if tangential_stiffness == 0.0 {
-                return Ok(());
-            }
-            STIFFNESS.check(tangential_stiffness, || {
-                "law.tangential_stiffness".to_owned()
-            })
-        }
-    }
+    law.told(|law| law.mistake()).map_or(Ok(()), |mistake| {
+        Err(Problem::value(
+            format!("law.{}", mistake.key),
+            format!("{:?}", mistake.value),
+            mistake.expected,
+        ))
+    })
 }
 
 fn check_shares(sum: f64) -> Checked {

@@ -33,8 +33,7 @@ pub use profile::{Profile, Stage};
 pub use terms::{ForceTerms, NormalLaw, force_terms};
 pub use time_step::{Extremes, Limit, TimeStepAdvice, advise};
 
-use crate::physics::ContactLaw;
-use crate::physics::law::{HertzMindlin, Hooke, Law};
+use crate::physics::law::{Law, LawUser};
 use crate::world::World;
 use crate::{lanes, physics::law};
 use state::State;
@@ -108,11 +107,12 @@ impl Solver {
 
     fn advance_spheres(&mut self, world: &mut World, steps: u64) -> Result<(), Fault> {
         self.exchange(|solver| solver.state.load(world));
-        match world.law {
-            ContactLaw::HertzMindlin => self.march(HertzMindlin, world, steps),
-            ContactLaw::Hooke { .. } => self.march(Hooke, world, steps),
-        }
-        .map_err(|steps| self.state.diagnose(world, steps))?;
+        let march = March {
+            solver: self,
+            world,
+            steps,
+        };
+        (world.law.choose(march)).map_err(|steps| self.state.diagnose(world, steps))?;
         self.exchange(|solver| solver.state.store(world, steps));
         self.profile.listed = self.state.listed();
         Ok(())
@@ -234,6 +234,21 @@ impl Solver {
             steps,
             fault: fault.into_inner(),
         }
+    }
+}
+
+/// Steps of spheres under a law that is chosen once for all of them.
+struct March<'a> {
+    solver: &'a mut Solver,
+    world: &'a World,
+    steps: u64,
+}
+
+impl LawUser for March<'_> {
+    type Output = Result<(), u64>;
+
+    fn with<L: Law>(self, law: L) -> Self::Output {
+        self.solver.march(law, self.world, self.steps)
     }
 }
 

@@ -10,8 +10,8 @@
 
 use super::lanes::{Lanes, One, Row};
 use super::law::{
-    BridgeConstants, Coefficients, FilmConstants, HertzMindlin, Hooke, Law, PairConstants, Pairing,
-    attraction, contributions, drag, rolling_gain,
+    BridgeConstants, Coefficients, FilmConstants, Law, LawUser, PairConstants, Pairing, attraction,
+    contributions, drag, rolling_gain,
 };
 use super::polyhedra;
 use crate::physics::{BridgeLaw, ContactLaw, CoulombBound};
@@ -77,10 +77,26 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
         return polyhedra::force_terms(world, contact);
     }
     let meeting = Meeting::of(world, contact);
-    vec![match world.law {
-        ContactLaw::HertzMindlin => meeting.terms(HertzMindlin, world, contact),
-        ContactLaw::Hooke { .. } => meeting.terms(Hooke, world, contact),
-    }]
+    vec![world.law.choose(Terms {
+        meeting: &meeting,
+        world,
+        contact,
+    })]
+}
+
+/// The terms of a contact of spheres.
+struct Terms<'a> {
+    meeting: &'a Meeting,
+    world: &'a World,
+    contact: &'a Contact,
+}
+
+impl LawUser for Terms<'_> {
+    type Output = ForceTerms;
+
+    fn with<L: Law>(self, law: L) -> ForceTerms {
+        self.meeting.terms(law, self.world, self.contact)
+    }
 }
 
 /// Velocity [m/s] and spin [rad/s] of grain `i`, a sphere, half a step ago.
@@ -281,6 +297,21 @@ impl Side {
     }
 }
 
+/// The repulsion of two spheres [N].
+struct Repulsion<'a> {
+    pair: &'a Side,
+    overlap: f64,
+    approach: f64,
+}
+
+impl LawUser for Repulsion<'_> {
+    type Output = f64;
+
+    fn with<L: Law>(self, law: L) -> f64 {
+        self.pair.repulsion(law, self.overlap, self.approach)
+    }
+}
+
 /// The normal force of a pair of spheres over the gap between them.
 pub struct NormalLaw {
     law: ContactLaw,
@@ -329,10 +360,11 @@ impl NormalLaw {
     /// Force that pushes the two apart (positive) or pulls them together [N] at this `gap`, negative for an overlap [m],
     /// while they approach each other at this speed [m/s].
     pub fn force(&self, gap: f64, approach: f64) -> f64 {
-        let repulsion = match self.law {
-            ContactLaw::HertzMindlin => self.pair.repulsion(HertzMindlin, -gap, approach),
-            ContactLaw::Hooke { .. } => self.pair.repulsion(Hooke, -gap, approach),
-        };
+        let repulsion = self.law.choose(Repulsion {
+            pair: &self.pair,
+            overlap: -gap,
+            approach,
+        });
         repulsion + (self.film.as_ref()).map_or(0.0, |film| film.force(gap, approach))
     }
 

@@ -9,7 +9,7 @@
 //! any grains that hold together, `Σ c (v_i − v_j)² ≤ Σ c (d_i/m_i + d_j/m_j)(m_i v_i²/d_i + m_j v_j²/d_j) ≤ (1.6/Δt) Σ m v²`).
 //! The advised time step is short enough that the bound acts on next to no pair.
 
-use super::{Pairing, natural_log};
+use super::{Pairing, SmallestGrain, StepLimit, natural_log};
 use crate::lanes::{Lanes, One, Row};
 use crate::physics::{BridgeVolume, CapillaryGap, Liquid, PairAngle, Rupture, SmallestGap};
 use std::f64::consts::{LN_2, PI};
@@ -38,7 +38,9 @@ const LARGEST_GAP: f64 = 0.1;
 /// Share of both films that makes a bridge, Eq. 11.
 const FILM_SHARE: f64 = 0.05;
 /// Largest drag coefficient times the step over the mass that partners leave free; 2 is the limit of stability.
-pub const LARGEST_DRAG: f64 = 1.6;
+pub(super) const LARGEST_DRAG: f64 = 1.6;
+/// Neighbours of a grain whose drag the step must bear without bounding it.
+const DRAGGING_NEIGHBOURS: f64 = 6.0;
 /// How much more freely a sphere's surface moves across the normal than its centre does: `1 + m r²/I`.
 const SURFACE_MOBILITY: f64 = 3.5;
 
@@ -67,10 +69,30 @@ impl FilmConstants {
 }
 
 /// Smallest gap in the viscous forces of grains with this effective radius and sum of radii [m].
-pub fn smallest_viscous_gap(gap: SmallestGap, effective_radius: f64, sum: f64) -> f64 {
+fn smallest_viscous_gap(gap: SmallestGap, effective_radius: f64, sum: f64) -> f64 {
     match gap {
         SmallestGap::OfRadii(share) => share * sum,
         SmallestGap::OfEffectiveRadius(share) => share * effective_radius,
+    }
+}
+
+/// `1.6 m/(2 · 6 c)` with the drag `c = 6π η r*²/D` of two equal grains at the smallest gap: up to
+/// that step it acts unbounded on grains with six neighbours each.
+pub fn lubrication_limit(grain: &SmallestGrain, liquid: &Liquid) -> StepLimit {
+    let mass = grain.mass();
+    let effective = 0.5 * grain.radius;
+    let gap = smallest_viscous_gap(liquid.law.viscous_gap, effective, 2.0 * grain.radius);
+    let drag = 6.0 * PI * liquid.viscosity * effective * effective / gap;
+    StepLimit {
+        name: "lubrication",
+        time_step: LARGEST_DRAG * mass / (2.0 * DRAGGING_NEIGHBOURS * drag),
+        reason: format!(
+            "{LARGEST_DRAG}/12 of the {:.3e} s in which the liquid film stops a grain of {} with r = {:.3e} m that closes \
+             the smallest gap",
+            mass / drag,
+            grain.material.name,
+            grain.radius
+        ),
     }
 }
 

@@ -1,22 +1,30 @@
 //! Contact laws, one file each.
 //!
-//! A law turns the constants of a pair ([`PairConstants`], computed once per kind of pair) and the overlap into
-//! stiffnesses and dashpots, and says how the normal force and the Coulomb bound come from them. All laws share the
-//! tangential spring, the rolling friction and the geometry in the solver. A wall is a partner of infinite mass
-//! and radius, so no law asks whether there is one.
+//! A law turns the constants of a pair ([`PairConstants`], computed once per kind of pair) and the
+//! overlap into stiffnesses and dashpots, and says how the normal force and the Coulomb bound come from
+//! them ([`Law`], which the pair loop inlines). All laws share the tangential spring, the rolling
+//! friction and the geometry in the solver. A wall is a partner of infinite mass and radius, so no law
+//! asks whether there is one.
+//!
+//! Whatever else depends on the law, the law says too ([`LawFacts`]): the constants of a pair, the
+//! limits on the time step with their reasons, what people call it and its equations, which grains it
+//! suits. So a new law takes a file with both traits here, and a line each in [`ContactLaw`] and
+//! [`ContactLaw::choose`].
 
 mod bridge;
 mod hertz_mindlin;
 mod hooke;
 mod rolling;
+mod step_limit;
 
 pub use bridge::{
-    BridgeConstants, BridgeKinds, FilmConstants, LARGEST_DRAG, attraction, contributions, drag,
-    rupture_gap, smallest_viscous_gap,
+    BridgeConstants, BridgeKinds, FilmConstants, attraction, contributions, drag,
+    lubrication_limit, rupture_gap,
 };
 pub use hertz_mindlin::HertzMindlin;
 pub use hooke::Hooke;
 pub use rolling::rolling_gain;
+pub use step_limit::{Circumstances, SmallestGrain, StepLimit};
 
 use crate::lanes::{Lanes, One, Row};
 use crate::physics::{MaterialId, Materials};
@@ -52,6 +60,17 @@ pub enum FeatureRule {
     Shared,
 }
 
+impl FeatureRule {
+    /// The part of a contact's stiffness that each feature of a pair has, given the sum of their
+    /// overlaps [m] and that of its squares [m²]: `Σδ²/(Σδ)²` where they share it.
+    pub fn part(self, sum: f64, squares: f64) -> f64 {
+        match self {
+            Self::Shared if sum > 0.0 => squares / (sum * sum),
+            Self::Full | Self::Shared => 1.0,
+        }
+    }
+}
+
 /// What a pair's force depends on beside geometry and motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
@@ -76,7 +95,7 @@ pub struct Coefficients<N> {
 }
 
 /// A contact law: a plain value whose functions the pair loop inlines.
-pub trait Law: Copy + Send + Sync {
+pub trait Law: LawFacts + Copy + Send + Sync {
     /// Stiffnesses and dashpots at the overlap `δ ≥ 0` [m].
     fn coefficients<N: Lanes>(self, constants: [N; 4], overlap: N) -> Coefficients<N>;
 
@@ -85,6 +104,159 @@ pub trait Law: Copy + Send + Sync {
 
     /// The normal force that bounds the tangential one [N].
     fn coulomb_force<N: Lanes>(self, elastic: N, normal: N, zero: N) -> N;
+}
+
+/// What a contact law says of itself outside of the pair loop.
+pub trait LawFacts {
+    /// Constants of a pair in the order of the law's [`Coefficients`].
+    fn constants(&self, pairing: &Pairing, materials: &Materials) -> Row;
+
+    /// Energy of the normal spring over `k_n δ²`: ½ where `k_n` is constant.
+    fn stored_share(&self) -> f64;
+
+    /// The limits that the contacts of the smallest grains of a material set on the time step.
+    fn step_limits(&self, grain: &SmallestGrain, at: &Circumstances) -> Vec<StepLimit>;
+
+    /// What people call it, and its equations.
+    fn words(&self) -> LawWords;
+
+    /// Whether its stiffness follows from the materials' elastic constants.
+    fn uses_elastic_constants(&self) -> bool;
+
+    /// Its springs between the features of polyhedra; none where it is for spheres alone.
+    fn feature_springs(&self) -> Option<FeatureSprings> {
+        None
+    }
+
+    /// What is wrong with its own numbers, if anything is.
+    fn mistake(&self) -> Option<LawMistake> {
+        None
+    }
+}
+
+/// What people read about a law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LawWords {
+    /// Its name.
+    pub name: &'static str,
+    /// How friction bounds the tangential force, with the source.
+    pub friction: &'static str,
+    /// How the dashpots follow from the restitution, with the source.
+    pub restitution: &'static str,
+}
+
+/// Springs between the features of two polyhedra.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeatureSprings {
+    /// `K_n` [N/m].
+    pub normal_stiffness: f64,
+    /// What it belongs to.
+    pub rule: FeatureRule,
+}
+
+/// A number of a law that cannot be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawMistake {
+    /// Its key in scene files.
+    pub key: &'static str,
+    /// What it is.
+    pub value: f64,
+    /// What it can be.
+    pub expected: &'static str,
+}
+
+/// Stiffnesses that a linear spring can have [N/m].
+const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e12;
+
+/// The stiffness [N/m] of linear springs that cannot be, if one cannot. Without a tangential spring there
+/// is no friction at rest, which may be wanted.
+fn mistaken_spring(normal: f64, tangential: f64) -> Option<LawMistake> {
+    let springs = [
+        ("normal_stiffness", normal, false),
+        ("tangential_stiffness", tangential, tangential == 0.0),
+    ];
+    let is_one = |(_, value, absent): &(&str, f64, bool)| *absent || STIFFNESSES.contains(value);
+    let (key, value, _) = springs.into_iter().find(|spring| !is_one(spring))?;
+    Some(LawMistake {
+        key,
+        value,
+        expected: "a stiffness between 1e-3 N/m and 1e12 N/m",
+    })
+}
+
+/// What is to be done with a law, once it is known which: so that a loop is compiled for each law and
+/// none asks for it again.
+pub trait LawUser {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with `law`.
+    fn with<L: Law>(self, law: L) -> Self::Output;
+}
+
+impl ContactLaw {
+    /// Does with the law what `user` does.
+    pub fn choose<U: LawUser>(self, user: U) -> U::Output {
+        match self {
+            Self::HertzMindlin => user.with(HertzMindlin),
+            Self::Hooke {
+                normal_stiffness,
+                tangential_stiffness,
+                features,
+            } => user.with(Hooke {
+                normal_stiffness,
+                tangential_stiffness,
+                features,
+            }),
+        }
+    }
+
+    /// What `ask` hears from the law.
+    pub fn told<T>(self, ask: impl FnOnce(&dyn LawFacts) -> T) -> T {
+        self.choose(Asking(ask))
+    }
+
+    /// What people call it, and its equations.
+    pub fn words(self) -> LawWords {
+        self.told(|law| law.words())
+    }
+
+    /// Its springs between the features of polyhedra; none where it is for spheres alone.
+    pub fn feature_springs(self) -> Option<FeatureSprings> {
+        self.told(|law| law.feature_springs())
+    }
+}
+
+struct Asking<F>(F);
+
+impl<T, F: FnOnce(&dyn LawFacts) -> T> LawUser for Asking<F> {
+    type Output = T;
+
+    fn with<L: Law>(self, law: L) -> T {
+        self.0(&law)
+    }
+}
+
+/// The elastic energy of a contact [J].
+struct ElasticEnergy {
+    constants: Row,
+    overlap: f64,
+    spring: f64,
+}
+
+impl LawUser for ElasticEnergy {
+    type Output = f64;
+
+    fn with<L: Law>(self, law: L) -> f64 {
+        let Self {
+            constants,
+            overlap,
+            spring,
+        } = self;
+        let k = law.coefficients(One::spread((), &constants), One::splat((), overlap));
+        law.stored_share() * k.normal_stiffness.get() * overlap * overlap
+            + 0.5 * k.tangential_stiffness.get() * spring * spring
+    }
 }
 
 /// Effective (reduced) quantities of two partners, which an infinite partner leaves at the other's value.
@@ -104,19 +276,7 @@ impl Pairing {
     /// Constants of the pair under the world's contact law, `wet` or dry.
     pub fn constants(&self, law: ContactLaw, materials: &Materials, wet: bool) -> PairConstants {
         let pair = materials.pair(self.materials.0, self.materials.1);
-        let coefficients = match law {
-            ContactLaw::HertzMindlin => HertzMindlin::constants(self, materials),
-            ContactLaw::Hooke {
-                normal_stiffness,
-                tangential_stiffness,
-                ..
-            } => Hooke::constants(
-                self,
-                normal_stiffness,
-                tangential_stiffness,
-                pair.restitution,
-            ),
-        };
+        let coefficients = law.told(|law| law.constants(self, materials));
         PairConstants {
             coefficients,
             contact: [
@@ -140,18 +300,11 @@ impl Pairing {
         overlap: f64,
         spring: f64,
     ) -> f64 {
-        let constants = self
-            .constants(law, materials, false)
-            .coefficients
-            .map(|x| One::splat((), x));
-        let at = One::splat((), overlap);
-        // ∫ k_n δ dδ: k_n grows as √δ under Hertz' law and is constant under Hooke's.
-        let (share, k) = match law {
-            ContactLaw::HertzMindlin => (0.4, HertzMindlin.coefficients(constants, at)),
-            ContactLaw::Hooke { .. } => (0.5, Hooke.coefficients(constants, at)),
-        };
-        share * k.normal_stiffness.get() * overlap * overlap
-            + 0.5 * k.tangential_stiffness.get() * spring * spring
+        law.choose(ElasticEnergy {
+            constants: self.constants(law, materials, false).coefficients,
+            overlap,
+            spring,
+        })
     }
 }
 

@@ -174,10 +174,7 @@ impl State {
         let count = world.grains.len();
         self.dt = world.clock.time_step;
         self.gravity = row(world.gravity, 0.0);
-        self.rule = match world.law {
-            ContactLaw::Hooke { features, .. } => features,
-            ContactLaw::HertzMindlin => FeatureRule::Full,
-        };
+        self.rule = (world.law.feature_springs()).map_or(FeatureRule::Full, |springs| springs.rule);
         let surfaces = || world.container.walls.iter().map(|wall| wall.surface);
         let same_walls = surfaces().eq(self.walls.iter().map(|wall| wall.surface));
         self.walls.clear();

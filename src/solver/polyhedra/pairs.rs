@@ -718,7 +718,7 @@ impl Desk {
             let approach = dot(velocity, normal);
             let elastic = normal_stiffness * part * overlap;
             let damped = N::choose(touching, damping * part * approach, zero);
-            let repulsion = Hooke.normal_force(elastic, damped, zero);
+            let repulsion = Hooke::default().normal_force(elastic, damped, zero);
             let slip = minus(velocity, times(normal, approach));
             let stiffness = N::choose(touching, tangential_stiffness * part, zero);
             let stretched = stretch::<N>(
@@ -728,7 +728,7 @@ impl Desk {
                 normal,
                 touching,
                 stiffness,
-                friction * Hooke.coulomb_force(elastic, repulsion, zero),
+                friction * Hooke::default().coulomb_force(elastic, repulsion, zero),
             );
             let force = minus(
                 times(stretched.spring, -stiffness),

@@ -7,7 +7,6 @@ use super::super::terms::{ForceTerms, velocity_half_a_step_ago};
 use super::bodies::{Body, Shapes};
 use super::listing::Listed;
 use super::nearest::{Jobs, Nearest, Places};
-use crate::physics::{ContactLaw, FeatureRule};
 use crate::world::{Contact, Feature, FeatureContact, Partner, World};
 use glam::DVec3;
 
@@ -23,13 +22,8 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     let meeting = Meeting::of(world, contact);
     let sum: f64 = features.iter().map(|feature| feature.overlap).sum();
     let squares: f64 = features.iter().map(|f| f.overlap * f.overlap).sum();
-    let part = match world.law {
-        ContactLaw::Hooke {
-            features: FeatureRule::Shared,
-            ..
-        } => squares / (sum * sum),
-        _ => 1.0,
-    };
+    let springs = world.law.feature_springs();
+    let part = springs.map_or(1.0, |springs| springs.rule.part(sum, squares));
     let term = |feature: &FeatureContact| meeting.terms(feature, part);
     features.into_iter().map(term).collect()
 }
@@ -134,8 +128,8 @@ impl<'a> Meeting<'a> {
         let [stiffness, damping, _, friction] = self.law;
         let elastic = stiffness * part * contact.overlap;
         let damping = damping * part * approach;
-        let repulsion = (Hooke.normal_force(one(elastic), one(damping), one(0.0))).get();
-        let bounding = (Hooke.coulomb_force(one(elastic), one(repulsion), one(0.0))).get();
+        let repulsion = (Hooke::default().normal_force(one(elastic), one(damping), one(0.0))).get();
+        let bounding = (Hooke::default().coulomb_force(one(elastic), one(repulsion), one(0.0))).get();
         let spring = -contact.spring * contact.stiffness;
         let coulomb_bound = friction * bounding;
         ForceTerms {

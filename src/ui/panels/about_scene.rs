@@ -1,6 +1,6 @@
 //! What the scene is, what to look for, where its numbers come from.
 
-use crate::scene::{ContactLaw, Scene};
+use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
@@ -38,10 +38,7 @@ impl Panel for AboutScene {
 /// Grains, law and seed in one line.
 fn outline(scene: &Scene) -> String {
     let grains = scene.grain_count();
-    let law = match scene.law {
-        ContactLaw::HertzMindlin => "Hertz–Mindlin",
-        ContactLaw::Hooke { .. } => "Hooke",
-    };
+    let law = scene.law.words().name;
     let noun = if grains == 1 { "grain" } else { "grains" };
     format!("{grains} {noun} · {law} · seed {}", scene.seed)
 }
