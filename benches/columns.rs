@@ -5,7 +5,8 @@
 //! contact.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use grainfall::scene::{ContactLaw, Scene, SceneGrains};
+use grainfall::physics::ContactLaw;
+use grainfall::scene::{Scene, SceneGrains};
 use grainfall::solver::{Solver, Stage};
 use grainfall::world::{World, build};
 

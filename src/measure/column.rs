@@ -5,7 +5,8 @@
 //! plots against, and the laws drawn through its plots. What lies on the floor now is measured by
 //! [`super::Deposit`].
 
-use crate::world::{MaterialId, Shape, Species, Surface, World};
+use crate::physics::MaterialId;
+use crate::world::{Shape, Species, Surface, World};
 use std::f64::consts::PI;
 
 /// Weight β of the friction among grains against that on the floor (Man et al. 2023, after Eq.

@@ -5,8 +5,9 @@
 
 use super::{Parameter, relabel};
 use crate::measure::elastic_energy;
-use crate::scene::{BridgeLaw, Scene, SceneContainer, SceneLiquid};
-use crate::world::{Liquid, MaterialId, Materials, PairProperties, World};
+use crate::physics::{BridgeLaw, Liquid, MaterialId, Materials, PairProperties};
+use crate::scene::{Scene, SceneContainer};
+use crate::world::World;
 use glam::DVec3;
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
@@ -379,7 +380,7 @@ fn pair_parameters(
 }
 
 /// What can change about the liquid.
-fn liquid_parameters(liquid: &SceneLiquid) -> Vec<ParameterInfo> {
+fn liquid_parameters(liquid: &Liquid) -> Vec<ParameterInfo> {
     let info =
         |parameter: Parameter, label: &str, symbol, range, default, description| ParameterInfo {
             label: label.into(),

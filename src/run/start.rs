@@ -5,7 +5,7 @@
 //! [`super::Parameter`] instead.
 
 use super::DisplayUnit;
-use crate::scene::{ContactLaw, Scene, SceneContainer, SceneError, SceneGrains, SceneMaterial};
+use crate::scene::{Scene, SceneContainer, SceneError, SceneGrains, SceneMaterial};
 use crate::solver::advise;
 use std::ops::RangeInclusive;
 

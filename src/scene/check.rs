@@ -7,10 +7,10 @@ use super::error::Problem;
 use super::lattice::Lattice;
 use super::mixture::size_classes;
 use super::{
-    ContactLaw, PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain,
-    SceneGrains, SceneLiquid, SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube,
-    SmallestGap, StoredCells, TimeStep,
+    PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain, SceneGrains,
+    SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, StoredCells, TimeStep,
 };
+use crate::physics::{ContactLaw, Liquid, SmallestGap};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::PI;
@@ -656,7 +656,7 @@ fn check_pair_values(pair: &PairOverride, path: impl Fn(&str) -> String) -> Chec
     Ok(())
 }
 
-fn check_liquid(liquid: &SceneLiquid) -> Checked {
+fn check_liquid(liquid: &Liquid) -> Checked {
     SURFACE_TENSION.check(liquid.surface_tension, || {
         "liquid.surface_tension".to_owned()
     })?;

@@ -19,10 +19,6 @@ mod set;
 mod shape;
 mod syntax;
 
-pub use crate::physics::{
-    BridgeLaw, BridgeVolume, CapillaryGap, ContactLaw, CoulombBound, FeatureRule, LIQUID_CASES,
-    Liquid as SceneLiquid, LiquidCase, PAPER_VOLUME, PairAngle, Rupture, SmallestGap,
-};
 pub use built_in::{BuiltIn, built_in};
 pub use container::{SceneContainer, ScenePlane, SceneTube};
 pub use error::SceneError;
@@ -33,6 +29,7 @@ pub use packing::{HeldCells, PackingError, StoredCells};
 pub use set::seconds;
 pub use shape::{SceneBody, SceneShape};
 
+use crate::physics::{ContactLaw, Liquid};
 use file::SceneFile;
 use glam::DVec3;
 use ron::extensions::Extensions;
@@ -61,7 +58,7 @@ pub struct Scene {
     /// The grains.
     pub grains: SceneGrains,
     /// The liquid between them, if any.
-    pub liquid: Option<SceneLiquid>,
+    pub liquid: Option<Liquid>,
     /// Gravitational acceleration [m/s²].
     pub gravity: DVec3,
     /// Which contact law acts.

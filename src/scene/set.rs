@@ -5,10 +5,8 @@
 
 use super::error::{Problem, SceneError, suggestion};
 use super::file::count_of;
-use super::{
-    BridgeLaw, ContactLaw, FeatureRule, LiquidCase, PairOverride, Scene, SceneCells,
-    SceneContainer, SceneGrains, SceneLiquid, TimeStep,
-};
+use super::{PairOverride, Scene, SceneCells, SceneContainer, SceneGrains, TimeStep};
+use crate::physics::{BridgeLaw, ContactLaw, FeatureRule, Liquid, LiquidCase};
 
 /// One value that can be replaced.
 struct Setting {
@@ -321,7 +319,7 @@ fn set_liquid(scene: &mut Scene, text: &str) -> Option<()> {
     } else {
         let liquid = LiquidCase::of(case)?.liquid();
         Some(match scene.liquid.take() {
-            Some(old) => SceneLiquid {
+            Some(old) => Liquid {
                 volume: old.volume,
                 law: old.law,
                 ..liquid

@@ -7,7 +7,8 @@ use super::contacts::{GROUP, Pair};
 use super::lanes::{Lanes, Quad, Row, WIDEST, dot, plus, times};
 use super::law::{BridgeConstants, BridgeKinds, FilmConstants, attraction, contributions, drag};
 use super::row::{row, vector};
-use crate::world::{Bridge, Liquid};
+use crate::physics::Liquid;
+use crate::world::Bridge;
 
 /// What the solver keeps of a bridge; all zero where there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

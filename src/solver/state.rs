@@ -13,7 +13,8 @@ use super::portion::Portion;
 use super::row::{Row, length_squared, row, vector};
 use super::team::Shared;
 use super::{Fault, FaultKind};
-use crate::world::{Contact, Liquid, Partner, Surface, World};
+use crate::physics::Liquid;
+use crate::world::{Contact, Partner, Surface, World};
 use std::collections::HashMap;
 use std::ops::Range;
 

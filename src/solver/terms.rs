@@ -14,8 +14,8 @@ use super::law::{
     contributions, drag, rolling_gain,
 };
 use super::polyhedra;
-use crate::physics::{BridgeLaw, ContactLaw, CoulombBound};
-use crate::world::{Contact, Feature, Liquid, Partner, World};
+use crate::physics::{BridgeLaw, ContactLaw, CoulombBound, Liquid};
+use crate::world::{Contact, Feature, Partner, World};
 use glam::DVec3;
 
 /// A force within this share of the Coulomb bound is taken to slide: the loop makes it equal to the bound, to rounding.

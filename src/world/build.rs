@@ -6,10 +6,10 @@
 
 use super::mixture::{assign_species, labelled, random};
 use super::{
-    Body, Clock, Container, Grains, Ledger, Material, MaterialId, Materials, Motion, Packing,
-    PairProperties, Polyhedra, Polyhedron, Rounded, Shape, Species, SpeciesId, Surface, Wall,
-    World,
+    Body, Clock, Container, Grains, Ledger, Motion, Packing, Polyhedra, Polyhedron, Rounded, Shape,
+    Species, SpeciesId, Surface, Wall, World,
 };
+use crate::physics::{Material, MaterialId, Materials, PairProperties};
 use crate::scene::{
     Lattice, Scene, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
     SceneSpecies, SceneTube, SizeClass, size_classes, species_counts,

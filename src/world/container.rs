@@ -1,6 +1,6 @@
 //! Walls: analytic surfaces that move as rigid bodies.
 
-use super::MaterialId;
+use crate::physics::MaterialId;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

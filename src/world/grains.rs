@@ -1,7 +1,7 @@
 //! The grains' columns.
 
-use super::MaterialId;
 use crate::geometry::sphere_volume;
+use crate::physics::MaterialId;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -18,7 +18,6 @@ mod polyhedra;
 mod voronoi;
 
 pub use crate::geometry::{Polyhedron, Rounded};
-pub use crate::physics::{Liquid, Material, MaterialId, Materials, PairProperties};
 pub use build::{build, build_packed, materials};
 pub use contact::{Contact, Partner};
 pub use container::{Container, Motion, Shape, Surface, Wall};
@@ -31,7 +30,7 @@ pub use packing::Packing;
 pub use polyhedra::{Body, Feature, FeatureContact, Polyhedra};
 pub use voronoi::{Boundary, Tessellation};
 
-use crate::physics::ContactLaw;
+use crate::physics::{ContactLaw, Liquid, Materials};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -16,11 +16,10 @@ mod temperature;
 mod velocity_map;
 
 use glam::{DQuat, DVec3};
-use grainfall::scene::ContactLaw;
+use grainfall::physics::{ContactLaw, Material, MaterialId, Materials, PairProperties};
 use grainfall::world::{
-    Clock, Contact, Container, Feature, FeatureContact, Grains, Ledger, Material, MaterialId,
-    Materials, Motion, PairProperties, Partner, Polyhedra, Polyhedron, Shape, Species, SpeciesId,
-    Surface, Wall, World,
+    Clock, Contact, Container, Feature, FeatureContact, Grains, Ledger, Motion, Partner, Polyhedra,
+    Polyhedron, Shape, Species, SpeciesId, Surface, Wall, World,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

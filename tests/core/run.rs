@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use grainfall::measure::{EnergyLedger, Series};
-use grainfall::scene::{LIQUID_CASES, Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
+use grainfall::physics::LIQUID_CASES;
+use grainfall::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
 use grainfall::simulation::{
     BedStore, Command, CommandError, DriverKind, Lab, LabCommand, Options, Parameter, Preparation,
     Prepared, Run, SAMPLE_INTERVAL, Script, ScriptError, ScriptedCommand, Status,

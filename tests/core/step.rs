@@ -4,7 +4,8 @@
 use crate::run::{prepared, set};
 use crate::timeline::{arrive, change, go_on, hash};
 use grainfall::headless::Verdict;
-use grainfall::scene::{LIQUID_CASES, LiquidCase, Scene, TimeStep};
+use grainfall::physics::{LIQUID_CASES, LiquidCase};
+use grainfall::scene::{Scene, TimeStep};
 use grainfall::simulation::{
     BedStore, Changed, Claim, Command, CommandError, DriverKind, Half, Lab, LabCommand, Options,
     Parameter, Run, Script, ScriptedCommand, Session, Status, StepTimes, Timeline,

@@ -2,7 +2,8 @@
 
 use crate::run::{bits, friction, prepared, set, shared_beds};
 use grainfall::measure::{Measure, NON_RIGID_TEMPERATURE, Series};
-use grainfall::scene::{LIQUID_CASES, Scene, SceneContainer};
+use grainfall::physics::LIQUID_CASES;
+use grainfall::scene::{Scene, SceneContainer};
 use grainfall::simulation::{
     BedStore, Changed, Command, Parameter, Run, Script, ScriptedCommand, Timeline,
 };

@@ -7,7 +7,8 @@ use bevy_egui::egui::{self, Key, Modifiers, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use grainfall::measure::{Avalanche, GrainQuantity, Measure, Sample, Series};
-use grainfall::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, built_in};
+use grainfall::physics::{LIQUID_CASES, PAPER_VOLUME};
+use grainfall::scene::{Scene, built_in};
 use grainfall::simulation::{
     BedStore, Command, DisplayUnit, DriverKind, LabCommand, Options, Parameter, ParameterInfo,
     Simulation, Status,

@@ -13,7 +13,8 @@ use bevy::render::view::screenshot::ScreenshotCaptured;
 use bevy_egui::{EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
 use glam::DVec3;
 use grainfall::measure::GrainQuantity;
-use grainfall::scene::{ContactLaw, Scene};
+use grainfall::physics::{ContactLaw, Material, MaterialId, Materials, PairProperties};
+use grainfall::scene::Scene;
 use grainfall::simulation::{Options, Simulation, SimulationPlugin, Status};
 use grainfall::ui::UiPlugin;
 use grainfall::view::{
@@ -25,8 +26,8 @@ use grainfall::window::canvas::{
 };
 use grainfall::window::environment::adapters;
 use grainfall::world::{
-    Bridge, Clock, Contact, Container, Grains, Ledger, Material, MaterialId, Materials, Motion,
-    PairProperties, Partner, Shape, Species, SpeciesId, Surface, Wall, World,
+    Bridge, Clock, Contact, Container, Grains, Ledger, Motion, Partner, Shape, Species, SpeciesId,
+    Surface, Wall, World,
 };
 use std::io::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -562,7 +563,7 @@ fn bridge_is_as_thick_as_its_volume_makes_it() {
     };
     let mut wet = pair(0.0);
     wet.grains.film = vec![1e-8; 2];
-    wet.liquid = Some(grainfall::scene::LIQUID_CASES[1].liquid());
+    wet.liquid = Some(grainfall::physics::LIQUID_CASES[1].liquid());
     let seen = |bridges: bool| {
         let photograph = photograph("bridge", wet.clone(), |settings, camera| {
             settings.show_bridges = bridges;

@@ -45,7 +45,12 @@ impl LawFacts for Hooke {
         let log_squared = natural_log(restitution).powi(2);
         let mass = pairing.effective_mass;
         let rate = 2.0 * (log_squared * (normal_stiffness / mass) / (PI * PI + log_squared)).sqrt();
-        [normal_stiffness, mass * rate, self.tangential_stiffness, 0.0]
+        [
+            normal_stiffness,
+            mass * rate,
+            self.tangential_stiffness,
+            0.0,
+        ]
     }
 
     /// `∫ K_n δ dδ = ½ K_n δ²`.

@@ -31,10 +31,8 @@ use super::row::{Row, length_squared, row, sub, vector};
 use super::state::move_walls;
 use super::team::{Barrier, Shared, Team, share};
 use super::{Fault, FaultKind, Profile, Stage, Stretch};
-use crate::physics::{ContactLaw, FeatureRule};
-use crate::world::{
-    Contact, FeatureContact, Materials, Partner, Polyhedron, SpeciesId, Surface, World,
-};
+use crate::physics::{ContactLaw, FeatureRule, Materials};
+use crate::world::{Contact, FeatureContact, Partner, Polyhedron, SpeciesId, Surface, World};
 use bodies::{Body, Geometry, Load, Placing, Shapes};
 use listing::Listed;
 use nearest::Places;

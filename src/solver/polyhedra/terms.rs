@@ -129,7 +129,8 @@ impl<'a> Meeting<'a> {
         let elastic = stiffness * part * contact.overlap;
         let damping = damping * part * approach;
         let repulsion = (Hooke::default().normal_force(one(elastic), one(damping), one(0.0))).get();
-        let bounding = (Hooke::default().coulomb_force(one(elastic), one(repulsion), one(0.0))).get();
+        let bounding =
+            (Hooke::default().coulomb_force(one(elastic), one(repulsion), one(0.0))).get();
         let spring = -contact.spring * contact.stiffness;
         let coulomb_bound = friction * bounding;
         ForceTerms {

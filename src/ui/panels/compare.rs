@@ -3,7 +3,7 @@
 //!
 //! In: the simulation, with one run or two. Out: requests to begin a comparison and to end it.
 
-use crate::scene::LIQUID_CASES;
+use crate::physics::LIQUID_CASES;
 use crate::simulation::{Half, Parameter, ParameterInfo, Simulation};
 use crate::ui::detail::{is_basic, landmarks};
 use crate::ui::panel::Panel;

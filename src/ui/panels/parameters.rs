@@ -1,7 +1,8 @@
 //! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command. In the
 //! laboratory also what acts from the next start on.
 
-use crate::scene::{LIQUID_CASES, PAPER_VOLUME, Scene, SceneContainer};
+use crate::physics::{LIQUID_CASES, PAPER_VOLUME};
+use crate::scene::{Scene, SceneContainer};
 use crate::simulation::{Command, Half, Parameter, ParameterInfo, Simulation};
 use crate::ui::detail::{Detail, is_basic, landmarks};
 use crate::ui::panel::Panel;

@@ -2,7 +2,7 @@
 
 use super::*;
 use grainfall::measure::{EnergyLedger, elastic_energy};
-use grainfall::scene::FeatureRule;
+use grainfall::physics::FeatureRule;
 use grainfall::solver::Solver;
 
 /// Two grains of radii `r` and `2 r` that overlap by `overlap`, with tangential spring `xi`.

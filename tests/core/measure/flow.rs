@@ -6,7 +6,7 @@ use grainfall::measure::{
     FlowHistory, MIDDLE_SHARE, Measure, capillary_number, drop_ratio_law, drum_torque,
     galilei_number, mean_velocity, sample, sample_and_surface, surface_line,
 };
-use grainfall::scene::LIQUID_CASES;
+use grainfall::physics::LIQUID_CASES;
 
 const RADIUS: f64 = 0.0605;
 const WIDTH: f64 = 0.022;

@@ -1,8 +1,9 @@
 //! What world a scene becomes.
 
 use glam::DVec3;
+use grainfall::physics::MaterialId;
 use grainfall::scene::{Scene, built_in};
-use grainfall::world::{self, MaterialId, Shape, SpeciesId, Surface, World};
+use grainfall::world::{self, Shape, SpeciesId, Surface, World};
 
 const BOX: &str = "tests/core/scene/good/two-sizes-box.ron";
 

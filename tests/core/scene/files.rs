@@ -1,8 +1,7 @@
 //! Good files are read; each bad one is refused with the message that stands in it.
 
-use grainfall::scene::{
-    BridgeLaw, ContactLaw, LiquidCase, Scene, SceneContainer, SceneGrains, TimeStep, built_in,
-};
+use grainfall::physics::{BridgeLaw, ContactLaw, LiquidCase};
+use grainfall::scene::{Scene, SceneContainer, SceneGrains, TimeStep, built_in};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::DVec3;
-use grainfall::scene::BridgeLaw;
+use grainfall::physics::BridgeLaw;
 use grainfall::solver::{NormalLaw, advise, force_terms};
 use grainfall::world::{Contact, Surface};
 

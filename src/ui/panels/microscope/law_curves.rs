@@ -3,7 +3,7 @@
 //!
 //! In: a contact and its terms. Out: points, gap [µm] and force that pushes apart [mN].
 
-use crate::scene::BridgeLaw;
+use crate::physics::BridgeLaw;
 use crate::solver::{ForceTerms, NormalLaw};
 use crate::ui::theme::{Palette, dash};
 use crate::world::{Contact, Partner, World};
