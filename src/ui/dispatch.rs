@@ -33,7 +33,7 @@ pub struct OpenWith(pub(super) Options);
 #[derive(Resource, Default)]
 pub struct Opening(Option<(String, Task<Result<Session, SessionError>>)>);
 
-/// What it takes to open something.
+/// What opening a scene or a session changes.
 #[derive(SystemParam)]
 pub struct Opener<'w, 's> {
     opening: ResMut<'w, Opening>,
@@ -173,8 +173,8 @@ fn end_comparison(
     view.focus = Half::Left;
 }
 
-/// What to do for `request`; nothing yet where it leaves `unsaved` work and a person must be asked
-/// first. What cannot be opened leaves nothing, and is told at once.
+/// The request to fulfil now. None where `request` would lose `unsaved` work: then the person is
+/// asked first. A scene that cannot be opened loses nothing; its error is shown at once.
 fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Request> {
     match request {
         Request::Open(name) if unsaved && let Some(error) = no_scene(&name) => {
@@ -194,13 +194,13 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
     }
 }
 
-/// Why there is no scene called `name`, where that is no session either.
+/// The error of opening the scene called `name`; none where it opens or is a session.
 fn no_scene(name: &str) -> Option<String> {
     let scene = (!Session::is_at(Path::new(name))).then(|| Scene::open(name))?;
     scene.err().map(|error| error.to_string())
 }
 
-/// What gives a run the present values of the live parameters at its start.
+/// The script that gives a new run the present values of the live parameters at its start.
 fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
     let away = simulation.parameters().iter().filter_map(|info| {
         let value = simulation.value(&info.parameter);
@@ -215,7 +215,7 @@ fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
     away.map(at_the_start).collect()
 }
 
-/// Says what became of the session's files; what was to follow, if it may now.
+/// Reports whether the session was saved; returns the request that waited for it, where it was.
 fn tell_saved(simulation: &mut Simulation, dock: &mut Dock) -> Option<Request> {
     let mut next = None;
     for SavedFile { path, outcome } in simulation.take_saved() {
@@ -229,7 +229,7 @@ fn tell_saved(simulation: &mut Simulation, dock: &mut Dock) -> Option<Request> {
     next
 }
 
-/// Goes on with the session that has been read; one that cannot be leaves the present one running.
+/// Opens the session that has been read. Where it cannot be read the present one goes on.
 pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
     let Some((name, task)) = &mut opener.opening.0 else {
         return;
@@ -282,8 +282,8 @@ impl Opener<'_, '_> {
         }
     }
 
-    /// Starts a run of `scene`, which came of that of the present `simulation`, with what was
-    /// changed there.
+    /// Starts a run of `scene`, made from that of `simulation`, with the values that were changed
+    /// there.
     fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>, dock: &mut Dock) {
         let script = simulation.map_or_else(Vec::new, present);
         let original = simulation.map(|simulation| simulation.original().clone());
@@ -292,7 +292,7 @@ impl Opener<'_, '_> {
         dock.scene_changed();
     }
 
-    /// Starts a run of `scene`, which came of the `original`, with `script`, at this `speed`.
+    /// Starts a run of `scene`, made from the `original`, with `script`, at this `speed`.
     fn start(
         &mut self,
         scene: Scene,
@@ -312,7 +312,7 @@ impl Opener<'_, '_> {
         });
     }
 
-    /// Shows `simulation` as a scene is shown at first.
+    /// Shows `simulation` with nothing cut, selected or traced, from the scene's first view.
     fn show(&mut self, simulation: Simulation) {
         self.commands.insert_resource(simulation);
         self.view.cut = None;
@@ -332,7 +332,7 @@ fn save_plot(path: &Path, dock: &mut Dock) {
     dock.notify(said("The plot", path, written));
 }
 
-/// Writes the changes of the present run to `path`, with what leads to the state shown.
+/// Writes the changes of the present run to `path`, with all that leads to the state shown.
 fn save_changes(simulation: &Simulation, path: &Path) -> io::Result<()> {
     let world = simulation.world();
     let world = world.ok_or_else(|| io::Error::other("there is no run yet"))?;

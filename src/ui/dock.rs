@@ -58,7 +58,7 @@ pub struct Dock {
     gallery: Gallery,
     shows_scenes: bool,
     memory: UserMemory,
-    /// The built-in scene that is open, as it came.
+    /// The built-in scene that is open, unless it was changed.
     scene: Option<&'static str>,
     /// Choosing a file.
     pub path_dialog: PathDialog,
@@ -66,14 +66,14 @@ pub struct Dock {
     open_error: Option<String>,
     /// The file of the session, where it has one.
     pub session: Option<PathBuf>,
-    /// What would leave work that is in no file, while a person is asked about it.
+    /// The request that would lose unsaved work, while the person is asked about it.
     leaving: Option<Request>,
     /// What to do when the session has been saved.
     pub after_saving: Option<Request>,
     notice: Option<(String, Instant)>,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
-    /// Whether nothing of it is drawn.
+    /// Whether the dock is hidden and the picture fills the window.
     pub is_hidden: bool,
 }
 
@@ -134,8 +134,8 @@ impl Default for Dock {
 }
 
 impl Dock {
-    /// Draws everything into `root`, which spans the window and keeps what is free, and reads the
-    /// keyboard.
+    /// Draws everything into `root`, which spans the window and keeps what is free for the picture,
+    /// and reads the keyboard.
     pub fn ui(
         &mut self,
         root: &mut egui::Ui,
@@ -160,7 +160,7 @@ impl Dock {
         focus_ui(root.ctx(), Palette::of(root.visuals()));
     }
 
-    /// Takes `memory` up, and keeps it from now on.
+    /// Remembers in `memory` from now on.
     pub fn remember(&mut self, memory: UserMemory) {
         self.memory = memory;
     }
@@ -209,7 +209,7 @@ impl Dock {
         self.shows_scenes = true;
     }
 
-    /// Lets all look as it did the last time, and notes how it looks for the next.
+    /// Restores the look of the last session, then keeps the present one.
     fn remember_look(&mut self, ctx: &egui::Context, view: &mut ViewSettings) {
         if let Some(look) = self.memory.last_look() {
             ctx.set_zoom_factor(look.scale);
@@ -222,7 +222,8 @@ impl Dock {
         }
     }
 
-    /// Lets the panels be as they were the last time, and notes what is worth it for the next.
+    /// Restores how much the controls showed the last time, then keeps that and how fast the scene
+    /// runs.
     fn remember_ui(&mut self, ctx: &egui::Context, simulation: Option<&Simulation>) {
         let chosen = Detail::chosen(ctx);
         match chosen {
@@ -242,7 +243,8 @@ impl Dock {
         }
     }
 
-    /// Paints over the picture, which fills what `root` keeps free, without taking its pointer.
+    /// Paints notes over the picture, which fills the free part of `root`. The pointer stays the
+    /// picture's.
     pub fn over_picture_ui(&self, root: &egui::Ui, simulation: Option<&Simulation>) {
         let free = root.available_rect_before_wrap();
         let painter = root.painter_at(free);
@@ -286,8 +288,7 @@ impl Dock {
         self.notice = Some((text.into(), Instant::now()));
     }
 
-    /// Puts the scene called `name` first among the recent ones, and starts the panels afresh for
-    /// it.
+    /// Puts the scene called `name` first among the recent ones and resets the panels for it.
     pub fn scene_opened(&mut self, name: &str) {
         self.memory.opened(name);
         self.scene = built_in()
@@ -298,14 +299,14 @@ impl Dock {
         (self.left, self.right) = (left(), right());
     }
 
-    /// Starts the panels afresh for a scene that came of the present one.
+    /// Resets the panels for a scene made from the present one.
     pub fn scene_changed(&mut self) {
         self.session = None;
         self.scene = None;
         (self.left, self.right) = (left(), right());
     }
 
-    /// The same for the session in the file called `name`, to which it will be saved again.
+    /// Does the same for the session in the file called `name`, where it will be saved again.
     pub fn session_opened(&mut self, name: &str) {
         self.scene_opened(name);
         self.session = Some(name.into());
@@ -396,12 +397,12 @@ impl Dock {
     }
 }
 
-/// Whether nothing has happened yet.
+/// Whether the run is at its start and has not been played.
 fn is_untouched(simulation: &Simulation) -> bool {
     *simulation.status() == Status::Paused && simulation.past().end.step == 0
 }
 
-/// The one thing to do first, over the picture of a scene that stands still.
+/// A large Play button over the picture of a scene that has not been played.
 fn first_play_ui(root: &egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let free = root.available_rect_before_wrap();
     egui::Area::new(Id::new("first play"))

@@ -21,7 +21,7 @@ pub const SPEEDS: [f64; 11] = [
     f64::INFINITY,
 ];
 
-/// What a scene shows should last so long at least [s]: an impact is seen in slow motion.
+/// A scene should take at least this long to watch [s]: an impact is shown in slow motion.
 const WATCHED: f64 = 5.0;
 
 /// The speed at which a scene of this `duration` [s] is watched at first: real time, or slow motion
@@ -44,8 +44,8 @@ pub fn allows(status: &Status, command: &Command) -> bool {
     }
 }
 
-/// What the one button for both and the space key ask for: pause while it goes on, else play where
-/// that is possible.
+/// The command of the Play and Pause button and of the space key: pause while the run goes on, else
+/// play where that is possible.
 pub fn play_or_pause(status: &Status) -> Option<Command> {
     let command = match status {
         Status::Running | Status::Seeking { .. } => Command::Pause,
@@ -54,14 +54,14 @@ pub fn play_or_pause(status: &Status) -> Option<Command> {
     allows(status, &command).then_some(command)
 }
 
-/// What a step back shows: the step before the one shown, where there is one.
+/// The command that shows the step before the one shown, where there is one.
 pub fn step_back(simulation: &Simulation) -> Option<Command> {
     let before = Command::Seek(simulation.step().checked_sub(1)?);
     allows(simulation.status(), &before).then_some(before)
 }
 
-/// What shows the moment a sample's interval before or after the one shown; after the newest one,
-/// the run goes on so far.
+/// The command that shows the moment one sampling interval before or after the one shown. After the
+/// newest moment the run goes on by that interval.
 pub fn leap(simulation: &Simulation, way: Way) -> Option<Command> {
     let clock = simulation.world()?.clock;
     let steps = (SAMPLE_INTERVAL / clock.time_step).ceil().max(1.0) as u64;
@@ -73,12 +73,12 @@ pub fn leap(simulation: &Simulation, way: Way) -> Option<Command> {
     }
 }
 
-/// Backwards or on in time.
+/// A direction in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// To what was before.
+    /// Towards the start.
     Back,
-    /// To what comes next.
+    /// Towards the end.
     On,
 }
 

@@ -52,7 +52,7 @@ pub struct Export {
     pub y: PlotAxis,
     /// What is drawn.
     pub runs: Vec<ExportedRun>,
-    /// Where it came from.
+    /// The run it was made of.
     pub from: Provenance,
 }
 

@@ -22,9 +22,9 @@ pub enum ScreenshotOrder {
     Picture(PathBuf),
     /// A film of the picture without panels from now on, into this file or folder.
     Film(PathBuf),
-    /// That is all of the film; write it.
+    /// End the film and write it.
     EndFilm,
-    /// Forget the film.
+    /// Give up the film; no file is left.
     CancelFilm,
 }
 
@@ -36,11 +36,11 @@ pub enum FilmState {
     Idle,
     /// Its pictures are taken.
     Recording {
-        /// So many so far.
+        /// Number of pictures so far.
         pictures: usize,
         /// Simulated time that they span [s].
         time: f64,
     },
-    /// Its last pictures are written, so many of them.
+    /// Its last pictures are being written; so many are left.
     Writing(usize),
 }

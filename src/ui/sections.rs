@@ -15,7 +15,7 @@ pub struct Section {
     /// What stands in it.
     pub panel: Box<dyn Panel>,
     open_at_first: bool,
-    /// Whether somebody asked to see it.
+    /// Whether it should open and take the focus in the next frame.
     pub is_wanted: bool,
     /// How far it was open in the last frame, 0 … 1.
     openness: f32,

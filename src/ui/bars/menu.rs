@@ -13,10 +13,10 @@ use crate::ui::words::number;
 use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
 use bevy_egui::egui;
 
-/// Width of the menu of the view, whose longest entry it holds, in points.
+/// Width of the View menu, in points: its longest entry fits.
 const VIEW_WIDTH: f32 = 250.0;
 
-/// Draws the menu bar, and from its right end leftwards what `rest` draws.
+/// Draws the menu bar; `rest` is drawn at its right end, from right to left.
 pub fn menu_ui(
     ui: &mut egui::Ui,
     simulation: Option<&Simulation>,
@@ -147,7 +147,7 @@ fn item_ui(ui: &mut egui::Ui, name: &str, request: Request, out: &mut Vec<Reques
     item_unless_ui(ui, name, request, None, out);
 }
 
-/// The same, unless there is a reason why not, which it then tells.
+/// The same, disabled where there is a reason why not; hovering over it shows the reason.
 fn item_unless_ui(
     ui: &mut egui::Ui,
     name: &str,

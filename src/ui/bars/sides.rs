@@ -7,7 +7,7 @@ pub const ROOM_FOR_BOTH: f32 = 1000.0;
 /// A window narrower than this has room for none [points].
 pub const ROOM_FOR_ONE: f32 = 680.0;
 
-/// Why a side that is wanted is not there, if one is not.
+/// Why the window does not show both sides, where it has no room for them.
 pub fn why_not_both(width: f32) -> Option<&'static str> {
     if width >= ROOM_FOR_BOTH {
         None

@@ -12,7 +12,7 @@ use crate::ui::words::number;
 use crate::ui::words::run_names::parameter_name;
 use bevy_egui::egui::{self, Rect, RichText, WidgetInfo, WidgetType, pos2, vec2};
 
-/// Marks closer than this share one, in points.
+/// Of marks closer together than this one is drawn, in points.
 const BETWEEN_MARKS: f32 = 3.0;
 
 /// Draws the timeline, over the whole width; nothing while there is no run.
@@ -140,8 +140,8 @@ fn place_in_words(time: f64, end: f64) -> String {
     format!("{} of {} s", number::fixed(time, 2), number::fixed(end, 2))
 }
 
-/// Width of what stands right of the line, with the space before it: the same whatever moment is
-/// shown.
+/// Width of the text and the button right of the line. It does not depend on the moment shown, so
+/// the line does not jump.
 fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let width = |text: String| {
@@ -153,7 +153,7 @@ fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
     texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
 }
 
-/// Which moment is shown of how many, and the way back to the newest.
+/// The moment shown out of the whole run, and the way back to the newest.
 fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let end = simulation.past().end;
     if !simulation.looks_back() {

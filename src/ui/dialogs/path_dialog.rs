@@ -18,7 +18,7 @@ use rfd::{AsyncFileDialog, FileHandle};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A dialog that ends sooner than this without a file was hardly seen by a person.
+/// A dialog that ends sooner than this without a file probably never appeared.
 const SHORTEST_CHOICE: Duration = Duration::from_secs(2);
 /// Why the field stands where a dialog is expected.
 const NO_DIALOG: &str =
@@ -68,7 +68,7 @@ struct SystemDialog {
     answer: Task<DialogAnswer>,
 }
 
-/// What a system dialog was left with, and how long it stood.
+/// The answer of a system dialog, and how long it was open.
 struct DialogAnswer {
     file: Option<FileHandle>,
     after: Duration,
@@ -119,8 +119,8 @@ impl Purpose {
         }
     }
 
-    /// The file that is meant by `path`: with the right ending where there is but one, or none was
-    /// given.
+    /// The file for `path`: with the purpose's ending where there is only one, or where `path` has
+    /// none.
     fn file(self, path: &Path) -> PathBuf {
         let ended = || path.with_extension(self.extension());
         match self {
@@ -142,7 +142,7 @@ impl Purpose {
         }
     }
 
-    /// What will become of the file that is meant by `path`, in words, or why it cannot be.
+    /// What will happen to the file for `path`, in words, or why it cannot be used.
     fn outlook(self, path: &Path) -> Result<String, String> {
         let file = self.file(path);
         let whole = std::path::absolute(&file).unwrap_or(file);
@@ -227,7 +227,7 @@ impl PathDialog {
     }
 }
 
-/// Whether a dialog can appear at all: on Linux it takes a D-Bus session. To find out by asking may
+/// Whether a dialog can appear at all: on Linux it needs a D-Bus session. Trying to open one could
 /// take seconds.
 fn dialogs_are_there() -> bool {
     let bus = || {

@@ -68,7 +68,7 @@ pub fn unsaved_ui(ctx: &egui::Context, next: &Request, out: &mut Vec<Request>) -
     !(modal.inner || modal.should_close())
 }
 
-/// A window that must be closed before anything else; false once it is.
+/// A window that blocks everything else until it is closed; false once it is.
 fn modal_ui(
     ctx: &egui::Context,
     title: &str,

@@ -22,7 +22,7 @@ use bevy_egui::egui::{self, Align2, RichText, Stroke, WidgetInfo, WidgetType};
 use egui_plot::{HLine, LineStyle, MarkerShape, PlotPoint, PlotUi, Points, Text, VLine};
 use std::ops::RangeInclusive;
 
-/// Columns of pixels between two labels of avalanches at least.
+/// Least distance between two labels of avalanches, in columns of pixels.
 const BETWEEN_LABELS: f64 = 46.0;
 /// How far above its avalanche's start a label stands, as a share of the plot's height.
 const LABEL_LIFT: f64 = 0.035;

@@ -4,8 +4,8 @@ use crate::measure::{Summary, results, summarise};
 use crate::simulation::{RunView, SMALLEST_DROP};
 use crate::ui::panel::is_column;
 
-/// Averages are taken anew whenever this many samples have been added, half a simulated second;
-/// results of a column with every sample.
+/// Averages are remade after this many new samples, half a simulated second. Results of a column
+/// are remade with every sample.
 const SAMPLES_BETWEEN_SUMMARIES: usize = 25;
 
 /// The last averages and what they were made of.
@@ -14,7 +14,7 @@ pub struct Averages {
     made: Option<(Key, Summary)>,
 }
 
-/// What a summary was made of.
+/// What decides a summary: the same key, the same summary.
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
     simulation: u64,

@@ -97,8 +97,8 @@ impl ChangeList {
     }
 }
 
-/// The changes of the present run in words; of two side by side also those of what they differ in
-/// on the right.
+/// The changes of the present run in words. Of two runs side by side: also the changes on the right
+/// of the parameter in which they differ.
 fn rows(simulation: &Simulation) -> Vec<ChangeRow> {
     let mut rows = rows_of(simulation, |_| true);
     if let Some(comparison) = simulation.comparison() {
@@ -114,7 +114,7 @@ fn rows(simulation: &Simulation) -> Vec<ChangeRow> {
     rows
 }
 
-/// The changes of one run in words, as far as they are about parameters that are `listed`.
+/// The changes of one run in words; only those of parameters that are `listed`.
 fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<ChangeRow> {
     let commands = simulation.commands();
     let changes = simulation.changes();
@@ -195,7 +195,7 @@ fn kept_runs_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Reques
     }
 }
 
-/// The last change of a kept run, by which one knows it again.
+/// The last change of a kept run, which tells it from the others.
 fn describe(branch: &Branch, simulation: &RunView) -> String {
     let last = branch.history.commands().last();
     let Some((stamped, Command::Set { parameter, value })) =

@@ -102,7 +102,7 @@ fn why_not(simulation: &Simulation, is_same: bool) -> Option<&'static str> {
     }
 }
 
-/// The parameters, the most telling ones first.
+/// The parameters, those with the most visible effect first.
 fn ordered(simulation: &Simulation) -> Vec<&ParameterInfo> {
     let scene = simulation.scene();
     let mut list: Vec<_> = simulation.parameters().iter().collect();
@@ -116,7 +116,7 @@ fn ordered(simulation: &Simulation) -> Vec<&ParameterInfo> {
     list
 }
 
-/// The choice of the parameter; whether it is another one now.
+/// The choice of the parameter; true where another one was chosen.
 fn choice_ui(ui: &mut egui::Ui, list: &[&ParameterInfo], chosen: &mut Parameter) -> bool {
     let before = chosen.clone();
     let label = |info: &ParameterInfo| number::capitalised(&info.label);
@@ -137,7 +137,7 @@ fn choice_ui(ui: &mut egui::Ui, list: &[&ParameterInfo], chosen: &mut Parameter)
     *chosen != before
 }
 
-/// The row of the other value; what is wanted instead of it, if anything.
+/// The row of the value on the right; the new value, if the person gave one.
 fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: f64) -> Option<f64> {
     let row = Value {
         label: "value on the right",

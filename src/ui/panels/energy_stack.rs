@@ -40,7 +40,7 @@ struct Stack {
     time: Vec<f64>,
     /// The top of each layer, from below.
     tops: Vec<Vec<f64>>,
-    /// What was there at the start and what came in since.
+    /// Energy at the start plus the work done since.
     supplied: Vec<f64>,
 }
 

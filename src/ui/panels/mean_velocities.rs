@@ -19,9 +19,9 @@ use glam::DVec2;
 const HIGHEST: f32 = 330.0;
 /// Points of the map between two arrows.
 const BETWEEN_ARROWS: usize = 3;
-/// The colours reach at least this far [m/s]: noise at rest does not fill them.
+/// Smallest end of the colour scale [m/s], so that noise at rest stays dark.
 const SMALLEST_RANGE: f64 = 1e-4;
-/// The colours keep their range while the largest speed fills at least this share of it.
+/// The colour scale is kept while the largest speed is at least this share of its end.
 const LEAST_FILLED: f64 = 0.4;
 
 /// The panel of the velocity map.
@@ -181,7 +181,7 @@ fn nearest(map: &VelocityMap, point: DVec2) -> Option<DVec2> {
     (own.cmpge(DVec2::ZERO).all()).then(|| map.at(own.x as usize, own.y as usize))?
 }
 
-/// Every cell whose corners have a velocity, or the half of it whose corners have.
+/// A mesh of the cells of `map`. A cell with a velocity at three of its corners is drawn as half.
 fn coloured(
     map: &VelocityMap,
     range: f64,

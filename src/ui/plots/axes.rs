@@ -17,8 +17,7 @@ const ABOVE: f64 = 0.2;
 pub const SPARSE_X: f32 = 5.5;
 /// The same of level grid lines.
 pub const SPARSE_Y: f32 = 3.5;
-/// Height of a plot of nothing but zeros, in its unit: less than any measure, and enough to be
-/// divided by marks.
+/// Smallest height of a plot, in its unit: a curve of zeros still needs marks that differ.
 const LEAST_SPAN: f64 = 1e-30;
 
 /// The range that shows all `points` with a little room, at least `smallest` high.
@@ -37,8 +36,7 @@ pub fn height_of<'a>(
     middle - (0.5 + BELOW) * span..=middle + (0.5 + ABOVE) * span
 }
 
-/// A plot whose curves decide what of them is in view: a quarter of the window high, with a few
-/// round marks.
+/// A plot that fits its curves, a quarter of the window high, with a few round marks.
 pub fn fitting_plot<'a>(ui: &egui::Ui, id: &str) -> Plot<'a> {
     Plot::new(id)
         .height((0.25 * ui.ctx().content_rect().height()).clamp(130.0, 330.0))
@@ -85,7 +83,7 @@ pub fn tick(value: f64, decades: bool) -> String {
     }
 }
 
-/// `value` without digits that say nothing.
+/// `value` rounded to a millionth, without trailing zeros.
 pub fn tidy(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", rounded + 0.0).replacen('-', "−", 1)

@@ -16,7 +16,7 @@ use egui_plot::{Line, LineStyle};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// What is drawn.
+/// What the plots over time draw.
 #[derive(Clone, Copy)]
 pub struct Curves<'a> {
     /// The samples of the run.
@@ -27,27 +27,27 @@ pub struct Curves<'a> {
     pub avalanches: &'a [Avalanche],
     /// When parameters were changed [s], ascending.
     pub changes: &'a [f64],
-    /// Runs that were left for others.
+    /// Branches that are kept beside the present run.
     pub kept: &'a [KeptRun],
     /// The moment shown [s], where it is not the newest.
     pub shown: Option<f64>,
 }
 
-/// A run that was left for another, with its name.
+/// A branch beside the present run, with its name.
 pub type KeptRun = (String, Arc<Branch>);
 
 /// The lines of one plot.
 pub struct Lines {
-    /// That of the present run.
+    /// Of the present run.
     pub own: Vec<[f64; 2]>,
-    /// That of the run beside it.
+    /// Of the run it is compared with.
     pub compared: Option<Vec<[f64; 2]>>,
-    /// Those of runs kept beside it, with their names.
+    /// Of kept branches, with their names.
     pub kept: Vec<(String, Vec<[f64; 2]>)>,
 }
 
 impl<'a> Curves<'a> {
-    /// Those of all runs of `simulation`.
+    /// The curves of all runs of `simulation`.
     pub fn of(simulation: &'a Simulation, changes: &'a [f64], kept: &'a [KeptRun]) -> Self {
         Self {
             series: simulation.series(),
@@ -119,7 +119,7 @@ pub fn kept_runs(simulation: &Simulation) -> Vec<KeptRun> {
     kept
 }
 
-/// When parameters were changed [s], ascending: once for each change, however many values it took.
+/// Times at which parameters were changed [s], ascending. One drag of a slider is one change.
 pub fn change_times(run: &RunView) -> Vec<f64> {
     let commands = run.commands();
     let times = (run.changes().iter()).filter_map(|first| Some(commands.get(*first)?.time));

@@ -19,9 +19,9 @@ const ROOM_FOR_VALUE: f32 = 92.0;
 
 /// One plot over time.
 pub struct TimePlot {
-    /// What tells it from the others.
+    /// Its identity for egui: no two plots in a panel share it.
     pub id: &'static str,
-    /// What stands over it.
+    /// Its heading: name and unit.
     pub title: &'static str,
     /// The value of each run at the moment shown.
     pub present: Vec<String>,
@@ -45,8 +45,8 @@ pub fn size_of_plots(ui: &egui::Ui) -> (f32, usize) {
 }
 
 impl TimePlot {
-    /// Draws it with `marks` over its lines, over the part of the run in `window` [s], `height`
-    /// points high; what the pointer does on it is in the answer.
+    /// Draws the plot with `marks` over its lines, for the part of the run in `window` [s],
+    /// `height` points high. The response tells what the pointer did.
     pub fn ui<'a>(
         self,
         ui: &mut egui::Ui,
@@ -89,7 +89,8 @@ impl TimePlot {
         shown.response
     }
 
-    /// Its axes and grid in a `room` of this size [points]; nothing but the part in view moves it.
+    /// Axes and grid in a `room` of this size [points]. The pointer does not move them: the time
+    /// window does.
     fn empty_plot<'a>(&self, room: egui::Vec2, palette: Palette) -> Plot<'a> {
         let (decades, unit) = (self.decades, self.unit);
         Plot::new(self.id)
@@ -125,8 +126,7 @@ impl TimePlot {
     }
 }
 
-/// The title of a plot and the value of each run at the moment shown: in one line where there is
-/// room for all of it.
+/// The heading and the value of each run at the moment shown, in one line where there is room.
 fn head_ui(ui: &mut egui::Ui, title: &str, values: &[String], colours: [Color32; 2]) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let words = ui

@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 const RECENT: f64 = 20.0;
 /// Shortest window that one can zoom to [s].
 const SHORTEST: f64 = 0.2;
-/// A click this near to the start of an avalanche means it, in points.
+/// A click this near to the start of an avalanche selects that start, in points.
 const NEAR: f64 = 7.0;
 
 /// Which part of the run is in view.
@@ -78,7 +78,7 @@ pub fn clicked_time(response: &egui::Response, window: &RangeInclusive<f64>) -> 
     Some(window.start() + from_left * per_point(response, window))
 }
 
-/// Time that a point of the width of a plot stands for [s].
+/// Time per point of a plot's width [s].
 pub fn per_point(response: &egui::Response, window: &RangeInclusive<f64>) -> f64 {
     (window.end() - window.start()) / f64::from(response.rect.width().max(1.0))
 }

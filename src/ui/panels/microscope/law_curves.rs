@@ -13,7 +13,7 @@ const MICROMETRES: f64 = 1e6;
 /// Points of a curve.
 const CURVE: usize = 240;
 
-/// Where a contact stands: gap [µm] and force that pushes apart [mN].
+/// The dot of a contact: gap [µm] and force that pushes apart [mN].
 pub(super) fn dot(terms: &ForceTerms) -> [f64; 2] {
     let of_bodies = terms.feature.is_some();
     let force = if of_bodies {
@@ -29,7 +29,7 @@ pub(super) struct LawCurve {
     name: &'static str,
     /// Whether it is the law of this run.
     own: bool,
-    /// Whether it counts the speed of approach.
+    /// Whether the viscous part at the present speed of approach is included.
     pub(super) moving: bool,
     points: Vec<[f64; 2]>,
 }

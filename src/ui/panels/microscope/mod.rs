@@ -31,7 +31,7 @@ use grain_rows::numbers;
 use law_curves::{curves, dot};
 use term_rows::term_rows;
 
-/// Points of the way of the dot.
+/// Points kept of the dot's path.
 const LONGEST_WAY: usize = 400;
 /// Contacts listed at most: a grain has a dozen.
 const LONGEST_LIST: usize = 32;
@@ -39,7 +39,8 @@ const LONGEST_LIST: usize = 32;
 /// The panel of one grain.
 #[derive(Default)]
 pub struct Microscope {
-    /// The pair whose way is kept, the last state added, and the way: gap [µm] and force [mN].
+    /// The pair whose path is kept, the generation of the last state in it, and the path: gap [µm]
+    /// and force [mN].
     pair: Option<(u32, Partner)>,
     generation: u64,
     way: Vec<[f64; 2]>,
@@ -106,7 +107,7 @@ impl Panel for Microscope {
     }
 }
 
-/// Which grain it is.
+/// The choice of the grain.
 fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
     let count = world.grains.len();
     let typed = ui.horizontal(|ui| {
@@ -144,7 +145,7 @@ fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
     trails_ui(ui, view);
 }
 
-/// Whose ways are drawn.
+/// The grains whose trails are drawn.
 fn trails_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
     ui.horizontal_wrapped(|ui| {
         if let Some(grain) = view.selected {
@@ -189,7 +190,7 @@ fn contacts_of(world: &World, grain: u32) -> Vec<&Contact> {
     contacts.take(LONGEST_LIST).collect()
 }
 
-/// What is on the other side of `contact` from `grain`.
+/// The partner of `grain` in `contact`.
 fn other_side(contact: &Contact, grain: u32) -> Partner {
     match contact.partner {
         Partner::Grain(j) if j == grain => Partner::Grain(contact.grain),
@@ -197,7 +198,7 @@ fn other_side(contact: &Contact, grain: u32) -> Partner {
     }
 }
 
-/// What the list says of a contact.
+/// A contact in the list: partner, kind, force.
 pub fn name(world: &World, contact: &Contact, grain: u32) -> String {
     let side = match other_side(contact, grain) {
         Partner::Grain(j) => format!("Grain {j}"),
@@ -243,7 +244,7 @@ impl Microscope {
         }
     }
 
-    /// Adds the state of `generation` to the way of the dot.
+    /// Adds the state of `generation` to the dot's path.
     fn follow(&mut self, contact: &Contact, terms: &[ForceTerms], generation: u64) {
         let pair = Some((contact.grain, contact.partner));
         if self.pair != pair {
