@@ -23,7 +23,7 @@
 //! | `request`, `screenshot_orders` | what panels ask for; pictures and films that are asked for |
 //! | `plot_export` | a plot on its way to a file |
 //! | `detail` | how many parameters are shown |
-//! | `widgets` | a number to type, the row of a parameter, tables, choices, the keyboard's focus |
+//! | `widgets` | a number to type, the row of a parameter, tables, choices, buttons, the focus |
 //! | `words` | numbers, symbols, parameters and runs in text |
 //! | `theme` | every colour, size and font |
 

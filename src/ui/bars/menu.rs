@@ -9,6 +9,7 @@ use crate::ui::bars::sides::{OpenSides, why_not_both};
 use crate::ui::bars::time_slider::why_no_undo;
 use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::SHORTCUTS;
+use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::words::number;
 use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
 use bevy_egui::egui;
@@ -160,9 +161,7 @@ fn item_unless_ui(
         .find(|shortcut| shortcut.asks_for(&request));
     let keys = shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ui.ctx()));
     let button = egui::Button::new(name).shortcut_text(keys);
-    let response = ui.add_enabled(why_not.is_none(), button);
-    let response = response.on_disabled_hover_text(why_not.unwrap_or_default());
-    if response.clicked() {
+    if button_unless_ui(ui, why_not, button).clicked() {
         out.push(request);
         ui.close();
     }

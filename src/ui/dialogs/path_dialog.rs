@@ -11,6 +11,7 @@ use crate::simulation::SESSION_EXTENSION;
 use crate::ui::request::Request;
 use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::ui::theme::Palette;
+use crate::ui::widgets::button::button_unless_ui;
 use bevy::tasks::futures::check_ready;
 use bevy::tasks::{IoTaskPool, Task};
 use bevy_egui::egui::{self, Id, Key, Modal};
@@ -313,10 +314,8 @@ fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath) -> Option<FieldAnswer> {
                 Purpose::Film => "Record",
             };
             let possible = why_not.is_none();
-            let done = ui
-                .add_enabled(possible, egui::Button::new(verb))
-                .on_disabled_hover_text(why_not.unwrap_or_default())
-                .clicked();
+            let button = egui::Button::new(verb);
+            let done = button_unless_ui(ui, why_not.as_deref(), button).clicked();
             let left = ui.button("Cancel").clicked();
             match (done || (entered && possible), left) {
                 (true, _) => Some(FieldAnswer::Path(path)),

@@ -8,6 +8,7 @@ use crate::simulation::{Half, Parameter, ParameterInfo, Simulation};
 use crate::ui::detail::{is_basic, landmarks};
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
+use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::widgets::value_row::{Landmark, Value, value_ui};
 use crate::ui::words::number;
 use crate::ui::words::run_names::{half_title, value_in_words};
@@ -79,10 +80,8 @@ impl Compare {
             other = other_ui(ui, info, other).unwrap_or(other);
             let why_not = why_not(simulation, other == present);
             let button = egui::Button::new(RichText::new("Start side by side").strong());
-            let button = ui
-                .add_enabled(why_not.is_none(), button)
-                .on_hover_text("Both start afresh at time zero. The run so far is kept.")
-                .on_disabled_hover_text(why_not.unwrap_or_default());
+            let button = button_unless_ui(ui, why_not, button)
+                .on_hover_text("Both start afresh at time zero. The run so far is kept.");
             if button.clicked() {
                 out.push(Request::StartComparison(parameter.clone(), other));
             }

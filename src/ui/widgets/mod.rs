@@ -1,5 +1,6 @@
 //! Controls that several panels use.
 
+pub mod button;
 pub mod combo;
 pub mod field;
 pub mod focus;
