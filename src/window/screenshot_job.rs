@@ -2,10 +2,13 @@
 //! them go the same way.
 //!
 //! ```text
-//! Waiting ──▶ Drawing ──▶ Taking ──▶ Ending        the run is on its way · the state is drawn · the picture comes · files
+//! Waiting ──▶ Drawing ──▶ Taking ──▶ Ending
 //!    ▲                      │
 //!    └──── another one ◀────┘
 //! ```
+//! The run is on its way to the state; the state is drawn; the picture comes from the renderer; the
+//! file is written.
+//!
 //! In: orders of a person, or a [`PictureJob`] of the command line. Out: files; a notice for the
 //! person, the end of the app for the command line. Which states are due and what becomes of a
 //! picture is the [`Subject`]'s business.
@@ -168,12 +171,13 @@ fn take_screenshots(
     {
         end_film(reel, stage, &mut simulation);
     }
+    let mut is_free = jobs.0.iter().all(|job| job.stage != JobStage::Taking);
     jobs.0.retain_mut(|job| {
         if let (Some(failure), Some(error)) = (&job.ends_app, studio.obstacle(&simulation)) {
             studio.exit.write(failure.tell(error));
             return false;
         }
-        job.go_on(&mut simulation, &mut studio);
+        job.go_on(&mut simulation, &mut studio, &mut is_free);
         !job.is_done(&mut studio)
     });
     orders.film = match jobs.film() {
@@ -241,8 +245,9 @@ impl ScreenshotJob {
         }
     }
 
-    /// One frame further.
-    fn go_on(&mut self, simulation: &mut Simulation, studio: &mut Studio) {
+    /// One frame further. The renderer takes one picture at a time and drops a second one: a picture
+    /// waits until the renderer `is_free`.
+    fn go_on(&mut self, simulation: &mut Simulation, studio: &mut Studio, is_free: &mut bool) {
         let frames = self.subject.frames();
         if self.stage == JobStage::Waiting
             && self.subject.has_come(simulation, studio.awaits_pair())
@@ -256,7 +261,9 @@ impl ScreenshotJob {
             JobStage::Drawing(_) if !self.subject.is_settled(simulation, studio.is_whole()) => {
                 JobStage::Drawing(frames)
             }
+            JobStage::Drawing(0) if !*is_free => JobStage::Drawing(0),
             JobStage::Drawing(0) => {
+                *is_free = false;
                 self.subject.note(simulation);
                 self.take_picture(studio);
                 JobStage::Taking
