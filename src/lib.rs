@@ -10,7 +10,7 @@
 //!                               measure ──▶ named numbers with units
 //!                                  │
 //!                                 run     world + solver + commands + samples; branches; the record that verifies
-//!                                  │
+//!                                  ├──▶ runner, sweep    to the end: files, checkpoints, many cases
 //!                                 lab     one or two runs, one clock, one command enum
 //!                                  │
 //!                             simulation  Bevy plugin: steps the lab in FixedUpdate
@@ -36,10 +36,12 @@
 //! | [`solver`] | how the state advances: time step, neighbours, integration, faults |
 //! | [`measure`] | read-only numbers from a world |
 //! | [`run`] | the trajectory (world, solver, commands, samples), its branches, beds, sessions, records |
+//! | [`output`] | the files that a run leaves behind |
+//! | [`runner`] | a scene run to its end: the one loop that advances, records, keeps checkpoints, stops |
+//! | [`sweep`] | variations of a scene side by side: cases, table, plots |
 //! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
 //! | [`simulation`] | the Bevy plugin that lets a lab go on |
-//! | [`headless`] | the windowless runner and its output files |
-//! | [`sweep`] | variations of a scene side by side: cases, checkpoints, table, plots |
+//! | `headless` | the program without a window: the app, progress, what is printed |
 //! | `view` | a world as pixels: grains, container, camera, colours |
 //! | `ui` | the egui panels |
 //! | `window` | the app that opens them in a window, or draws them into a picture |
@@ -52,12 +54,15 @@
 
 pub mod files;
 pub mod geometry;
+#[cfg(feature = "headless")]
 pub mod headless;
 pub mod lab;
 pub mod lanes;
 pub mod measure;
+pub mod output;
 pub mod physics;
 pub mod run;
+pub mod runner;
 pub mod scene;
 pub mod simulation;
 pub mod solver;

@@ -4,15 +4,18 @@
 //! 130 interrupted.
 
 use clap::{Args, Parser, Subcommand};
-use grainfall::files::write_whole;
+use grainfall::headless::{self, Progress};
+use grainfall::output::write_file;
 #[cfg(feature = "desktop")]
-use grainfall::headless::compared_value;
-use grainfall::headless::{self, HeadlessError, Job, Verdict, apply_setting, read_commands};
+use grainfall::runner::compared_value;
+use grainfall::runner::{
+    Job, RunnerError, Verdict, apply_setting, available_threads, exit, read_commands,
+};
 #[cfg(feature = "desktop")]
 use grainfall::scene::seconds;
 use grainfall::scene::{Scene, StoredCells, built_in};
 use grainfall::simulation::{BedStore, Claim, Options, ScriptedCommand, Session, make_bed};
-use grainfall::sweep::{self, Sweep, Variation};
+use grainfall::sweep::{Sweep, Variation};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
 use std::error::Error;
@@ -180,7 +183,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
+fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     match arguments.task {
         Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
         Some(Task::Verify { file, threads }) => return verify(&file, threads),
@@ -197,7 +200,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
         return open_window(name, session.into(), options, arguments.picture);
     }
     if Session::is_at(Path::new(&name)) {
-        return Err(HeadlessError::Input(format!(
+        return Err(RunnerError::Input(format!(
             "{name} is a session: `grainfall verify {name}` runs it again without a window"
         )));
     }
@@ -211,23 +214,22 @@ fn carry_out(arguments: Arguments) -> Result<u8, HeadlessError> {
             arguments.picture,
         );
         #[cfg(not(feature = "desktop"))]
-        return Err(HeadlessError::Input(NO_WINDOW.into()));
+        return Err(RunnerError::Input(NO_WINDOW.into()));
     }
     let name = short_name(&name);
+    let out = arguments.out.unwrap_or(Path::new("out").join(&name));
     let job = Job {
-        out: arguments
-            .out
-            .unwrap_or_else(|| Path::new("out").join(&name)),
-        scene,
-        name,
-        threads: what
-            .threads
-            .map_or(Options::headless().threads, usize::from),
+        threads: threads(what.threads),
         script,
-        beds: BedStore::user(),
+        ..Job::new(name, scene, out)
     };
     let ending = headless::run(&job, &*interruption()?)?;
     Ok(ending.exit_code())
+}
+
+/// The threads asked for, or as many as there are cores.
+fn threads(asked: Option<u16>) -> usize {
+    asked.map_or_else(available_threads, usize::from)
 }
 
 /// The built-in scene to open when none is asked for.
@@ -238,7 +240,7 @@ fn first_scene() -> String {
 }
 
 /// The scene called `name` with the changes asked for, and the commands to carry out while it runs.
-fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>), HeadlessError> {
+fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>), RunnerError> {
     let mut scene = Scene::open(name)?;
     let options = [
         ("duration", &what.duration),
@@ -263,8 +265,8 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
 
 /// The session in the file called `name`, which opens as it was.
 #[cfg(feature = "desktop")]
-fn unchanged_session(name: &str, what: &What) -> Result<Session, HeadlessError> {
-    let refuse = |reason: String| Err(HeadlessError::Input(reason));
+fn unchanged_session(name: &str, what: &What) -> Result<Session, RunnerError> {
+    let refuse = |reason: String| Err(RunnerError::Input(reason));
     let given = [
         &what.duration,
         &what.output_interval,
@@ -309,7 +311,7 @@ fn open_window(
     opened: Opened,
     options: Options,
     picture: PictureArguments,
-) -> Result<u8, HeadlessError> {
+) -> Result<u8, RunnerError> {
     use grainfall::window::{PictureJob, WindowJob, run};
     let compared = picture.compare.as_deref().map(compared_value).transpose()?;
     let picture = picture.screenshot.map(|path| PictureJob {
@@ -343,22 +345,22 @@ const NO_WINDOW: &str = "this grainfall was built without a window: add --no-ren
 const ONE_SIGNAL: Duration = Duration::from_millis(500);
 
 /// Becomes true when somebody asks the program to end; a second time ends it at once.
-fn interruption() -> Result<Arc<AtomicBool>, HeadlessError> {
+fn interruption() -> Result<Arc<AtomicBool>, RunnerError> {
     let flag = Arc::new(AtomicBool::new(false));
     let shared = flag.clone();
     let mut first = None;
     ctrlc::set_handler(move || {
         let first: Instant = *first.get_or_insert_with(Instant::now);
         if first.elapsed() > ONE_SIGNAL {
-            std::process::exit(130);
+            std::process::exit(exit::INTERRUPTED.into());
         }
         shared.store(true, Ordering::Relaxed);
     })
-    .map_err(|error| HeadlessError::Input(format!("cannot listen to Ctrl-C: {error}")))?;
+    .map_err(|error| RunnerError::Input(format!("cannot listen to Ctrl-C: {error}")))?;
     Ok(flag)
 }
 
-fn run_sweep(task: Task) -> Result<u8, HeadlessError> {
+fn run_sweep(task: Task) -> Result<u8, RunnerError> {
     let Task::Sweep {
         scene: name,
         vary,
@@ -381,20 +383,27 @@ fn run_sweep(task: Task) -> Result<u8, HeadlessError> {
         scene,
         settings: set,
         variations: variations.collect::<Result<_, _>>()?,
-        jobs: jobs.map_or(Options::headless().threads, usize::from),
+        jobs: threads(jobs),
         beds: BedStore::user(),
     };
-    let ending = sweep::run(&sweep, &*interruption()?)?;
+    let ending = headless::run_sweep(&sweep, &*interruption()?)?;
     Ok(ending.exit_code())
 }
 
 /// Computes the run of `file` again and says what came out. Returns the exit code.
-fn verify(file: &Path, threads: Option<u16>) -> Result<u8, HeadlessError> {
+fn verify(file: &Path, threads: Option<u16>) -> Result<u8, RunnerError> {
     let claim = Claim::read(file)?;
     let interruption = interruption()?;
     let stop = || interruption.load(Ordering::Relaxed);
-    let threads = threads.map_or(Options::headless().threads, usize::from);
-    let verdict = claim.verify(threads, BedStore::user(), &stop)?;
+    let mut progress = Progress::new();
+    let verdict = claim.verify(
+        self::threads(threads),
+        BedStore::user(),
+        &mut progress,
+        &stop,
+    );
+    progress.finish();
+    let verdict = verdict?;
     let (name, steps, time) = (&claim.name, claim.steps, claim.time);
     let stated = claim.state_hash.as_deref().unwrap_or_default();
     let found = match &verdict {
@@ -413,33 +422,29 @@ fn verify(file: &Path, threads: Option<u16>) -> Result<u8, HeadlessError> {
     Ok(verdict.exit_code())
 }
 
-fn write_bed(name: &str, path: &Path) -> Result<u8, HeadlessError> {
+fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
     let scene = Scene::open(name)?;
-    let threads = Options::headless().threads;
-    let bed = make_bed(&scene, threads)
-        .map_err(|fault| HeadlessError::Input(format!("the bed cannot settle: {fault}")))?;
-    write_file(path, &bed)
+    let bed = make_bed(&scene, available_threads())
+        .map_err(|error| RunnerError::Input(error.to_string()))?;
+    store(path, &bed)
 }
 
-fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, HeadlessError> {
+fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, RunnerError> {
     let mut scene = Scene::open(name)?;
     for setting in settings {
         if apply_setting(&mut scene, setting)?.is_some() {
-            return Err(HeadlessError::Input(format!(
+            return Err(RunnerError::Input(format!(
                 "--set {setting}: changes nothing about the grains' places and shapes"
             )));
         }
     }
     let grains = headless::pack(&scene)?;
-    write_file(path, &StoredCells::encode(&grains))
+    store(path, &StoredCells::encode(&grains))
 }
 
-fn write_file(path: &Path, bytes: &[u8]) -> Result<u8, HeadlessError> {
-    write_whole(path, |file| file.write_all(bytes)).map_err(|source| HeadlessError::Write {
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(0)
+fn store(path: &Path, bytes: &[u8]) -> Result<u8, RunnerError> {
+    write_file(path, |file| file.write_all(bytes))?;
+    Ok(exit::DONE)
 }
 
 /// Prints `error` and what led to it, once, for people.

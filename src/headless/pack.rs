@@ -1,7 +1,8 @@
 //! A scene's Voronoi cells cut to grains, with progress.
 
-use super::{HeadlessError, Progress};
+use super::Progress;
 use crate::geometry::Rounded;
+use crate::runner::RunnerError;
 use crate::scene::Scene;
 use crate::world::Packing;
 
@@ -9,9 +10,9 @@ use crate::world::Packing;
 ///
 /// # Errors
 /// When the scene cuts none.
-pub fn pack(scene: &Scene) -> Result<Vec<Rounded>, HeadlessError> {
+pub fn pack(scene: &Scene) -> Result<Vec<Rounded>, RunnerError> {
     let mut packing = Packing::new(scene).ok_or_else(|| {
-        HeadlessError::Input(format!(
+        RunnerError::Input(format!(
             "«{}» cuts no Voronoi cells; expected a scene with `grains: Voronoi(…)`",
             scene.title
         ))

@@ -1,42 +1,76 @@
-//! A run without a window, from its scene to its last file, moved on by the same system as in the window.
+//! A run without a window, moved on by the same system as in the window.
 
-use super::progress::{Progress, spoken};
-use super::recorder::Recorder;
+use super::Progress;
 use super::report::report;
-use super::{Ending, HeadlessError, Job};
-use crate::simulation::{DriverKind, LabCommand, Options, Simulation, SimulationPlugin, Status};
-use crate::world::World;
+use crate::lab::{DriverKind, LabCommand, Options, Status};
+use crate::output::{Ending, RunSoFar};
+use crate::run::{Checkpoint, Run, Session, Timeline};
+use crate::runner::{Advance, At, DirectRun, Halt, Job, Runner, RunnerError};
+use crate::simulation::{Simulation, SimulationPlugin};
 use bevy::MinimalPlugins;
 use bevy::app::{App, PluginGroup, TaskPoolOptions, TaskPoolPlugin};
 use bevy::time::TimeUpdateStrategy;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs `job` until its duration is reached, a fault occurs or `interrupted` becomes true; prints progress to standard
-/// error and a summary to standard output.
+/// Runs `job` until its duration is reached, a fault occurs or `interrupted` becomes true; prints
+/// progress to standard error and a summary to standard output.
 ///
 /// # Errors
-/// A [`HeadlessError`] when the input asks for something that cannot be, or a file cannot be written.
-pub fn run(job: &Job, interrupted: &AtomicBool) -> Result<Ending, HeadlessError> {
-    let mut simulation = Simulation::open(job.scene.clone(), options(job));
-    simulation.send(LabCommand::Hold(Some(0)));
-    let mut recorder = Recorder::open(job, &simulation)?;
-    let mut app = app(simulation);
+/// A [`RunnerError`] when the input asks for something that cannot be, or a file cannot be written.
+pub fn run(job: &Job, interrupted: &AtomicBool) -> Result<Ending, RunnerError> {
+    let mut runner = Runner::open(job)?;
+    let mut run = RunInApp::of(job, runner.take_checkpoint());
     let mut progress = Progress::new();
-    let ending = loop {
-        app.update();
-        let mut simulation = app.world_mut().resource_mut::<Simulation>();
-        if let Some(ending) = follow(&mut simulation, &mut recorder, &mut progress)? {
-            break ending;
-        }
-        if interrupted.load(Ordering::Relaxed) {
-            break Ending::Interrupted;
-        }
-    };
+    let stop = || interrupted.load(Ordering::Relaxed);
+    let finished = runner.finish(&mut run, &mut progress, &stop);
     progress.finish();
-    let simulation = app.world().resource::<Simulation>();
-    let results = recorder.finish(simulation, &ending)?;
-    report(simulation, &recorder, &ending, &results);
-    Ok(ending)
+    let finished = finished?;
+    report(run.at().state(), &job.out, &finished);
+    Ok(finished.ending)
+}
+
+/// A run within an app without a window, in which each update is one tick.
+struct RunInApp {
+    app: App,
+    /// A run that goes on after a stop, until it stands where it stopped.
+    resuming: Option<DirectRun>,
+    name: String,
+    options: Options,
+}
+
+impl RunInApp {
+    /// The run that `job` asks for: from time zero, or going on from `checkpoint`.
+    fn of(job: &Job, checkpoint: Option<Checkpoint>) -> Self {
+        let mut app = App::new();
+        let task_pool_options = TaskPoolOptions::with_num_threads(1);
+        app.add_plugins((
+            MinimalPlugins.set(TaskPoolPlugin { task_pool_options }),
+            SimulationPlugin,
+        ))
+        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+        let options = options(job);
+        let resuming = checkpoint.map(|from| DirectRun::of(job).from_checkpoint(Some(from)));
+        if resuming.is_none() {
+            app.insert_resource(Simulation::open(job.scene.clone(), options.clone()));
+        }
+        Self {
+            app,
+            resuming,
+            name: job.name.clone(),
+            options,
+        }
+    }
+
+    /// Hands the run that stands where it stopped to the app.
+    fn hand_over(&mut self, run: Run) {
+        let session = Session::of(&self.name, &Timeline::new(run, 0));
+        let simulation = Simulation::resume(session, self.options.clone());
+        self.app.insert_resource(simulation);
+    }
+
+    fn simulation(&self) -> Option<&Simulation> {
+        self.app.world().get_resource()
+    }
 }
 
 fn options(job: &Job) -> Options {
@@ -51,56 +85,55 @@ fn options(job: &Job) -> Options {
     }
 }
 
-/// An app without a window in which each update is one tick.
-fn app(simulation: Simulation) -> App {
-    let mut app = App::new();
-    let task_pool_options = TaskPoolOptions::with_num_threads(1);
-    app.add_plugins((
-        MinimalPlugins.set(TaskPoolPlugin { task_pool_options }),
-        SimulationPlugin,
-    ))
-    .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-    .insert_resource(simulation);
-    app
-}
-
-/// Records what is due and lets the run go on to its next stop; says how it ended, if it did.
-fn follow(
-    simulation: &mut Simulation,
-    recorder: &mut Recorder,
-    progress: &mut Progress,
-) -> Result<Option<Ending>, HeadlessError> {
-    match simulation.status() {
-        Status::Preparing {
-            stage,
-            progress: share,
-        } => {
-            progress.tell(f64::from(*share), || stage.clone());
-            return Ok(None);
+impl Advance for RunInApp {
+    fn at(&self) -> At<'_> {
+        if let Some(resuming) = &self.resuming {
+            return resuming.at();
         }
-        Status::Failed(reason) => return Err(HeadlessError::Input(reason.clone())),
-        Status::Faulted(fault) => return Ok(Some(Ending::Faulted(fault.clone()))),
-        Status::Paused | Status::Running | Status::Seeking { .. } => {}
+        let starting = At::Preparing {
+            stage: "starting",
+            share: 0.0,
+        };
+        let Some(simulation) = self.simulation() else {
+            return starting;
+        };
+        match (simulation.status(), simulation.world()) {
+            (Status::Preparing { stage, progress }, _) => At::Preparing {
+                stage,
+                share: f64::from(*progress),
+            },
+            (_, None) => starting,
+            (_, Some(world)) => At::State(RunSoFar {
+                world,
+                series: simulation.series(),
+                flow: simulation.flow(),
+                commands: simulation.commands(),
+            }),
+        }
     }
-    let Some(world) = simulation.world().cloned() else {
-        return Ok(None);
-    };
-    tell(simulation, &world, progress, recorder.wall_time());
-    if recorder.record(simulation, &world)? {
-        return Ok(Some(Ending::Done));
-    }
-    simulation.send(LabCommand::Hold(Some(recorder.next_stop(&world.clock))));
-    Ok(None)
-}
 
-fn tell(simulation: &Simulation, world: &World, progress: &mut Progress, wall_time: f64) {
-    let (time, duration) = (world.time(), simulation.scene().duration);
-    let left = wall_time * (duration - time) / time;
-    progress.tell(time / duration, || {
-        format!(
-            "t = {time:.2} s of {duration} s, {:.2} × real time, {} left",
-            simulation.real_time_factor(),
-            spoken(left)
-        )
-    });
+    fn advance(&mut self, goal: u64) -> Result<(), Halt> {
+        if let Some(mut resuming) = self.resuming.take() {
+            resuming.advance(goal)?;
+            match resuming.into_run() {
+                Ok(run) => self.hand_over(run),
+                Err(resuming) => self.resuming = Some(*resuming),
+            }
+            return Ok(());
+        }
+        if let Some(mut simulation) = self.app.world_mut().get_resource_mut::<Simulation>() {
+            simulation.send(LabCommand::Hold(Some(goal)));
+        }
+        self.app.update();
+        match self.simulation().map(|simulation| simulation.status()) {
+            Some(Status::Failed(reason)) => Err(Halt::Refused(reason.clone())),
+            Some(Status::Faulted(fault)) => Err(Halt::Fault(fault.clone())),
+            _ => Ok(()),
+        }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let simulation = self.simulation();
+        simulation.map_or_else(Vec::new, |simulation| simulation.warnings().to_vec())
+    }
 }

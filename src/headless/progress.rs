@@ -1,5 +1,7 @@
-//! How far a run has come: a bar on a terminal, a line now and then elsewhere. Everything goes to standard error.
+//! How far a run has come: a bar on a terminal, a line now and then elsewhere. Everything goes to
+//! standard error.
 
+use crate::runner::Watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -58,15 +60,12 @@ impl Progress {
     }
 }
 
-/// `seconds` of wall-clock time as people say it.
-pub fn spoken(seconds: f64) -> String {
-    if !seconds.is_finite() {
-        return "unknown time".into();
+impl Watch for Progress {
+    fn preparing(&mut self, share: f64, stage: &str) {
+        self.tell(share, || stage.to_owned());
     }
-    let whole = seconds.round() as u64;
-    match whole {
-        0..60 => format!("{whole} s"),
-        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
-        _ => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+
+    fn running(&mut self, share: f64, what: &dyn Fn() -> String) {
+        self.tell(share, what);
     }
 }

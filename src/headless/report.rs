@@ -1,28 +1,27 @@
 //! The short summary on standard output at the end of a run.
 
-use super::Ending;
-use super::progress::spoken;
-use super::recorder::Recorder;
-use crate::measure::{ResultKey, Summary};
-use crate::simulation::Simulation;
+use crate::measure::ResultKey;
+use crate::output::{Ending, RunSoFar};
+use crate::runner::{Finished, spoken};
+use std::path::Path;
 
-/// Prints how a run ended, its results and where its files are. Results for several thresholds of
-/// the drop stand in the file only.
-pub fn report(simulation: &Simulation, recorder: &Recorder, ending: &Ending, results: &Summary) {
-    let Some(world) = simulation.world() else {
+/// Prints how a run ended, its results and that its files are in `folder`. Results for several
+/// thresholds of the drop stand in the file only.
+pub fn report(run: Option<RunSoFar>, folder: &Path, finished: &Finished) {
+    let Some(RunSoFar { world, .. }) = run else {
         println!(
             "stopped before the run began; the summary is in {}",
-            recorder.folder().path().display()
+            folder.display()
         );
         return;
     };
-    for warning in simulation.warnings() {
+    for warning in &finished.warnings {
         println!("note: {warning}");
     }
-    let wall_time = recorder.wall_time();
+    let (wall_time, results) = (finished.wall_time, &finished.results);
     println!(
         "{}: {} grains, t = {:.3} s in {} steps of {:.3e} s, {} of wall-clock time ({:.2} × real time)",
-        ended(ending),
+        ended(&finished.ending),
         world.grains.len(),
         world.time(),
         world.clock.step,
@@ -39,7 +38,7 @@ pub fn report(simulation: &Simulation, recorder: &Recorder, ending: &Ending, res
         println!("  {:<32} {}", key.name(), results.text(key));
     }
     println!("state {}", world.hash());
-    println!("files in {}", recorder.folder().path().display());
+    println!("files in {}", folder.display());
 }
 
 fn ended(ending: &Ending) -> &'static str {

@@ -10,8 +10,8 @@ use super::runs::Runs;
 use super::update::{SavedFile, Update};
 use super::{Half, Options, Status};
 use crate::run::{
-    Command, CommandError, Parameter, Preparation, Prepared, Run, Script, ScriptedCommand, Session,
-    Timeline,
+    Command, CommandError, Parameter, Pieces, Preparation, Prepared, Run, Script, ScriptedCommand,
+    Session, Timeline,
 };
 use crate::scene::Scene;
 use std::path::PathBuf;
@@ -33,8 +33,6 @@ const PROFILE_TIME: Duration = Duration::from_millis(500);
 
 /// Wall-clock time a piece of work should take: commands wait for it.
 const PIECE_TIME: Duration = Duration::from_millis(10);
-/// Steps that a piece has at least: taking a state in and giving it back costs as much as a dozen of them.
-const LEAST_STEPS: u64 = 50;
 
 /// Values that are set sooner after each other belong to one change: a drag, or a button that sets several parameters.
 const ONE_CHANGE: Duration = Duration::from_millis(400);
@@ -52,8 +50,7 @@ pub struct Engine {
     threads: usize,
     /// Memory for keyframes [bytes].
     memory: usize,
-    /// Steps of a piece.
-    piece: u64,
+    pieces: Pieces,
     script: Vec<ScriptedCommand>,
     /// Commands that come before there is a run, or while one is on the way to another moment.
     waiting: Vec<LabCommand>,
@@ -93,7 +90,7 @@ impl Engine {
             original,
             threads: options.threads,
             memory: options.memory,
-            piece: 8,
+            pieces: Pieces::of(PIECE_TIME),
             script: options.script,
             waiting: Vec::new(),
             last_set: None,
@@ -134,8 +131,8 @@ impl Engine {
             },
             Stage::Ready(runs) => {
                 let started = Instant::now();
-                let piece = runs.advance(&mut self.clock, self.piece);
-                self.adapt(piece.steps, started.elapsed());
+                let piece = runs.advance(&mut self.clock, self.pieces.steps());
+                self.pieces.fit(piece.steps, started.elapsed());
                 if piece.arrived {
                     self.dispatch_waiting();
                 }
@@ -370,16 +367,6 @@ impl Engine {
         if let Stage::Ready(runs) = &mut self.stage {
             runs.forget_faults();
         }
-    }
-
-    /// Fits the next piece's steps to [`PIECE_TIME`], seeing that `steps` took `time`.
-    fn adapt(&mut self, steps: u64, time: Duration) {
-        if steps == 0 {
-            return;
-        }
-        let fitting = steps as f64 * PIECE_TIME.as_secs_f64() / time.as_secs_f64().max(1e-9);
-        let most = 4 * self.piece.max(steps);
-        self.piece = (fitting as u64).min(most).max(LEAST_STEPS);
     }
 }
 

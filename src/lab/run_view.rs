@@ -16,8 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Smallest drop of the surface that counts as an avalanche [rad], 1°.
-pub const SMALLEST_DROP: f64 = std::f64::consts::PI / 180.0;
+pub use crate::measure::SMALLEST_DROP;
 
 /// One run of a lab as the outside sees it.
 pub struct RunView {

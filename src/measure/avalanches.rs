@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 /// Time over which θ is averaged before its extrema are sought [s].
 pub const SMOOTHING_TIME: f64 = 0.1;
 
+/// Smallest drop of the surface that counts as an avalanche where nothing else is said [rad], 1°.
+pub const SMALLEST_DROP: f64 = std::f64::consts::PI / 180.0;
+
 /// A fall of the surface angle from a maximum to a minimum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Avalanche {

@@ -68,7 +68,7 @@ mod velocity_map;
 mod wet_bed;
 mod window;
 
-pub use avalanches::{Avalanche, SMOOTHING_TIME, avalanches};
+pub use avalanches::{Avalanche, SMALLEST_DROP, SMOOTHING_TIME, avalanches};
 pub use collapse::Collapse;
 pub use column::{
     CRITICAL_ASPECT_RATIO, Column, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
@@ -86,7 +86,7 @@ pub use quantity::{Format, MeasuredValue, Quantity, Scope, Unit};
 pub use regime::Regime;
 pub use result_key::{DropThreshold, ResultKey};
 pub use run_quantity::RunQuantity;
-pub use run_summary::{results, summarise};
+pub use run_summary::{LEFT_OUT, results, summarise};
 pub use sample::{Sample, mean_speed, sample, sample_and_surface};
 pub use sampled_quantity::Measure;
 pub use series::Series;

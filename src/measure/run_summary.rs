@@ -18,6 +18,10 @@ use super::wet_bed::{capillary_number, galilei_number};
 use super::window::{Window, largest, mean, median, share_from};
 use crate::world::World;
 
+/// Share of a run, from its start, that its results leave out: Kasper et al. 2021 average over the
+/// last 30 of 50 s.
+pub const LEFT_OUT: f64 = 0.4;
+
 /// The measures of which a bed's results give the mean.
 const MEANS: [Measure; 10] = [
     Measure::SurfaceAngle,

@@ -1,8 +1,10 @@
 //! Settled beds kept in files, so that opening a scene again takes no time.
 //!
-//! A bed is what settling adds to a built world: positions, forces and contact histories at rest. It is looked up by a key
-//! over everything that determines it, first among the beds shipped with the program, then in a folder of the user's. A
-//! bed that is stale, damaged or does not fit is no bed: settling makes it anew. Keeping one may fail, a run never does.
+//! In: a built world. Out: the world that it settles to, where that is kept. A bed is what settling
+//! adds to a built world: positions, forces and contact histories at rest. It is looked up by a key
+//! over everything that determines it, first among the beds shipped with the program, then in a
+//! folder of the user's. A bed that is stale, damaged or does not fit is no bed: settling makes it
+//! anew. Keeping one may fail, a run never does.
 
 use super::settling::{standing, start};
 use crate::files::write_whole;
@@ -10,6 +12,7 @@ use crate::world::{Contact, Partner, World};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::io;
 use std::path::PathBuf;
 
 /// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds are then stale.
@@ -70,13 +73,14 @@ enum Unfit {
 }
 
 impl BedKey {
-    /// The key of the bed that `built`, a scene's world before settling, settles to with steps of `time_step` [s]. How
-    /// its walls will move does not matter, nor does its liquid.
-    pub fn of(built: &World, time_step: f64) -> Self {
-        Self(blake3::hash(&bytes_of(&(
-            FORMAT,
-            standing(built, time_step),
-        ))))
+    /// The key of the bed that `built`, a scene's world before settling, settles to with steps of
+    /// `time_step` [s]. How its walls will move does not matter, nor does its liquid.
+    ///
+    /// # Errors
+    /// When the world cannot be written as bytes, of which the key is a hash.
+    pub fn of(built: &World, time_step: f64) -> Result<Self, postcard::Error> {
+        let all = postcard::to_stdvec(&(FORMAT, standing(built, time_step)))?;
+        Ok(Self(blake3::hash(&all)))
     }
 
     fn file_name(self) -> String {
@@ -119,7 +123,8 @@ impl BedStore {
         }
     }
 
-    /// The settled world that belongs to `key`, where one is kept. `built` is the scene's world before settling.
+    /// The settled world that belongs to `key`, where one is kept that can be read. `built` is the
+    /// scene's world before settling.
     pub fn find(&self, key: BedKey, built: &World) -> Option<World> {
         let shipped = SHIPPED.iter().filter(|_| self.shipped);
         let kept = self.path(key).and_then(|path| fs::read(path).ok());
@@ -137,8 +142,9 @@ impl BedStore {
         let Some(path) = self.path(key) else {
             return Ok(());
         };
-        write_whole(&path, |file| file.write_all(&encode(key, settled)))
-            .map_err(|error| format!("cannot keep the settled bed in {}: {error}", path.display()))
+        let encoded = encode(key, settled).map_err(io::Error::other);
+        let kept = encoded.and_then(|bytes| write_whole(&path, |file| file.write_all(&bytes)));
+        kept.map_err(|error| format!("cannot keep the settled bed in {}: {error}", path.display()))
     }
 
     fn path(&self, key: BedKey) -> Option<PathBuf> {
@@ -147,20 +153,18 @@ impl BedStore {
 }
 
 /// The bytes of a file that holds the bed of `settled`: magic, format, key, checksum, contents.
-pub fn encode(key: BedKey, settled: &World) -> Vec<u8> {
-    let contents = bytes_of(&Bed::of(settled));
+///
+/// # Errors
+/// When the bed cannot be written as bytes.
+pub fn encode(key: BedKey, settled: &World) -> Result<Vec<u8>, postcard::Error> {
+    let contents = postcard::to_stdvec(&Bed::of(settled))?;
     let mut bytes = Vec::with_capacity(HEADER + contents.len());
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&FORMAT.to_le_bytes());
     bytes.extend_from_slice(key.0.as_bytes());
     bytes.extend_from_slice(blake3::hash(&contents).as_bytes());
     bytes.extend_from_slice(&contents);
-    bytes
-}
-
-/// `value` as bytes; empty, which no bed ever is, where it cannot be written.
-fn bytes_of(value: &impl Serialize) -> Vec<u8> {
-    postcard::to_stdvec(value).unwrap_or_default()
+    Ok(bytes)
 }
 
 /// The settled world that `bytes` hold, if they are the bed that `key` names and fit `built`.

@@ -11,6 +11,7 @@
 //! | `steps` | which step was when, where the time step changed |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `trajectory` | the run itself: world, solver, samples, snapshots |
+//! | `pieces` | a long way cut into pieces of about the same wall-clock time |
 //! | `timeline` | all branches of a run: seek, branch, undo |
 //! | `branch`, `history`, `undo`, `keyframes` | what is known of a branch, what tells branches apart, what can be taken back, states along them |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero, and where beds are kept |
@@ -25,6 +26,7 @@ mod command;
 mod history;
 mod keyframes;
 mod parameter;
+mod pieces;
 mod preparation;
 mod provenance;
 mod relabel;
@@ -45,7 +47,8 @@ pub use command::{Command, Parameter, StampedCommand};
 pub use history::{History, Moment};
 pub(crate) use parameter::time_step;
 pub use parameter::{DisplayUnit, ParameterInfo};
-pub use preparation::{Preparation, Prepared, make_bed};
+pub use pieces::Pieces;
+pub use preparation::{BedError, Preparation, Prepared, make_bed};
 pub use provenance::{Provenance, TABLES_METADATA};
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};

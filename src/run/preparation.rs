@@ -1,7 +1,7 @@
 //! From a scene to a run at time zero: build, then a kept bed or settling.
 //!
-//! In: a scene, its time step, where beds are kept. Out: a [`Run`]. Voronoi cells are cut to size instead. The work comes in short slices, so that whoever does it
-//! can show progress and stop.
+//! In: a scene, its time step, where beds are kept. Out: a [`Run`]. Voronoi cells are cut to size
+//! instead. The work comes in short pieces, so that whoever does it can show progress and stop.
 
 use super::bed::{BedKey, BedStore};
 use super::settling::{Settling, needs_settling};
@@ -29,12 +29,13 @@ enum Stage {
     Placing,
     Packing(Box<Packing>),
     Settling {
-        key: BedKey,
+        /// None where the bed cannot be told from others, and is not kept.
+        key: Option<BedKey>,
         settling: Box<Settling>,
     },
 }
 
-/// What a slice of preparation led to.
+/// What a piece of preparation led to.
 pub enum Prepared {
     /// There is more to do.
     NotYet,
@@ -55,7 +56,7 @@ impl Preparation {
         }
     }
 
-    /// Does the next short slice.
+    /// Does the next short piece.
     ///
     /// # Errors
     /// The solver's [`Fault`] while the grains settle.
@@ -70,20 +71,6 @@ impl Preparation {
         } else {
             Prepared::NotYet
         })
-    }
-
-    /// Does all that is left, unless `stop` says to leave it; the run at time zero then.
-    ///
-    /// # Errors
-    /// The solver's [`Fault`] while the grains settle.
-    pub fn go_through(&mut self, stop: &dyn Fn() -> bool) -> Result<Option<Run>, Fault> {
-        loop {
-            match self.advance()? {
-                Prepared::Ready(run) => return Ok(Some(*run)),
-                Prepared::NotYet if stop() => return Ok(None),
-                Prepared::NotYet => {}
-            }
-        }
     }
 
     /// What is being done, for people.
@@ -119,8 +106,15 @@ impl Preparation {
             return self.ready(with_forces(built, self.threads));
         }
         let step = settling_step(&self.scene);
-        let key = BedKey::of(&built, step);
-        if let Some(settled) = self.beds.find(key, &built) {
+        let key = match BedKey::of(&built, step) {
+            Ok(key) => Some(key),
+            Err(error) => {
+                let warning = format!("the settled bed is neither looked for nor kept: {error}");
+                self.warnings.push(warning);
+                None
+            }
+        };
+        if let Some(settled) = key.and_then(|key| self.beds.find(key, &built)) {
             return self.ready(settled);
         }
         let settling = Box::new(Settling::new(built, step, self.threads));
@@ -137,7 +131,8 @@ impl Preparation {
             }
             Stage::Settling { key, settling } => {
                 let settled = settling.finish();
-                self.warnings.extend(self.beds.keep(key, &settled).err());
+                let kept = key.map_or(Ok(()), |key| self.beds.keep(key, &settled));
+                self.warnings.extend(kept.err());
                 self.ready(settled)
             }
         }
@@ -157,9 +152,12 @@ fn settling_step(scene: &Scene) -> f64 {
     advise(&dry).time_step
 }
 
-/// `built` with the contacts and forces of grains that touch from the start, their elastic energy in the ledger.
+/// `built` with the contacts and forces of grains that touch from the start, their elastic energy in
+/// the ledger.
 ///
-/// A step of next to no length leaves every grain in its place and the forces there behind.
+/// A step of next to no length leaves every grain in its place and the forces there behind. Where
+/// even that one is a fault, the world stays as it was built: the run's first step meets it again
+/// and says so.
 fn with_forces(built: World, threads: usize) -> World {
     let mut probe = built.clone();
     probe.clock = Clock::new(NO_TIME * built.clock.time_step);
@@ -183,15 +181,26 @@ fn with_forces(built: World, threads: usize) -> World {
     world
 }
 
+/// Why a bed cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum BedError {
+    /// The grains met an absurd state on their way to rest.
+    #[error("the bed cannot settle: {0}")]
+    Unsettled(#[from] Fault),
+    /// The bed cannot be written as bytes.
+    #[error("the bed cannot be stored: {0}")]
+    Unstored(#[from] postcard::Error),
+}
+
 /// The file of the settled bed of `scene`, made anew: what `assets/beds` holds.
 ///
 /// # Errors
-/// The solver's [`Fault`] while the grains settle.
-pub fn make_bed(scene: &Scene, threads: usize) -> Result<Vec<u8>, Fault> {
+/// A [`BedError`] that says what kept it from resting or from being stored.
+pub fn make_bed(scene: &Scene, threads: usize) -> Result<Vec<u8>, BedError> {
     let built = world::build(scene, settling_step(scene));
     let step = settling_step(scene);
-    let key = BedKey::of(&built, step);
+    let key = BedKey::of(&built, step)?;
     let mut settling = Settling::new(built, step, threads);
     while !settling.advance()? {}
-    Ok(bed::encode(key, &settling.finish()))
+    Ok(bed::encode(key, &settling.finish())?)
 }

@@ -101,6 +101,15 @@ impl Script {
         self.commands.make_contiguous().sort_by_key(|due| due.step);
     }
 
+    /// Forgets what a run that stands at `clock` has carried out.
+    pub(crate) fn forget_past(&mut self, clock: &Clock) {
+        for due in &mut self.commands {
+            due.step = due.time.map_or(due.step, |time| clock.step_at(time));
+        }
+        self.commands.retain(|due| due.step > clock.step);
+        self.commands.make_contiguous().sort_by_key(|due| due.step);
+    }
+
     /// What is still to be carried out.
     pub fn commands(&self) -> impl Iterator<Item = &Command> {
         self.commands.iter().map(|due| &due.command)

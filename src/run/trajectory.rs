@@ -95,6 +95,25 @@ pub struct Checkpoint {
     next_sample: u64,
 }
 
+impl Checkpoint {
+    /// The state `world` at the end of a run that had these `commands`, this `series` and this
+    /// `flow`.
+    pub fn of(
+        world: &World,
+        commands: &[StampedCommand],
+        series: &Series,
+        flow: &FlowHistory,
+    ) -> Self {
+        Self {
+            world: world.clone(),
+            commands: commands.to_vec(),
+            series: Arc::new(series.clone()),
+            flow: Arc::new(flow.clone()),
+            next_sample: next_sample(world, series.len()),
+        }
+    }
+}
+
 /// Why a command was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CommandError {
@@ -323,6 +342,7 @@ impl Run {
     /// before it are not carried out again.
     pub fn resume(&mut self, checkpoint: Checkpoint) {
         self.world = checkpoint.world;
+        self.script.forget_past(&self.world.clock);
         self.commands = checkpoint.commands.len();
         self.samples = checkpoint.series.len();
         self.branch = Branch {
@@ -330,11 +350,11 @@ impl Run {
             series: checkpoint.series,
             flow: checkpoint.flow,
             end: Moment::of(&self.world),
-            ..Branch::begin(self.branch.number)
+            plan: self.script.clone(),
+            number: self.branch.number,
         };
         self.flow = None;
         self.next_sample = checkpoint.next_sample;
-        while self.script.take_due(self.world.clock.step).is_some() {}
     }
 
     /// All it takes to come back to this moment.
@@ -510,6 +530,15 @@ impl Run {
             }
         }
     }
+}
+
+/// The index of the next sample of a run that stands at `world` with so many `samples`.
+fn next_sample(world: &World, samples: usize) -> u64 {
+    let mut next = samples as u64;
+    while sample_step(world, next) <= world.clock.step {
+        next += 1;
+    }
+    next
 }
 
 /// The step after which the sample of this index is taken.

@@ -305,13 +305,14 @@ fn or(label: String, otherwise: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::case::CaseEnding;
     use super::super::plot_files::plots;
     use super::super::{Case, Variation};
     use super::*;
     use crate::measure::{FlowProfile, MeasuredValue, Sample, Series, Summary, SummaryEntry};
+    use crate::output::Ending;
+    use crate::run::BedStore;
     use crate::scene::Scene;
-    use crate::simulation::BedStore;
+    use crate::solver::{Fault, FaultKind};
 
     const SCENE: &str = r#"(title: "Any", materials: {"a": ()}, container: Nothing, grains: List([
         (position: (0, 0, 0), radius: 1, material: "a")]))"#;
@@ -383,7 +384,7 @@ mod tests {
                 script: Vec::new(),
                 time_step: 1e-6,
             },
-            ending: CaseEnding::Done,
+            ending: Ending::Done,
             results: Summary {
                 from: 0.0,
                 to: 0.58,
@@ -475,9 +476,14 @@ mod tests {
             of(&plots, "run-out.svg").lines[0].points.len()
         };
         assert_eq!(drawn(&outcomes), 2);
-        outcomes[1].ending = CaseEnding::Faulted;
+        outcomes[1].ending = Ending::Faulted(Fault {
+            grain: 0,
+            time: 0.5,
+            good_time: 0.4,
+            kind: FaultKind::TooFast(1e3),
+        });
         assert_eq!(drawn(&outcomes), 1);
-        outcomes[1].ending = CaseEnding::Interrupted;
+        outcomes[1].ending = Ending::Interrupted;
         assert_eq!(drawn(&outcomes), 2, "what it came to so far");
         outcomes[1].series.truncate(1);
         assert_eq!(drawn(&outcomes), 1);

@@ -1,13 +1,13 @@
 //! Variations of a scene, run side by side, and their results set beside each other.
 //!
-//! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`, `series.csv`, and `flow.csv`
-//! and `velocity.csv` or a column's `profile.csv`), a table of all results (`table.csv`, `table.md`) and plots with the paper's
-//! laws drawn in. Each case takes one core. A sweep that was stopped goes on when it is called again: finished cases are kept,
-//! others go on from their checkpoints.
+//! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`,
+//! `series.csv`, and `flow.csv` and `velocity.csv` or a column's `profile.csv`), a table of all
+//! results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one
+//! core. A sweep that was stopped goes on when it is called again: finished cases are kept, others go
+//! on from their checkpoints.
 
 mod case;
 pub(crate) mod chart;
-mod checkpoint;
 mod column_plots;
 mod drum_plots;
 mod plan;
@@ -17,13 +17,15 @@ mod velocity_plot;
 
 pub use plan::{Case, Variation};
 
-use crate::headless::{HeadlessError, Progress, spoken};
+use crate::output::{Ending, write_file};
+use crate::run::BedStore;
+use crate::runner::{RunnerError, Watch, exit, spoken};
 use crate::scene::Scene;
-use crate::simulation::BedStore;
-use case::{CaseEnding, Outcome, Share};
-use std::path::PathBuf;
-use std::sync::Mutex;
+use case::{Outcome, Share};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// What to run.
@@ -57,12 +59,23 @@ pub enum SweepEnding {
 }
 
 impl SweepEnding {
+    /// That of a sweep of so many `cases` of which these `outcomes` are there.
+    fn of(outcomes: &[Outcome], cases: usize) -> Self {
+        let interrupted = (outcomes.iter()).any(|outcome| outcome.ending == Ending::Interrupted);
+        let faults = (outcomes.iter()).filter(|outcome| outcome.ending.fault().is_some());
+        match faults.count() {
+            _ if interrupted || outcomes.len() < cases => Self::Interrupted,
+            0 => Self::Done,
+            faults => Self::Faulted(faults),
+        }
+    }
+
     /// What the process ends with: 0, 3 or 130.
     pub fn exit_code(self) -> u8 {
         match self {
-            Self::Done => 0,
-            Self::Faulted(_) => 3,
-            Self::Interrupted => 130,
+            Self::Done => exit::DONE,
+            Self::Faulted(_) => exit::FAULT,
+            Self::Interrupted => exit::INTERRUPTED,
         }
     }
 }
@@ -70,81 +83,79 @@ impl SweepEnding {
 /// Time between two looks at how far the cases have come.
 const LOOK_TIME: Duration = Duration::from_millis(100);
 
-/// Runs `sweep` until every case is done or `interrupted` becomes true; prints progress to standard error and the table to
-/// standard output.
+/// How a sweep ended, with its table.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// How it ended.
+    pub ending: SweepEnding,
+    /// Its results side by side, in Markdown.
+    pub table: String,
+}
+
+/// Runs `sweep` until every case is done or `interrupted` becomes true; `watch` hears how far it has
+/// come.
 ///
 /// # Errors
-/// A [`HeadlessError`] when the input asks for something that cannot be, or a file cannot be written.
-pub fn run(sweep: &Sweep, interrupted: &AtomicBool) -> Result<SweepEnding, HeadlessError> {
+/// A [`RunnerError`] when the input asks for something that cannot be, or a file cannot be written.
+pub fn run(
+    sweep: &Sweep,
+    interrupted: &AtomicBool,
+    watch: &mut dyn Watch,
+) -> Result<Swept, RunnerError> {
     let cases = plan::cases(sweep)?;
     let shares: Vec<Share> = cases.iter().map(|_| Share::default()).collect();
-    let outcomes = carry_out(sweep, &cases, &shares, interrupted)?;
+    let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
     results_table::write_tables(sweep, &outcomes)?;
     plot_files::write_plots(sweep, &outcomes)?;
     velocity_plot::write_velocity_plots(sweep, &outcomes)?;
-    print!("{}", results_table::markdown(sweep, &outcomes));
-    let faults = count(&outcomes, CaseEnding::Faulted);
-    let stopped = outcomes.len() < cases.len() || count(&outcomes, CaseEnding::Interrupted) > 0;
-    println!("results in {}", sweep.out.display());
-    Ok(match faults {
-        _ if stopped => SweepEnding::Interrupted,
-        0 => SweepEnding::Done,
-        faults => SweepEnding::Faulted(faults),
+    Ok(Swept {
+        ending: SweepEnding::of(&outcomes, cases.len()),
+        table: results_table::markdown(sweep, &outcomes),
     })
 }
 
-fn count(outcomes: &[Outcome], ending: CaseEnding) -> usize {
-    outcomes.iter().filter(|o| o.ending == ending).count()
-}
-
-/// Runs the cases, the costliest first so that no core idles at the end; returns what became of them in their own order.
-fn carry_out(
+/// Runs the cases, the costliest first so that no core idles at the end; returns what became of them
+/// in their own order.
+fn run_cases(
     sweep: &Sweep,
     cases: &[Case],
     shares: &[Share],
     interrupted: &AtomicBool,
-) -> Result<Vec<Outcome>, HeadlessError> {
+    watch: &mut dyn Watch,
+) -> Result<Vec<Outcome>, RunnerError> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
     let next = AtomicUsize::new(0);
     let failed = AtomicBool::new(false);
+    let stop = || interrupted.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed);
     let results = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..sweep.jobs.clamp(1, cases.len().max(1)) {
             scope.spawn(|| {
                 while let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let stop =
-                        || interrupted.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed);
                     if stop() {
                         break;
                     }
                     let result = case::run(sweep, &cases[index], &shares[index], &stop);
                     failed.fetch_or(result.is_err(), Ordering::Relaxed);
-                    if let Ok(mut results) = results.lock() {
-                        results.push((index, result));
-                    }
+                    let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+                    results.push((index, result));
                 }
             });
         }
-        let working = || {
-            let done = results.lock().map_or(0, |results| results.len());
-            done < cases.len()
-                && !interrupted.load(Ordering::Relaxed)
-                && !failed.load(Ordering::Relaxed)
-        };
-        follow(cases, shares, &working);
+        let done = || results.lock().map_or(0, |results| results.len());
+        follow(cases, shares, watch, &|| done() < cases.len() && !stop());
     });
-    let mut results = results.into_inner().unwrap_or_default();
+    let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
     results.sort_by_key(|(index, _)| *index);
+    let results = results.into_iter();
     results
-        .into_iter()
         .filter_map(|(_, result)| result.transpose())
         .collect()
 }
 
 /// Tells how far the whole has come while it is `working`.
-fn follow(cases: &[Case], shares: &[Share], working: &dyn Fn() -> bool) {
-    let mut progress = Progress::new();
+fn follow(cases: &[Case], shares: &[Share], watch: &mut dyn Watch, working: &dyn Fn() -> bool) {
     let all: f64 = cases.iter().map(Case::cost).sum();
     let started = Instant::now();
     let done = || -> f64 {
@@ -160,7 +171,7 @@ fn follow(cases: &[Case], shares: &[Share], working: &dyn Fn() -> bool) {
         let elapsed = started.elapsed().as_secs_f64();
         let left = elapsed * (1.0 - share) / (share - before);
         let finished = shares.iter().filter(|share| share.get() >= 1.0).count();
-        progress.tell(share, || {
+        watch.running(share, &|| {
             format!(
                 "{finished} of {} cases done, {} left",
                 cases.len(),
@@ -168,5 +179,12 @@ fn follow(cases: &[Case], shares: &[Share], working: &dyn Fn() -> bool) {
             )
         });
     }
-    progress.finish();
+}
+
+/// Writes a file of a sweep, whole or not at all.
+fn write(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), RunnerError> {
+    Ok(write_file(path, fill)?)
 }

@@ -1,9 +1,9 @@
 //! Which cases a sweep consists of.
 
 use super::Sweep;
-use crate::headless::{HeadlessError, apply_setting};
+use crate::run::ScriptedCommand;
+use crate::runner::{RunnerError, apply_setting};
 use crate::scene::Scene;
-use crate::simulation::ScriptedCommand;
 use crate::solver::advise;
 
 /// Cases a sweep may have.
@@ -38,9 +38,9 @@ impl Variation {
     ///
     /// # Errors
     /// When the text has no such form.
-    pub fn parse(text: &str) -> Result<Self, HeadlessError> {
+    pub fn parse(text: &str) -> Result<Self, RunnerError> {
         let refuse = || {
-            HeadlessError::Input(format!(
+            RunnerError::Input(format!(
                 "--vary {text}: expected KEY=VALUES, such as liquid=0..7 or radius=3mm,2mm,1.25mm"
             ))
         };
@@ -80,17 +80,17 @@ impl Case {
 ///
 /// # Errors
 /// When a key or value does not suit the scene, or there are too many cases.
-pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, HeadlessError> {
+pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
     let number: usize = sweep.variations.iter().map(|v| v.values.len()).product();
     if number > usize::from(MOST_CASES) {
-        return Err(HeadlessError::Input(format!(
+        return Err(RunnerError::Input(format!(
             "the sweep has {number} cases; expected at most {MOST_CASES}"
         )));
     }
     (0..number).map(|index| case(sweep, index)).collect()
 }
 
-fn case(sweep: &Sweep, index: usize) -> Result<Case, HeadlessError> {
+fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
     let mut rest = index;
     let mut values: Vec<String> = Vec::new();
     for variation in sweep.variations.iter().rev() {

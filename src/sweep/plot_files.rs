@@ -2,22 +2,22 @@
 //!
 //! In: what became of the cases. Out: one file for each plot that has points.
 
-use super::Sweep;
-use super::case::{CaseEnding, Outcome, write};
+use super::case::Outcome;
 use super::chart::Plot;
 use super::column_plots::column_plots;
 use super::drum_plots::drum_plots;
-use crate::headless::HeadlessError;
-use crate::simulation::Provenance;
+use super::{Sweep, write};
+use crate::run::Provenance;
+use crate::runner::RunnerError;
 
 /// Writes every plot that the outcomes have points for.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
+pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
     for plot in plots(sweep, outcomes).filter(Plot::has_points) {
         let text = plot.draw().map_err(|reason| {
-            HeadlessError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
+            RunnerError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
         })?;
         let path = sweep.out.join("plots").join(&plot.file);
         let text = Provenance::of_scene(&sweep.scene).in_svg(&text);
@@ -31,7 +31,7 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessEr
 pub(super) fn plots(sweep: &Sweep, outcomes: &[Outcome]) -> impl Iterator<Item = Plot> {
     let has_begun =
         |outcome: &Outcome| outcome.series.time().last().is_some_and(|time| *time > 0.0);
-    let is_sound = |outcome: &&Outcome| outcome.ending != CaseEnding::Faulted && has_begun(outcome);
+    let is_sound = |outcome: &&Outcome| outcome.ending.fault().is_none() && has_begun(outcome);
     let sound: Vec<Outcome> = outcomes.iter().filter(is_sound).cloned().collect();
     let plots = if sound.iter().any(Outcome::is_column) {
         column_plots(sweep, &sound)

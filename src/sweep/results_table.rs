@@ -3,12 +3,13 @@
 //! In: what became of the cases of a sweep. Out: `table.csv` and `table.md`, with the columns that
 //! suit drums or columns. Units and digits come from the registry of quantities.
 
-use super::Sweep;
-use super::case::{CaseEnding, Outcome, write};
-use crate::headless::HeadlessError;
+use super::case::Outcome;
+use super::{Sweep, write};
 use crate::measure::numeral::NOTHING;
 use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary, Unit};
-use crate::simulation::{Provenance, TABLES_METADATA};
+use crate::output::Ending;
+use crate::run::{Provenance, TABLES_METADATA};
+use crate::runner::RunnerError;
 
 /// A column: the result it shows under a short head, in the unit and with the digits of the
 /// registry or others.
@@ -130,7 +131,7 @@ fn columns(outcomes: &[Outcome]) -> &'static [TableColumn] {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
+pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
     let columns = columns(outcomes);
     write(&sweep.out.join("table.csv"), |file| {
         let mut writer = csv::Writer::from_writer(file);
@@ -174,10 +175,10 @@ fn heads(sweep: &Sweep, columns: &[TableColumn]) -> Vec<String> {
 fn cells(outcome: &Outcome, columns: &[TableColumn]) -> Vec<String> {
     let values = outcome.case.values.iter().cloned();
     let results = columns.iter().map(|column| column.cell(&outcome.results));
-    let ended = match outcome.ending {
-        CaseEnding::Done => "done",
-        CaseEnding::Interrupted => "stopped",
-        CaseEnding::Faulted => "fault",
+    let ended = match &outcome.ending {
+        Ending::Done => "done",
+        Ending::Interrupted => "stopped",
+        Ending::Faulted(_) => "fault",
     };
     let fixed = [
         format!("{:.2}", outcome.results.to),

@@ -1,12 +1,12 @@
 //! The velocities in the cross-section of each case at its fastest moment, as in Fig. 4a–d of
 //! Kasper et al. 2021: colours for the speed, arrows for the direction, the drum's rim.
 
-use super::Sweep;
-use super::case::{Outcome, write};
-use crate::headless::HeadlessError;
+use super::case::Outcome;
+use super::{Sweep, write};
 use crate::measure::VelocityMap;
+use crate::run::Provenance;
+use crate::runner::RunnerError;
 use crate::scene::SceneContainer;
-use crate::simulation::Provenance;
 use glam::DVec2;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -28,7 +28,7 @@ type DrawingResult = Result<(), Box<dyn std::error::Error>>;
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), HeadlessError> {
+pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
     for outcome in outcomes {
         let Some(map) = &outcome.fastest else {
             continue;
@@ -36,7 +36,7 @@ pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), H
         let name = &outcome.case.name;
         let mut text = String::new();
         draw(&mut text, outcome, map).map_err(|reason| {
-            HeadlessError::Input(format!(
+            RunnerError::Input(format!(
                 "the velocities of {name} cannot be drawn: {reason}"
             ))
         })?;

@@ -1,6 +1,7 @@
 //! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
 
 mod architecture;
+#[cfg(feature = "headless")]
 mod headless;
 mod measure;
 mod run;

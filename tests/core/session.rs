@@ -2,7 +2,7 @@
 
 use crate::run::{bits, prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
-use grainfall::headless::Verdict;
+use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, StoredCells};
 use grainfall::simulation::{
     BedStore, Claim, Command, DriverKind, Lab, LabCommand, Options, Parameter, Session, Status,
@@ -91,7 +91,9 @@ fn reopens_to_the_same_bits(lab: &Explored) {
         timeline = reopened(&path, PLENTY);
     }
     let claim = Claim::read(&path).unwrap();
-    let verdict = claim.verify(2, lab.beds.clone(), &|| false).unwrap();
+    let verdict = claim
+        .verify(2, lab.beds.clone(), &mut (), &|| false)
+        .unwrap();
     assert_eq!(verdict, Verdict::Same);
 }
 
@@ -202,7 +204,9 @@ fn session_holds_the_grains_that_its_scene_takes_from_a_file() {
     fs::remove_file(&cells).unwrap();
     let session = Session::read(&path).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(session.claim().scene, scene);
-    let verdict = session.claim().verify(1, BedStore::none(), &|| false);
+    let verdict = session
+        .claim()
+        .verify(1, BedStore::none(), &mut (), &|| false);
     assert_eq!(verdict.unwrap(), Verdict::Same);
     assert_eq!(hash(&session.into_timeline(1, PLENTY)), hash(&timeline));
     // Saved again by whoever has the file no more.

@@ -3,8 +3,8 @@
 
 use crate::run::{prepared, set};
 use crate::timeline::{arrive, change, go_on, hash};
-use grainfall::headless::Verdict;
 use grainfall::physics::{LIQUID_CASES, LiquidCase};
+use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, TimeStep};
 use grainfall::simulation::{
     BedStore, Changed, Claim, Command, CommandError, DriverKind, Half, Lab, LabCommand, Options,
@@ -137,7 +137,9 @@ fn is_verified(timeline: &Timeline) {
     let same = Session::read(&path).unwrap().into_timeline(1, PLENTY);
     assert_eq!(hash(&same), hash(timeline));
     let claim = Claim::read(&path).unwrap();
-    let verdict = claim.verify(2, BedStore::none(), &|| false).unwrap();
+    let verdict = claim
+        .verify(2, BedStore::none(), &mut (), &|| false)
+        .unwrap();
     assert_eq!(verdict, Verdict::Same);
 }
 

@@ -1,9 +1,9 @@
 //! Sweeps: cases, results side by side, stopping and going on, wrong input.
 
-use grainfall::headless::HeadlessError;
+use grainfall::runner::RunnerError;
 use grainfall::scene::Scene;
 use grainfall::simulation::BedStore;
-use grainfall::sweep::{Sweep, SweepEnding, Variation, run};
+use grainfall::sweep::{self, Sweep, SweepEnding, Variation};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -33,6 +33,10 @@ fn sweep(out: &Path, variations: &[&str]) -> Sweep {
         jobs: 2,
         beds: BedStore::none(),
     }
+}
+
+fn run(sweep: &Sweep, stop: &AtomicBool) -> Result<SweepEnding, RunnerError> {
+    sweep::run(sweep, stop, &mut ()).map(|swept| swept.ending)
 }
 
 fn hashes(out: &Path) -> Vec<String> {
@@ -166,7 +170,7 @@ fn wrong_variations_say_what_was_expected() {
         let error = run(&sweep(&out, &[variation]), &AtomicBool::new(false)).unwrap_err();
         assert!(matches!(
             error,
-            HeadlessError::Scene(_) | HeadlessError::Input(_)
+            RunnerError::Scene(_) | RunnerError::Input(_)
         ));
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains(expected), "{error}");

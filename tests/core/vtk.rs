@@ -1,7 +1,7 @@
-//! Polyhedra as VTK cells, read back from the bytes of the file.
+//! Grains as VTK points and cells, read back from the bytes of the file.
 
 use glam::{DQuat, DVec3};
-use grainfall::headless::write_grains;
+use grainfall::output::write_grains;
 use grainfall::scene::Scene;
 use grainfall::simulation::Provenance;
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
@@ -51,9 +51,9 @@ fn cube_and_sphere() -> World {
     world
 }
 
-/// A `.vtu` file: its header and the bytes that follow the mark `_`.
-struct File {
-    header: String,
+/// A `.vtp` or `.vtu` file: its header and the bytes that follow the mark `_`.
+pub struct File {
+    pub header: String,
     data: Vec<u8>,
 }
 
@@ -63,12 +63,24 @@ impl File {
         let scene = Scene::open("bouncing-grain").unwrap();
         let from = Provenance::of(&scene, world);
         write_grains(world, &from, &mut bytes).unwrap();
+        Self::parse(&bytes)
+    }
+
+    pub fn parse(bytes: &[u8]) -> Self {
         let mark = b"<AppendedData encoding=\"raw\">\n_";
         let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len();
         Self {
             header: String::from_utf8(bytes[..at].to_vec()).unwrap(),
             data: bytes[at..].to_vec(),
         }
+    }
+
+    /// The arrays within `<element> … </element>`, by name and in their order.
+    pub fn names(&self, element: &str) -> Vec<&str> {
+        let start = self.header.find(&format!("<{element}>")).unwrap();
+        let end = self.header.find(&format!("</{element}>")).unwrap();
+        let arrays = self.header[start..end].split("Name=\"").skip(1);
+        arrays.map(|rest| rest.split('"').next().unwrap()).collect()
     }
 
     /// The eight bytes of each number of the array called `name`.
@@ -82,14 +94,14 @@ impl File {
         (0..length / 8).map(|k| word(offset + 8 + 8 * k)).collect()
     }
 
-    fn integers(&self, name: &str) -> Vec<i64> {
+    pub fn integers(&self, name: &str) -> Vec<i64> {
         self.numbers(name)
             .into_iter()
             .map(i64::from_le_bytes)
             .collect()
     }
 
-    fn floats(&self, name: &str) -> Vec<f64> {
+    pub fn floats(&self, name: &str) -> Vec<f64> {
         self.numbers(name)
             .into_iter()
             .map(f64::from_le_bytes)
@@ -122,6 +134,24 @@ fn polyhedra_are_cells_of_their_solids_with_what_each_grain_has() {
     assert_eq!(file.integers("faceoffsets"), [31, -1]);
     assert_eq!(file.floats("radius"), [1e-3, 0.5e-3]);
     assert_eq!(file.floats("rounding"), [0.2e-3, 0.5e-3]);
+    assert_eq!(file.floats("velocity"), [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
+    assert_eq!(file.integers("species").len(), 2);
+}
+
+#[test]
+fn spheres_are_points_with_what_each_grain_has() {
+    let mut world = cube_and_sphere();
+    world.polyhedra = None;
+    let file = File::of(&world);
+    assert!(file.header.contains("type=\"PolyData\""), "{}", file.header);
+    assert!(
+        file.header
+            .contains("NumberOfPoints=\"2\" NumberOfVerts=\"2\"")
+    );
+    assert_eq!(file.floats("points"), [0.01, 0.02, 0.03, -0.01, 0.0, 0.0]);
+    assert_eq!(file.integers("connectivity"), [0, 1]);
+    assert_eq!(file.integers("offsets"), [1, 2]);
+    assert_eq!(file.floats("radius"), [1e-3, 0.5e-3]);
     assert_eq!(file.floats("velocity"), [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
     assert_eq!(file.integers("species").len(), 2);
 }

@@ -4,7 +4,7 @@
 use crate::twin::{ask, falling_from_the_front, place, simulation};
 use crate::view::{photographed, studio};
 use bevy::prelude::*;
-use grainfall::headless::Verdict;
+use grainfall::runner::Verdict;
 use grainfall::simulation::{BedStore, Claim, Command, Half, Parameter, Simulation};
 use grainfall::ui::{Request, Requests};
 use grainfall::world::StateHash;
@@ -115,6 +115,8 @@ fn saved_and_verified(app: &mut App) {
     ask(app, Request::SaveSession(path.clone()), |s| !s.is_saving());
     let claim = Claim::read(&path).unwrap();
     assert_eq!(claim.state_hash, Some(hash(app).to_string()));
-    let verdict = claim.verify(1, BedStore::none(), &|| false).unwrap();
+    let verdict = claim
+        .verify(1, BedStore::none(), &mut (), &|| false)
+        .unwrap();
     assert_eq!(verdict, Verdict::Same);
 }

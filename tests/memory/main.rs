@@ -1,6 +1,6 @@
 //! Bytes per grain of a world and its solver, counted by the allocator. A binary of its own: nothing else allocates in it.
 
-use grainfall::headless::write_grains;
+use grainfall::output::write_grains;
 use grainfall::scene::Scene;
 use grainfall::simulation::Provenance;
 use grainfall::solver::{Solver, advise};

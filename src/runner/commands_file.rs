@@ -1,10 +1,11 @@
 //! `--commands FILE`: commands to carry out when their time comes.
 //!
-//! In: a RON or JSON file with a list of `(time or step, command)`, or the `summary.json` of an earlier run or a list or a
-//! session saved in the window, whose commands are then carried out again. Out: the list, or an error that says where it is wrong.
+//! In: a RON or JSON file with a list of `(time or step, command)`, or the `summary.json` of an
+//! earlier run or a list or a session saved in the window, whose commands are then carried out
+//! again. Out: the list, or an error that says where it is wrong.
 
-use super::HeadlessError;
-use crate::simulation::{ScriptedCommand, Session};
+use super::RunnerError;
+use crate::run::{ScriptedCommand, Session};
 use ron::extensions::Extensions;
 use serde::Deserialize;
 use std::fs;
@@ -16,20 +17,21 @@ struct Recorded {
     commands: Vec<ScriptedCommand>,
 }
 
-/// The commands in the file at `path`: a session where it says so, JSON where its name ends so, RON otherwise.
+/// The commands in the file at `path`: a session where it says so, JSON where its name ends so, RON
+/// otherwise.
 ///
 /// # Errors
 /// When the file cannot be read or is no such list.
-pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, HeadlessError> {
+pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, RunnerError> {
     let name = path.display();
     let refuse = |reason: String| {
-        HeadlessError::Input(format!(
+        RunnerError::Input(format!(
             "{name}: {reason}; expected a list of commands such as \
              [(time: 2.5, command: Set(parameter: \"drum-speed\", value: 0.1))], or a run's summary.json"
         ))
     };
     if Session::is_at(path) {
-        let session = Session::read(path).map_err(|e| HeadlessError::Input(e.to_string()))?;
+        let session = Session::read(path).map_err(|e| RunnerError::Input(e.to_string()))?;
         return Ok(session.into_claim().commands);
     }
     let text =

@@ -1,8 +1,8 @@
 //! `--set KEY=VALUE`: what is changed about a scene, before a run or at its first step.
 
-use super::HeadlessError;
+use super::RunnerError;
+use crate::run::{Command, Parameter, ScriptedCommand};
 use crate::scene::Scene;
-use crate::simulation::{Command, Parameter, ScriptedCommand};
 
 /// Carries out one `--set`: at once where it is the scene's, as a command at step zero where it is a live parameter's.
 ///
@@ -11,8 +11,8 @@ use crate::simulation::{Command, Parameter, ScriptedCommand};
 pub fn apply_setting(
     scene: &mut Scene,
     setting: &str,
-) -> Result<Option<ScriptedCommand>, HeadlessError> {
-    let refuse = |reason: String| HeadlessError::Input(format!("--set {setting}: {reason}"));
+) -> Result<Option<ScriptedCommand>, RunnerError> {
+    let refuse = |reason: String| RunnerError::Input(format!("--set {setting}: {reason}"));
     let Some((key, text)) = setting.split_once('=') else {
         return Err(refuse("expected KEY=VALUE, such as drum-speed=1rpm".into()));
     };
@@ -38,8 +38,8 @@ pub fn apply_setting(
 ///
 /// # Errors
 /// When the setting has no such form, there is no such key, or its value is none.
-pub fn compared_value(setting: &str) -> Result<(Parameter, f64), HeadlessError> {
-    let refuse = |reason: String| HeadlessError::Input(format!("--compare {setting}: {reason}"));
+pub fn compared_value(setting: &str) -> Result<(Parameter, f64), RunnerError> {
+    let refuse = |reason: String| RunnerError::Input(format!("--compare {setting}: {reason}"));
     let Some((key, text)) = setting.split_once('=') else {
         return Err(refuse("expected KEY=VALUE, such as viscosity=1.41".into()));
     };

@@ -1,8 +1,8 @@
 //! `summary.json`: what was run, how it ended, what came out.
 
 use crate::measure::Summary;
+use crate::run::{StampedCommand, fingerprint};
 use crate::scene::Scene;
-use crate::simulation::{StampedCommand, fingerprint};
 use crate::solver::{Fault, TimeStepAdvice};
 use serde::Serialize;
 use std::io::{self, Write};

@@ -1,0 +1,34 @@
+//! The files that a run leaves behind.
+//!
+//! In: a [`RunSoFar`] of a run on its way. Out: a folder of files, each whole, in SI units. Not here:
+//! when a run holds for its outputs and what is told meanwhile (see `runner`).
+//!
+//! | file | holds |
+//! |---|---|
+//! | `run_so_far` | what is seen of a run |
+//! | `folder` | where the files go; nobody else's are touched |
+//! | `recorder` | which file is written when |
+//! | `summary_file` | `summary.json`: what was run, how it ended, what came out |
+//! | `series_file`, `profile_files`, `velocity_file` | tables: `series.csv`, `flow.csv`, `profile.csv`, `velocity.csv` |
+//! | `grains_file`, `polyhedra_file`, `vtk` | the grains at each output time, for `ParaView` |
+//! | `ending`, `error` | how a run ended; why files cannot be written |
+
+mod ending;
+mod error;
+mod folder;
+mod grains_file;
+mod polyhedra_file;
+mod profile_files;
+mod recorder;
+mod run_so_far;
+mod series_file;
+mod summary_file;
+mod velocity_file;
+mod vtk;
+
+pub use ending::Ending;
+pub use error::OutputError;
+pub use folder::{CHECKPOINT, OutputFolder, write_file};
+pub use grains_file::write_grains;
+pub use recorder::{Recorder, Subject, Written};
+pub use run_so_far::RunSoFar;

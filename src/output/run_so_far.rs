@@ -1,0 +1,40 @@
+//! What files and results show of a run.
+
+use crate::measure::{FlowHistory, LEFT_OUT, SMALLEST_DROP, Series, Summary, results};
+use crate::run::{Run, StampedCommand};
+use crate::world::World;
+
+/// A run so far, as files and results show it: its present state and what was kept of it until then.
+#[derive(Clone, Copy)]
+pub struct RunSoFar<'a> {
+    /// The state now.
+    pub world: &'a World,
+    /// The samples so far.
+    pub series: &'a Series,
+    /// The flowing layer so far.
+    pub flow: &'a FlowHistory,
+    /// The commands carried out since time zero.
+    pub commands: &'a [StampedCommand],
+}
+
+impl<'a> RunSoFar<'a> {
+    /// What is seen of `run`.
+    pub fn of(run: &'a Run) -> Self {
+        Self {
+            world: run.world(),
+            series: run.series(),
+            flow: run.flow(),
+            commands: run.commands(),
+        }
+    }
+
+    /// The simulated time from which on results count [s].
+    pub fn results_from(&self) -> f64 {
+        LEFT_OUT * self.world.time()
+    }
+
+    /// The results so far.
+    pub fn results(&self) -> Summary {
+        results(self.series, self.world, self.results_from(), SMALLEST_DROP)
+    }
+}

@@ -1,0 +1,14 @@
+//! What the process ends with.
+
+/// All was done.
+pub const DONE: u8 = 0;
+/// Files could not be written.
+pub const NOT_WRITTEN: u8 = 1;
+/// The input asks for something that cannot be.
+pub const BAD_INPUT: u8 = 2;
+/// The solver met an absurd state.
+pub const FAULT: u8 = 3;
+/// A run came to another state than a file states.
+pub const OTHER_STATE: u8 = 4;
+/// Somebody stopped it.
+pub const INTERRUPTED: u8 = 130;

@@ -1,0 +1,50 @@
+//! A scene run to its end: the one loop that prepares, advances, records, keeps checkpoints and
+//! stops when it is told to.
+//!
+//! In: a [`Job`], or a file that states a state to come to. Out: the files of an output folder and a
+//! [`Finished`], or a [`Verdict`]. Runs without a window, cases of a sweep and `grainfall verify` all
+//! go through here. Not here: printing, and the app whose systems step a run (see `headless`).
+//!
+//! | file | holds |
+//! |---|---|
+//! | `job` | what to run and where its files go |
+//! | `drive` | the loop, and how a run ended |
+//! | `advance` | what the loop moves: a run in short pieces |
+//! | `watch` | hearing how far it has come |
+//! | `checkpoint` | going on after a stop |
+//! | `verify` | computing again what a file states |
+//! | `setting`, `commands_file` | `--set`, `--commands`: what is changed about a run |
+//! | `error`, `exit` | what can go wrong, and what the process ends with |
+
+mod advance;
+mod checkpoint;
+mod commands_file;
+mod drive;
+mod error;
+pub mod exit;
+mod job;
+mod setting;
+mod verify;
+mod watch;
+
+pub use advance::{Advance, At, DirectRun, Halt};
+pub use commands_file::read_commands;
+pub use drive::{Finished, Runner, run};
+pub use error::RunnerError;
+pub use job::{Job, available_threads};
+pub use setting::{apply_setting, compared_value};
+pub use verify::Verdict;
+pub use watch::{Watch, spoken};
+
+use crate::output::Ending;
+
+impl Ending {
+    /// What the process ends with: 0, 130 or 3.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Done => exit::DONE,
+            Self::Interrupted => exit::INTERRUPTED,
+            Self::Faulted(_) => exit::FAULT,
+        }
+    }
+}
