@@ -1,8 +1,9 @@
 //! The one clock of a lab: how far its runs may go, whether there is one of them or there are two.
 //!
-//! In: ticks of wall-clock time, the speed asked for, play, pause, steps, a hold. Out: the step that the runs should come
-//! to before the next command. It steps nothing itself and knows nothing of states; a way to an earlier or later moment
-//! is the run's own, and the clock only lets it pass.
+//! In: ticks of wall-clock time, the speed asked for, play, pause, steps, a hold. Out: the step
+//! that the runs should come to before the next command. It steps nothing itself and knows nothing
+//! of states; a way to an earlier or later moment is the run's own, and the clock only lets it
+//! pass.
 
 use crate::world;
 use std::time::Duration;
@@ -86,12 +87,14 @@ impl Clock {
         self.target = now.step + steps as u64;
     }
 
-    /// The step to show at a finite speed, if the runs go on: what is recorded already may be skipped up to there.
+    /// The step to show at a finite speed, if the runs go on: what is recorded already may be
+    /// skipped up to there.
     pub fn due(&self) -> Option<u64> {
         (self.mode == Mode::Running && self.speed.is_finite()).then_some(self.target)
     }
 
-    /// The step to come to before the next command, for a run on the way to `destination` or on no such way.
+    /// The step to come to before the next command, for a run on the way to `destination` or on no
+    /// such way.
     pub fn goal(&self, destination: Option<u64>) -> u64 {
         let goal = match (destination, self.mode) {
             (Some(destination), _) => destination,

@@ -1,7 +1,8 @@
 //! Everything that can be asked of a lab, as one enum.
 //!
-//! In: what a person, a script or the window asks for. Out: a [`LabCommand`] for [`super::Lab::send`], which is the only
-//! way to change a lab. What each command does is decided by the engine, not here.
+//! In: what a person, a script or the window asks for. Out: a [`LabCommand`] for
+//! [`super::Lab::send`], which is the only way to change a lab. What each command does is decided
+//! by the engine, not here.
 
 use super::Half;
 use crate::run::{Command, Parameter};
@@ -10,8 +11,8 @@ use std::path::PathBuf;
 /// Everything that can be asked of a lab.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LabCommand {
-    /// Carry this out in every run, at the same step. A value of the parameter that a comparison is about concerns the
-    /// left run alone, and so does the list of branches.
+    /// Carry this out in every run, at the same step. A value of the parameter that a comparison is
+    /// about concerns the left run alone, and so does the list of branches.
     All(Command),
     /// Give a parameter a value in one of the runs; the other notes it, so that an undo is of both.
     SetIn {

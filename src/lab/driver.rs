@@ -1,9 +1,10 @@
 //! Who moves the engine: the caller, or a thread of its own.
 //!
-//! In: [`Message`]s. Out: [`Update`]s. Inline, the work is done within [`Driver::tick`]. On a thread, a tick grants the
-//! wall-clock time that has passed and returns at once; while the time granted before is being worked on, nothing more is
-//! granted, so a machine slower than real time slows simulated time down and never the caller. Dropping the driver ends
-//! the thread within a piece. A driver decides nothing about the runs.
+//! In: [`Message`]s. Out: [`Update`]s. Inline, the work is done within [`Driver::tick`]. On a
+//! thread, a tick grants the wall-clock time that has passed and returns at once; while the time
+//! granted before is being worked on, nothing more is granted, so a machine slower than real time
+//! slows simulated time down and never the caller. Dropping the driver ends the thread within a
+//! piece. A driver decides nothing about the runs.
 
 use super::engine::{Engine, Message};
 use super::update::Update;
@@ -83,12 +84,22 @@ impl Driver {
     pub fn send(&mut self, message: Message) {
         match self {
             Self::Inline { engine, .. } => engine.take(message),
-            Self::Thread(threaded) => threaded.send(message),
+            Self::Thread(threaded) => {
+                if let Some(messages) = &threaded.messages {
+                    // Dropped where the thread has ended by a mistake, which `has_died` reports.
+                    drop(messages.send(message));
+                }
+            }
         }
     }
 
     /// Lets `passed` wall-clock time pass and returns what is new.
     pub fn tick(&mut self, passed: Duration) -> Option<Update> {
+        if let Self::Thread(threaded) = self
+            && let Some(granted) = threaded.grant(passed)
+        {
+            self.send(Message::Tick(granted));
+        }
         match self {
             Self::Inline { engine, published } => {
                 engine.take(Message::Tick(passed));
@@ -102,7 +113,7 @@ impl Driver {
                 *published = Instant::now();
                 Some(engine.take_update())
             }
-            Self::Thread(threaded) => threaded.tick(passed),
+            Self::Thread(threaded) => threaded.exchange.lock().take(),
         }
     }
 
@@ -116,20 +127,11 @@ impl Driver {
 }
 
 impl Threaded {
-    fn send(&self, message: Message) {
-        if let Some(messages) = &self.messages {
-            // Dropped where the thread has ended by a mistake, which `Driver::has_died` reports.
-            drop(messages.send(message));
-        }
-    }
-
-    fn tick(&mut self, passed: Duration) -> Option<Update> {
+    /// The time to grant now that `passed` more has passed: nothing while the engine is busy.
+    fn grant(&mut self, passed: Duration) -> Option<Duration> {
         self.accumulator = (self.accumulator + passed).min(MOST_SAVED_UP);
-        if !self.exchange.busy.swap(true, Ordering::AcqRel) {
-            let granted = std::mem::take(&mut self.accumulator);
-            self.send(Message::Tick(granted));
-        }
-        self.exchange.lock().take()
+        let was_busy = self.exchange.busy.swap(true, Ordering::AcqRel);
+        (!was_busy).then(|| std::mem::take(&mut self.accumulator))
     }
 }
 

@@ -1,8 +1,8 @@
 //! What a driver moves: a preparation that becomes a run, the runs of a lab, and their clock.
 //!
-//! In: [`Message`]s, which are commands and ticks. Out: [`Update`]s. [`Engine::work`] does one short piece at a time, so
-//! that commands are answered quickly; how the pieces fall does not show in a trajectory. On which thread it is moved is
-//! up to the driver.
+//! In: [`Message`]s, which are commands and ticks. Out: [`Update`]s. [`Engine::work`] does one
+//! short piece at a time, so that commands are answered quickly; how the pieces fall does not show
+//! in a trajectory. On which thread it is moved is up to the driver.
 
 use super::clock::{Clock, Mode};
 use super::command::LabCommand;
@@ -34,7 +34,8 @@ const PROFILE_TIME: Duration = Duration::from_millis(500);
 /// Wall-clock time a piece of work should take: commands wait for it.
 const PIECE_TIME: Duration = Duration::from_millis(10);
 
-/// Values that are set sooner after each other belong to one change: a drag, or a button that sets several parameters.
+/// Values that are set sooner after each other belong to one change: a drag, or a button that sets
+/// several parameters.
 const ONE_CHANGE: Duration = Duration::from_millis(400);
 
 /// Why branches are not taken up while two runs are compared.
@@ -69,7 +70,8 @@ enum Stage {
 }
 
 impl Engine {
-    /// An engine that prepares a run of `scene`, with steps of `time_step` [s], and goes on with it.
+    /// An engine that prepares a run of `scene`, with steps of `time_step` [s], and goes on with
+    /// it.
     pub fn open(scene: Arc<Scene>, time_step: f64, options: Options) -> Self {
         let original = scene.clone();
         let preparation = Preparation::new(scene, time_step, options.threads, options.beds.clone());
@@ -151,7 +153,7 @@ impl Engine {
                 self.profiled = Instant::now();
                 runs.renew_profiles();
             }
-            update.runs = runs.news();
+            update.runs = runs.news(&self.clock);
             update.answered = update.answered.filter(|_| update.runs.is_some());
         }
         update
@@ -226,49 +228,68 @@ impl Engine {
             LabCommand::Hold(step) => self.clock.hold_at(step),
             LabCommand::Threads(threads) => self.use_threads(threads),
             LabCommand::Save(path) => self.save(path),
+            LabCommand::Compare { parameter, value } => self.compare(parameter, value),
+            LabCommand::EndComparison { keep } => self.end_comparison(keep),
             LabCommand::SetIn {
                 half,
                 parameter,
                 value,
             } => self.change(&Command::Set { parameter, value }, Some(half)),
-            LabCommand::Compare { parameter, value } => self.compare(parameter, value),
-            LabCommand::EndComparison { keep } => self.end_comparison(keep),
-            LabCommand::All(command) => self.dispatch_to_all(command),
+            LabCommand::All(command) => match command {
+                Command::Set { .. } => self.change(&command, None),
+                Command::Play => self.play(Mode::Running),
+                Command::Pause => self.pause(),
+                Command::Step(steps) => self.step(steps),
+                Command::Speed(speed) => {
+                    self.clock.set_speed(speed);
+                    self.play(self.clock.mode());
+                }
+                Command::Reset => self.reset(),
+                Command::Seek(step) => self.travel(|runs| runs.seek(step)),
+                Command::Undo => self.travel(Runs::undo),
+                Command::Redo => self.travel(Runs::redo),
+                Command::Return(index) => self.take_up(index),
+                Command::Forget(index) => {
+                    if let Stage::Ready(runs) = &mut self.stage {
+                        runs.forget(index);
+                    }
+                }
+            },
         }
     }
 
-    /// Carries out a `command` that is for every run.
-    fn dispatch_to_all(&mut self, command: Command) {
-        let Stage::Ready(runs) = &mut self.stage else {
-            return;
-        };
-        match command {
-            Command::Play => self.play(Mode::Running),
-            Command::Pause => {
-                runs.stop();
-                self.dispatch_waiting();
-                self.play(Mode::Paused);
-            }
-            Command::Step(steps) => {
-                let until = runs.now().step.saturating_add(steps);
-                self.play(Mode::Stepping { until });
-            }
-            Command::Speed(speed) => {
-                self.clock.set_speed(speed);
-                runs.forget_faults();
-            }
-            Command::Reset => {
-                runs.reset();
-                let goes_on = self.clock.mode() == Mode::Running && runs.fault().is_none();
-                self.play(if goes_on { Mode::Running } else { Mode::Paused });
-            }
-            Command::Set { .. } => self.change(&command, None),
-            Command::Seek(step) => self.travel(|runs| runs.seek(step)),
-            Command::Undo => self.travel(Runs::undo),
-            Command::Redo => self.travel(Runs::redo),
-            Command::Return(_) if runs.is_pair() => self.news.warnings.push(OF_ONE_RUN.into()),
-            Command::Return(index) => self.travel(|runs| runs.take_up(index)),
-            Command::Forget(index) => runs.forget(index),
+    /// Holds here; what waited for the end of a way is carried out here.
+    fn pause(&mut self) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            runs.stop();
+            self.dispatch_waiting();
+        }
+        self.play(Mode::Paused);
+    }
+
+    /// Takes so many steps from here and holds.
+    fn step(&mut self, steps: u64) {
+        if let Stage::Ready(runs) = &self.stage {
+            let until = runs.now().step.saturating_add(steps);
+            self.play(Mode::Stepping { until });
+        }
+    }
+
+    /// Starts afresh, and goes on where nothing had stopped it.
+    fn reset(&mut self) {
+        if let Stage::Ready(runs) = &mut self.stage {
+            runs.reset();
+            let goes_on = self.clock.mode() == Mode::Running && runs.fault().is_none();
+            self.play(if goes_on { Mode::Running } else { Mode::Paused });
+        }
+    }
+
+    /// Shows a branch again, where there is one run only.
+    fn take_up(&mut self, index: usize) {
+        if matches!(&self.stage, Stage::Ready(runs) if runs.is_pair()) {
+            self.news.warnings.push(OF_ONE_RUN.into());
+        } else {
+            self.travel(|runs| runs.take_up(index));
         }
     }
 
@@ -296,7 +317,8 @@ impl Engine {
         self.use_threads(self.threads);
     }
 
-    /// Whether `command` has no meaning before there is a run, or before it stands where it was asked to go.
+    /// Whether `command` has no meaning before there is a run, or before it stands where it was
+    /// asked to go.
     fn must_wait(&self, command: &LabCommand) -> bool {
         let acts_at_once = matches!(
             command,

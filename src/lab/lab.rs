@@ -1,8 +1,10 @@
-//! A lab: one run or two equal ones, as the window, scripts and the headless runner see and change them.
+//! A lab: one run or two equal ones, as the window, scripts and the headless runner see and change
+//! them.
 //!
-//! In: a scene or a session, then [`LabCommand`]s by [`Lab::send`], which is the only road back, and ticks of wall-clock
-//! time. Out: a [`RunView`] of each run, always of the same step, and what the lab does. It computes nothing itself: an
-//! engine does, inline or on a thread of its own, and which one does not show in a trajectory.
+//! In: a scene or a session, then [`LabCommand`]s by [`Lab::send`], which is the only road back,
+//! and ticks of wall-clock time. Out: a [`RunView`] of each run, always of the same step, and what
+//! the lab does. It computes nothing itself: an engine does, inline or on a thread of its own, and
+//! which one does not show in a trajectory.
 
 use super::command::LabCommand;
 use super::driver::Driver;
@@ -23,8 +25,8 @@ const RATE_TIME: Duration = Duration::from_millis(400);
 /// Wall-clock time of running after which a run is worth keeping even if nothing was changed in it.
 const LONG_RUN: Duration = Duration::from_mins(5);
 
-/// One run or two equal ones. What is read of a lab without naming a [`Half`] is the left run, which is all there is of a
-/// lone one.
+/// One run or two equal ones. What is read of a lab without naming a [`Half`] is the left run,
+/// which is all there is of a lone one.
 pub struct Lab {
     /// The left run, and the right one where there are two.
     runs: Vec<RunView>,
@@ -74,7 +76,8 @@ impl Deref for Lab {
 }
 
 impl Lab {
-    /// Opens `scene`. On a thread this returns at once and the run is prepared there; inline it is prepared by ticks.
+    /// Opens `scene`. On a thread this returns at once and the run is prepared there; inline it is
+    /// prepared by ticks.
     pub fn open(scene: Scene, options: Options) -> Self {
         let scene = Arc::new(scene);
         let advice = advise(&scene);
@@ -84,7 +87,8 @@ impl Lab {
         })
     }
 
-    /// Opens `session` at the moment that was shown. What `options` say of beds and scripts means nothing for it.
+    /// Opens `session` at the moment that was shown. What `options` say of beds and scripts means
+    /// nothing for it.
     pub fn resume(session: Session, options: Options) -> Self {
         let scene = Arc::new(session.claim().scene.clone());
         let original = Arc::new(session.original().clone());
@@ -125,7 +129,8 @@ impl Lab {
         lab
     }
 
-    /// The scene as it was opened: another than [`RunView::scene`] where what acts from the next start on was changed.
+    /// The scene as it was opened: another than [`RunView::scene`] where what acts from the next
+    /// start on was changed.
     pub fn original(&self) -> &Arc<Scene> {
         &self.original
     }
@@ -163,7 +168,8 @@ impl Lab {
         Some(provenance.beside(change, right.world()?))
     }
 
-    /// What an undo would take back, and a redo bring back; of two runs, what was changed since they began.
+    /// What an undo would take back, and a redo bring back; of two runs, what was changed since
+    /// they began.
     pub fn undo_and_redo(&self) -> [Option<&Changed>; 2] {
         let past = self.half(Half::Right).past();
         [past.undo.as_ref(), past.redo.as_ref()]
@@ -187,8 +193,8 @@ impl Lab {
         }
     }
 
-    /// Asks for `command`. It is dispatched between two pieces of work; values are stamped with their step and kept. What
-    /// is refused is told by [`RunView::warnings`].
+    /// Asks for `command`. It is dispatched between two pieces of work; values are stamped with
+    /// their step and kept. What is refused is told by [`RunView::warnings`].
     pub fn send(&mut self, command: impl Into<LabCommand>) {
         let command = command.into();
         self.sent += 1;
@@ -267,7 +273,8 @@ impl Lab {
         !self.saved.pending.is_empty()
     }
 
-    /// Whether there is something that no file holds and that would be missed: changes, branches, or minutes of computing.
+    /// Whether there is something that no file holds and that would be missed: changes, branches,
+    /// or minutes of computing.
     pub fn is_unsaved(&self) -> bool {
         let past = self.past();
         let changed = past.undo.is_some() || past.redo.is_some() || !past.kept.is_empty();

@@ -1,17 +1,20 @@
 //! Labs: one run or two equal ones side by side, with one clock, changed by one enum of commands.
 //!
-//! In: a scene or a session, then commands and ticks of wall-clock time. Out: the newest state of each run, what was
-//! changed and measured in it, what the lab does. How the work is cut into pieces, and on which thread it is done, does
-//! not show in a trajectory.
+//! In: a scene or a session, then commands and ticks of wall-clock time. Out: the newest state of
+//! each run, what was changed and measured in it, what the lab does. How the work is cut into
+//! pieces, and on which thread it is done, does not show in a trajectory.
+//!
+//! Each row of the table uses only rows below it; a test holds the files to that.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `lab`, `run_view` | what the outside sees: the lab, and each of its runs |
-//! | `command`, `options`, `status`, `half` | what is asked of a lab, how it is opened, what it does, left and right |
+//! | `lab` | what the outside sees and sends commands to |
 //! | `driver` | who computes: the caller, or a thread |
-//! | `engine`, `clock` | what the driver moves: commands are dispatched here; how far the runs may go |
-//! | `runs` | the runs themselves, kept at the same step |
-//! | `update` | what the engine tells the outside |
+//! | `engine` | what the driver moves: commands are dispatched here |
+//! | `runs`, `run_view` | the runs, kept at the same step; what the outside sees of each |
+//! | `command`, `update` | what is asked of a lab; what the engine tells the outside |
+//! | `clock`, `options` | how far the runs may go; how a lab is opened |
+//! | `status`, `half` | what a lab does; left and right |
 
 mod clock;
 mod command;

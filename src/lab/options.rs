@@ -20,7 +20,8 @@ pub struct Options {
     pub beds: BedStore,
     /// Commands carried out by themselves when their time comes.
     pub script: Vec<ScriptedCommand>,
-    /// Memory for keyframes [bytes]; without any, an earlier moment is computed again from time zero.
+    /// Memory for keyframes [bytes]; without any, an earlier moment is computed again from time
+    /// zero.
     pub memory: usize,
 }
 

@@ -1,7 +1,8 @@
-//! One run of a lab as panels and views see it: the newest state, what was changed and measured, what is asked for.
+//! One run of a lab as panels and views see it: the newest state, what was changed and measured,
+//! what is asked for.
 //!
-//! In: the engine's news. Out: borrowed states, samples and commands; they are shared with the engine, so they may only be
-//! read. Changing a run goes by way of [`super::Lab::send`].
+//! In: the engine's news. Out: borrowed states, samples and commands; they are shared with the
+//! engine, so they may only be read. Changing a run goes by way of [`super::Lab::send`].
 
 use super::update::RunNews;
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
@@ -89,8 +90,8 @@ impl RunView {
         self.generation
     }
 
-    /// The samples of the present branch so far, one every [`crate::run::SAMPLE_INTERVAL`]; those after the state shown
-    /// too.
+    /// The samples of the present branch so far, one every [`crate::run::SAMPLE_INTERVAL`]; those
+    /// after the state shown too.
     pub fn series(&self) -> &Series {
         &self.branch.series
     }
@@ -100,7 +101,10 @@ impl RunView {
         let step = self.world()?.clock.step;
         let steps = self.series().steps();
         let samples = steps.partition_point(|&sampled| sampled <= step);
-        self.series().get(samples.checked_sub(1)?)
+        let known = (samples.checked_sub(1)).and_then(|index| self.series().get(index));
+        let latest = self.news.as_ref()?.latest;
+        let latest = latest.filter(|sample| sample.step <= step);
+        known.into_iter().chain(latest).max_by_key(|s| s.step)
     }
 
     /// The flowing layer so far.
@@ -113,7 +117,8 @@ impl RunView {
         &self.avalanches.list
     }
 
-    /// The commands carried out in the present branch since time zero; those after the state shown too.
+    /// The commands carried out in the present branch since time zero; those after the state shown
+    /// too.
     pub fn commands(&self) -> &[StampedCommand] {
         self.branch.history.commands()
     }
@@ -149,8 +154,8 @@ impl RunView {
         self.news.as_ref().map_or(&[], |news| &news.parameters)
     }
 
-    /// Present value of `parameter` in SI units, or the value asked for where that is still to be carried out; NaN where
-    /// the scene has no such parameter.
+    /// Present value of `parameter` in SI units, or the value asked for where that is still to be
+    /// carried out; NaN where the scene has no such parameter.
     pub fn value(&self, parameter: &Parameter) -> f64 {
         let asked = self.asked.get(parameter).copied();
         let present = || parameter.read(self.world()?);
@@ -167,7 +172,8 @@ impl RunView {
         &self.profile
     }
 
-    /// The time step of the state shown and the limits that this state sets; before there is one, what the scene says.
+    /// The time step of the state shown and the limits that this state sets; before there is one,
+    /// what the scene says.
     pub fn advice(&self) -> &TimeStepAdvice {
         &self.advice
     }

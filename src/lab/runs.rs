@@ -1,26 +1,34 @@
 //! The runs of a lab, one or two, each with its timeline; two are kept at the same step.
 //!
-//! In: what is to be done in all of them or in one. Out: their states, all of the same step. Each run goes the way, to the
-//! bit, that it would go alone: the same change is made in both before the same step, and a change of one of them is noted
-//! in the other, so that undo and redo lead both to the same moment, and so does a branch.
+//! In: what is to be done in all of them or in one. Out: their states, all of the same step. Each
+//! run goes the way, to the bit, that it would go alone: the same change is made in both before the
+//! same step, and a change of one of them is noted in the other, so that undo and redo lead both to
+//! the same moment, and so does a branch.
 //!
-//! Two runs advance at the same time, each on its own threads, piece by piece to a common step. On the way to another
-//! moment each goes as fast as its keyframes let it; where one stops short, because of a fault or because it was told to,
-//! the one that is ahead goes back to it.
+//! Two runs advance at the same time, each on its own threads, piece by piece to a common step. On
+//! the way to another moment each goes as fast as its keyframes let it; where one stops short,
+//! because of a fault or because it was told to, the one that is ahead goes back to it.
 
 use super::Half;
 use super::clock::Clock;
 use super::update::{RunNews, RunsNews};
-use crate::run::{Command, CommandError, Parameter, Run, Session, Snapshot, Timeline};
+use crate::run::{Branch, Command, CommandError, Parameter, Run, Session, Snapshot, Timeline};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::{self, World};
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Why two time steps are not compared.
 pub const ONE_STEP: &str = "Two runs side by side have the same time step";
+
+/// Wall-clock time from one sharing of the samples to the next, per sample. The first sample that
+/// is taken after they were shared copies those before it, about 300 bytes each. Copying takes 0.2
+/// ms for a minute's samples and 3 ms for those of ten minutes: so it takes two parts in a hundred
+/// of the time at most.
+const TIME_PER_SAMPLE: Duration = Duration::from_micros(15);
 
 /// The runs of a lab, one at least.
 pub struct Runs {
@@ -39,6 +47,9 @@ struct LabRun {
     shown: Arc<World>,
     /// Steps and commands carried out in the state shown.
     shown_at: (u64, usize),
+    /// The branch as it is shared with the outside, and since when.
+    branch: Arc<Branch>,
+    shared_at: Instant,
 }
 
 /// What came of a piece of work.
@@ -55,6 +66,8 @@ impl LabRun {
         Self {
             shown: Arc::new(timeline.run().world().clone()),
             shown_at: timeline.steps_and_commands(),
+            branch: Arc::new(timeline.branch().clone()),
+            shared_at: Instant::now(),
             timeline,
             fault: None,
             profile: Profile::default(),
@@ -65,18 +78,33 @@ impl LabRun {
         self.timeline.run().world().clock.step
     }
 
-    fn news(&mut self, is_renewed: bool) -> RunNews {
+    fn news(&mut self, is_renewed: bool, rests: bool) -> RunNews {
         if is_renewed {
             self.shown = Arc::new(self.timeline.run().world().clone());
             self.shown_at = self.timeline.steps_and_commands();
         }
+        self.share_branch(rests);
         RunNews {
             world: self.shown.clone(),
             parameters: self.timeline.run().parameters().clone(),
-            branch: Arc::new(self.timeline.branch().clone()),
+            branch: self.branch.clone(),
+            latest: self.timeline.branch().series.last(),
             past: self.timeline.past(),
             fault: self.fault.clone(),
             profile: self.profile.clone(),
+        }
+    }
+
+    /// Shares the branch with the outside again, where that costs nothing or is due.
+    fn share_branch(&mut self, rests: bool) {
+        let branch = self.timeline.branch();
+        let samples = branch.series.len();
+        let list = |branch: &Branch| (branch.number, branch.history.commands().len());
+        let costs_nothing = samples == self.branch.series.len();
+        let is_due = self.shared_at.elapsed() >= TIME_PER_SAMPLE.saturating_mul(samples as u32);
+        if rests || costs_nothing || is_due || list(branch) != list(&self.branch) {
+            self.branch = Arc::new(branch.clone());
+            self.shared_at = Instant::now();
         }
     }
 }
@@ -139,7 +167,8 @@ impl Runs {
         }
     }
 
-    /// The step that `run` is to come to before the next command. While one is on the way to a moment, the others wait.
+    /// The step that `run` is to come to before the next command. While one is on the way to a
+    /// moment, the others wait.
     fn goal(&self, run: &LabRun, clock: &Clock) -> u64 {
         let destination = run.timeline.destination();
         if destination.is_none() && self.are_on_the_way() {
@@ -184,8 +213,8 @@ impl Runs {
         }
     }
 
-    /// Shows what is recorded already up to `step` faster than it can be computed. Two runs have keyframes at different
-    /// steps, so they compute it.
+    /// Shows what is recorded already up to `step` faster than it can be computed. Two runs have
+    /// keyframes at different steps, so they compute it.
     pub fn skip_towards(&mut self, step: u64) {
         if !self.is_pair() && !self.are_on_the_way() {
             self.timelines()
@@ -209,7 +238,8 @@ impl Runs {
         self.timelines().for_each(Timeline::reset);
     }
 
-    /// Takes the last change back in all. What was changed before a comparison began is the left run's alone and stays.
+    /// Takes the last change back in all. What was changed before a comparison began is the left
+    /// run's alone and stays.
     pub fn undo(&mut self) {
         if self
             .list
@@ -248,8 +278,8 @@ impl Runs {
             .for_each(|timeline| timeline.use_threads(share));
     }
 
-    /// Makes `change` in all runs, or in one `half`: by itself where it is what the two differ in, in the left one.
-    /// It is part of the change before it where it `joins`.
+    /// Makes `change` in all runs, or in one `half`: by itself where it is what the two differ in,
+    /// in the left one. It is part of the change before it where it `joins`.
     ///
     /// # Errors
     /// As [`Run::apply`]; nothing is changed in any of them then.
@@ -283,8 +313,9 @@ impl Runs {
         Ok(())
     }
 
-    /// Starts a second run beside the first, with keyframes in `memory` bytes: both at time zero, with the present values
-    /// of all parameters but `parameter`, which has this `value` in the right one.
+    /// Starts a second run beside the first, with keyframes in `memory` bytes: both at time zero,
+    /// with the present values of all parameters but `parameter`, which has this `value` in the
+    /// right one.
     ///
     /// # Errors
     /// Why there can be no second run now, in a sentence.
@@ -340,7 +371,8 @@ impl Runs {
         self.is_news = true;
     }
 
-    /// Writes the session of a scene that was opened as `original` to `path`; of two runs, the right one as a branch.
+    /// Writes the session of a scene that was opened as `original` to `path`; of two runs, the
+    /// right one as a branch.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -368,7 +400,7 @@ impl Runs {
     }
 
     /// All runs as they are to be shown, where all are at the same step.
-    pub fn news(&mut self) -> Option<RunsNews> {
+    pub fn news(&mut self, clock: &Clock) -> Option<RunsNews> {
         for run in &mut self.list {
             let news = run.timeline.take_news();
             self.is_news |= news.switched || news.arrived;
@@ -379,17 +411,18 @@ impl Runs {
         let moved = (self.list.iter()).any(|run| run.shown_at != run.timeline.steps_and_commands());
         let is_renewed = self.is_news || (moved && !self.are_on_the_way());
         self.is_news = false;
+        let rests = !self.have_work(clock);
         Some(RunsNews {
             comparison: self.comparison.clone(),
             runs: (self.list.iter_mut())
-                .map(|run| run.news(is_renewed))
+                .map(|run| run.news(is_renewed, rests))
                 .collect(),
         })
     }
 }
 
-/// Lets each of the `runs` come to its goal: the first on this thread, others on threads of their own. Whether one of them
-/// met a fault on the way.
+/// Lets each of the `runs` come to its goal: the first on this thread, others on threads of their
+/// own. Whether one of them met a fault on the way.
 fn advance_all(runs: &mut [LabRun], goals: &[u64]) -> bool {
     let advance = |run: &mut LabRun, goal: u64| {
         if run.step() >= goal {

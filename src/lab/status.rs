@@ -21,7 +21,8 @@ pub enum Status {
     Paused,
     /// It goes on.
     Running,
-    /// The solver met an absurd state; the last good one is shown, none where the bed was still settling.
+    /// The solver met an absurd state; the last good one is shown, none where the bed was still
+    /// settling.
     Faulted(Fault),
     /// There is no run, for the reason given.
     Failed(String),

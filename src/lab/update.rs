@@ -1,8 +1,11 @@
-//! What the engine tells the outside: news in an [`Update`], each replaced or continued by the next.
+//! What the engine tells the outside: news in an [`Update`], each replaced or continued by the
+//! next.
 //!
-//! In: nothing. Out: plain values that travel between threads. States, samples and commands are shared, not copied.
+//! In: nothing. Out: plain values that travel between threads. States, samples and commands are
+//! shared, not copied.
 
 use super::Status;
+use crate::measure::Sample;
 use crate::run::{Branch, Parameter, ParameterInfo, Past};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
@@ -14,8 +17,8 @@ use std::sync::Arc;
 pub struct Update {
     /// The runs, where there are any and all are at the same step.
     pub runs: Option<RunsNews>,
-    /// How many commands were dispatched since the engine was made. None while two runs are on the way to a common step:
-    /// what they become by then is told together.
+    /// How many commands were dispatched since the engine was made. None while two runs are on the
+    /// way to a common step: what they become by then is told together.
     pub answered: Option<u64>,
     /// What the lab does.
     pub status: Option<Status>,
@@ -40,8 +43,10 @@ pub struct RunNews {
     pub world: Arc<World>,
     /// The parameters that can change while it goes on.
     pub parameters: Arc<[ParameterInfo]>,
-    /// What was changed and measured, up to its end.
+    /// What was changed and measured, up to its end or to a little before it.
     pub branch: Arc<Branch>,
+    /// The newest sample, which the branch shared here may not have yet.
+    pub latest: Option<Sample>,
     /// What lies behind and ahead of the state.
     pub past: Past,
     /// What stopped it, if something did.

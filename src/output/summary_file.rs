@@ -73,5 +73,5 @@ impl SummaryFile<'_> {
 struct Signed<'a> {
     #[serde(flatten)]
     summary: &'a SummaryFile<'a>,
-    fingerprint: String,
+    fingerprint: Option<String>,
 }

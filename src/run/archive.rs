@@ -1,8 +1,9 @@
-//! A timeline as a file can keep it: every branch once, however often it is referred to, and the states it takes to go on
-//! without computing them again.
+//! A timeline as a file can keep it: every branch once, however often it is referred to, and the
+//! states it takes to go on without computing them again.
 //!
-//! In: what a [`super::Timeline`] holds. Out: an [`Archive`], which postcard turns into bytes. Shapes of polyhedra, which
-//! never change, are kept with the bed alone. Files are read and written by [`super::Session`].
+//! In: what a [`super::Timeline`] holds. Out: an [`Archive`], which postcard turns into bytes.
+//! Shapes of polyhedra, which never change, are kept with the bed alone. Files are read and written
+//! by [`super::Session`].
 
 use super::Snapshot;
 use super::branch::Branch;
@@ -12,7 +13,8 @@ use crate::world::World;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most memory that states other than the one shown take [bytes]: without them, ends of branches are computed again.
+/// Most memory that states other than the one shown take [bytes]: without them, ends of branches
+/// are computed again.
 const MOST_STATES: usize = 64 << 20;
 
 /// All that a timeline is.
@@ -76,7 +78,8 @@ impl ArchivedEntry {
         }
     }
 
-    /// The entry again, with the branch it leads to out of `branches`; none where there is no such branch.
+    /// The entry again, with the branch it leads to out of `branches`; none where there is no such
+    /// branch.
     pub fn unpack(self, branches: &[Arc<Branch>]) -> Option<UndoEntry> {
         let destination = match self.destination {
             ArchivedDestination::Earlier { commands, moment } => {

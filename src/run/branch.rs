@@ -1,7 +1,9 @@
-//! A branch: one run among all that were begun from the same bed, as it is known from time zero to its end so far.
+//! A branch: one run among all that were begun from the same bed, as it is known from time zero to
+//! its end so far.
 //!
-//! In: changes and samples, as a run makes and takes them. Out: a [`Branch`], which can be kept, shown again, cut off at
-//! an earlier moment to begin another, and put into a file. It holds no state: see [`super::keyframes`].
+//! In: changes and samples, as a run makes and takes them. Out: a [`Branch`], which can be kept,
+//! shown again, cut off at an earlier moment to begin another, and put into a file. It holds no
+//! state: see [`super::keyframes`].
 
 use super::Script;
 use super::history::{History, Moment, Position};
@@ -9,8 +11,8 @@ use crate::measure::{FlowHistory, Series};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// All that is known of a run from time zero to its end so far. What grows is shared: a copy is cheap, and the first sample
-/// that is added while a copy is about copies the samples before it.
+/// All that is known of a run from time zero to its end so far. What grows is shared: a copy is
+/// cheap, and the first sample that is added while a copy is about copies the samples before it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Branch {
     /// Which of all branches it is, counted from 1.
@@ -39,8 +41,8 @@ impl Branch {
         }
     }
 
-    /// The beginning of another branch, of this `number`: this one up to `end`, where its first `commands` were carried
-    /// out.
+    /// The beginning of another branch, of this `number`: this one up to `end`, where its first
+    /// `commands` were carried out.
     #[must_use]
     pub fn until(&self, commands: usize, end: Moment, number: u32) -> Self {
         let mut branch = self.clone();
@@ -80,8 +82,8 @@ impl Branch {
         self.end.step > last
     }
 
-    /// What is still to be carried out after the first `commands`, if the run goes on beyond the branch's end, and how
-    /// many of these commands are the branch's own.
+    /// What is still to be carried out after the first `commands`, if the run goes on beyond the
+    /// branch's end, and how many of these commands are the branch's own.
     pub fn rest(&self, commands: usize) -> (Script, usize) {
         let all = self.history.commands();
         let recorded = &all[commands.min(all.len())..];

@@ -1,7 +1,8 @@
-//! What a file claims: that this scene with these commands comes to that state.
+//! The record of a run, as files hold it: that this scene with these commands comes to that state.
 //!
-//! In: a state and all that leads to it. Out: a [`Claim`], as files hold it. A fingerprint over all that makes the claim
-//! tells a file that was edited or damaged since. `grainfall verify FILE` computes the state again.
+//! In: a state and all that leads to it. Out: a [`Claim`], as JSON files hold it. Its fingerprint
+//! shows whether the file was edited or damaged since. Nothing is computed again here: `grainfall
+//! verify FILE` does that.
 
 use super::{Command, ScriptedCommand, StampedCommand};
 use crate::files::write_whole;
@@ -37,16 +38,18 @@ pub struct Claim {
     pub fingerprint: Option<String>,
 }
 
-/// Hash of all that a claim states. Commands count by step and content.
+/// Hash of all that a claim states; none where that cannot be written as bytes. Commands count by
+/// step and content.
 pub fn fingerprint<'a>(
     scene: &Scene,
     commands: impl Iterator<Item = (Option<u64>, &'a Command)>,
     steps: u64,
     state_hash: Option<&str>,
-) -> String {
+) -> Option<String> {
     let commands: Vec<_> = commands.collect();
-    let all = postcard::to_stdvec(&(scene, commands, steps, state_hash)).unwrap_or_default();
-    blake3::hash(&all).to_hex()[..32].to_owned()
+    // What a fingerprint is missing of is told where it is written to a file.
+    let all = postcard::to_stdvec(&(scene, commands, steps, state_hash)).ok()?;
+    Some(blake3::hash(&all).to_hex()[..32].to_owned())
 }
 
 impl Claim {
@@ -64,27 +67,36 @@ impl Claim {
             state_hash: Some(world.hash().to_string()),
             fingerprint: None,
         };
-        claim.fingerprint = Some(claim.own_fingerprint());
+        claim.fingerprint = claim.own_fingerprint();
         claim
     }
 
     /// Writes it to the JSON file at `path`, whole or not at all.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When it cannot be written, or has no fingerprint.
     pub fn write(&self, path: &Path) -> io::Result<()> {
+        self.check_fingerprint()?;
         write_whole(path, |file| {
             serde_json::to_writer_pretty(&mut *file, self)?;
             file.write_all(b"\n")
         })
     }
 
-    /// Whether it is as the program wrote it.
-    pub fn is_genuine(&self) -> bool {
-        self.fingerprint.as_deref() == Some(&self.own_fingerprint())
+    /// Refuses to be written without a fingerprint.
+    pub(super) fn check_fingerprint(&self) -> io::Result<()> {
+        let reason =
+            "the scene and its changes cannot be written as bytes, so they have no fingerprint";
+        let missing = || io::Error::other(reason);
+        self.fingerprint.as_ref().map(drop).ok_or_else(missing)
     }
 
-    fn own_fingerprint(&self) -> String {
+    /// Whether it is as the program wrote it.
+    pub fn is_genuine(&self) -> bool {
+        self.fingerprint.is_some() && self.fingerprint == self.own_fingerprint()
+    }
+
+    fn own_fingerprint(&self) -> Option<String> {
         let commands = self
             .commands
             .iter()

@@ -36,17 +36,6 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it changes the time step.
-    pub(crate) fn is_of_time_step(&self) -> bool {
-        matches!(
-            self,
-            Self::Set {
-                parameter: Parameter::TimeStep,
-                ..
-            }
-        )
-    }
-
     /// Its name where it moves along the runs instead of changing one.
     pub(crate) fn moving(&self) -> Option<&'static str> {
         match self {

@@ -1,8 +1,8 @@
 //! The changes that were made to a run, in order, and where a state lies among them.
 //!
-//! In: commands, each with the step before which it was carried out. Out: a [`History`] that tells one run from another.
-//! A scene's trajectory is fixed by its changes, so two states at the same [`Position`] have the same bits. What was
-//! measured is not here: see [`super::branch`].
+//! In: commands, each with the step before which it was carried out. Out: a [`History`] that tells
+//! one run from another. A scene's trajectory is fixed by its changes, so two states at the same
+//! [`Position`] have the same bits. What was measured is not here: see [`super::branch`].
 
 use super::StampedCommand;
 use crate::world::World;

@@ -1,10 +1,11 @@
-//! Keyframes: states along all branches, kept within a budget of memory. An earlier moment is computed from the keyframe
-//! before it instead of from time zero.
+//! Keyframes: states along all branches, kept within a budget of memory. An earlier moment is
+//! computed from the keyframe before it instead of from time zero.
 //!
-//! In: the computing time that was spent, and the state now. Out: the last keyframe before a step of a branch. A keyframe
-//! is due after some computing time since the last one. When the budget is spent, every second one is dropped and the next
-//! are taken half as often, so they stay evenly spread over the computing time, however long a run becomes. Computing from
-//! a keyframe on is the timeline's work.
+//! In: the computing time that was spent, and the state now. Out: the last keyframe before a step
+//! of a branch. A keyframe is due after some computing time since the last one. When the budget is
+//! spent, every second one is dropped and the next are taken half as often, so they stay evenly
+//! spread over the computing time, however long a run becomes. Computing from a keyframe on is the
+//! timeline's work.
 
 use super::Snapshot;
 use super::branch::Branch;
@@ -63,7 +64,8 @@ impl Keyframes {
         self.work = Duration::ZERO;
     }
 
-    /// Keeps the `snapshot` that `take` takes at `position`, unless there is one; what it costs spaces the next.
+    /// Keeps the `snapshot` that `take` takes at `position`, unless there is one; what it costs
+    /// spaces the next.
     pub fn keep(&mut self, position: Position, take: impl FnOnce() -> Snapshot) {
         self.restart();
         if self.budget == 0

@@ -1,8 +1,9 @@
 //! Where an exported file came from: program and version, scene and seed, and the state it shows.
 //!
-//! In: a scene and a state. Out: the same few words for every kind of file: text chunks of a PNG, a description in an
-//! SVG, a comment in XML, and beside tables a `csv-metadata.json` as the W3C's *CSV on the Web* has it, so that the tables
-//! themselves begin with their header for every reader.
+//! In: a scene and a state. Out: the same few words for every kind of exported file: text chunks of
+//! a PNG, a description in an SVG, a comment in XML, and beside tables a `csv-metadata.json` as the
+//! W3C's *CSV on the Web* has it, so that the tables themselves begin with their header for every
+//! reader.
 
 use super::VERSION;
 use crate::scene::Scene;

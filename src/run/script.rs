@@ -1,14 +1,16 @@
-//! Commands that are carried out by themselves when their time comes: how a recorded run is played again.
+//! Commands that are carried out by themselves when their time comes: how a recorded run is played
+//! again.
 //!
-//! In: a list of (step or time, command). Out: each command once, before the first step at or after its own.
+//! In: a list of commands, each with a step or a time. Out: each command once, before the first
+//! step at or after its own. Nothing is carried out here: the run takes what is due.
 
 use super::{Command, StampedCommand};
 use crate::world::Clock;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// A command and when it is due, as files hold it. Where both step and time are given, as in a recorded list, the step
-/// decides.
+/// A command and when it is due, as files hold it. Where both step and time are given, as in a
+/// recorded list, the step decides.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScriptedCommand {
@@ -33,8 +35,8 @@ pub struct Script {
 struct Due {
     step: u64,
     command: Command,
-    /// The simulated time that it was given for [s], where it was not for a step: it keeps that when
-    /// the time step changes. A file keeps the step alone.
+    /// The simulated time that it was given for [s], where it was not for a step: it keeps that
+    /// when the time step changes. A file keeps the step alone.
     #[serde(skip)]
     time: Option<f64>,
 }

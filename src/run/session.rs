@@ -1,9 +1,11 @@
-//! A whole session in one file: the scene, every change, every run that was kept, and the moment shown, to the bit.
+//! A whole session in one file: the scene, every change, every branch, and the moment shown, to the
+//! bit.
 //!
-//! In: a timeline. Out: a file, and from it the same timeline. Its first line names program, layout, version and the
-//! checksum of the rest; its second line is the [`Claim`] of the moment shown, as JSON that people and
-//! `grainfall verify` read; then come states and samples, and the grains that the scene takes from a file. A file of another version is refused: another version may
-//! compute other bits.
+//! In: a timeline. Out: a file, and from it the same timeline. Its first line names program,
+//! layout, version and the checksum of the rest; its second line is the [`Claim`] of the moment
+//! shown, as JSON that people and `grainfall verify` read; then come states and samples, and the
+//! grains that the scene takes from a file. A file of another version is refused: another version
+//! may compute other bits.
 
 use super::archive::Archive;
 use super::claim::{Claim, VERSION};
@@ -100,6 +102,7 @@ impl Session {
 
     /// Whether the file at `path` says that it is one.
     pub fn is_at(path: &Path) -> bool {
+        // What cannot be read says nothing; whoever opens it is told why.
         let mut start = [0; MARK.len()];
         let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
         read.is_ok() && start == *MARK.as_bytes()
@@ -123,6 +126,7 @@ impl Session {
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
+        self.claim.check_fingerprint()?;
         let mut body = serde_json::to_vec(&self.claim)?;
         body.push(b'\n');
         let rest = Rest {
@@ -204,7 +208,8 @@ impl Session {
     }
 }
 
-/// What the JSON `text` holds. By way of a value: an error then speaks of what is wrong, not of a place in a long line.
+/// What the JSON `text` holds. By way of a value: an error then speaks of what is wrong, not of a
+/// place in a long line.
 fn of_json<T: DeserializeOwned>(text: &str) -> Result<T, Reason> {
     serde_json::from_str(text)
         .and_then(serde_json::from_value)
@@ -214,6 +219,7 @@ fn of_json<T: DeserializeOwned>(text: &str) -> Result<T, Reason> {
 /// The text up to the first line's end, and what follows it.
 fn first_line(bytes: &[u8]) -> Option<(&str, &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
+    // A line that is no text is none that this program wrote; the caller says so.
     let line = std::str::from_utf8(&bytes[..end]).ok()?;
     Some((line, &bytes[end + 1..]))
 }

@@ -1,4 +1,7 @@
-//! What is shared in memory, in a file: written as what it is, read into a piece of memory of its own.
+//! How a field behind an [`Arc`] stands in a file, for `#[serde(with = ...)]`.
+//!
+//! In: a shared value. Out: the same bytes as of the value itself. Two fields that share a value in
+//! memory are written twice and share nothing after they are read.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::Arc;

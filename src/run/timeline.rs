@@ -1,14 +1,16 @@
 //! All branches of a run: go back, look, change something and run on, take it back.
 //!
-//! In: steps to go to and changes to make. Out: the run at that step, and all branches there have been. To show an earlier
-//! moment, the state is restored from the keyframe before it and what followed is computed again, commands included, which
-//! gives the same bits. A change made while an earlier moment is shown begins another branch; the one that is left is kept.
-//! How fast to go, and for how long, is decided elsewhere.
+//! In: steps to go to and changes to make. Out: the run at that step, and all branches there have
+//! been. To show an earlier moment, the state is restored from the keyframe before it and what
+//! followed is computed again, commands included, which gives the same bits. A change made while an
+//! earlier moment is shown begins another branch; the one that is left is kept. How fast to go, and
+//! for how long, is decided elsewhere.
 
 use super::archive::{Archive, ArchivedEntry, ArchivedState, Table};
 use super::branch::Branch;
 use super::history::{Moment, Position};
 use super::keyframes::Keyframes;
+use super::past::{Journey, News, Past};
 use super::undo::{Changed, Destination, UndoEntry, UndoList};
 use super::{Command, CommandError, Parameter, Run, Script, Snapshot};
 use crate::scene::Scene;
@@ -29,39 +31,6 @@ pub struct Timeline {
     news: News,
     /// Branches begun so far.
     begun: u32,
-}
-
-/// On the way to a moment: steps at which it began and will end.
-#[derive(Clone, Copy, Debug)]
-struct Journey {
-    from: u64,
-    to: u64,
-}
-
-/// What came about since it was last asked.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct News {
-    /// Another branch is the present one.
-    pub switched: bool,
-    /// The state is one that a person asked to see: the nearest keyframe or the end of the way.
-    pub arrived: bool,
-}
-
-/// What lies behind and ahead of the state shown.
-#[derive(Clone, Debug, Default)]
-pub struct Past {
-    /// Which of all branches the present one is, counted from 1.
-    pub number: u32,
-    /// The last moment of the present branch so far.
-    pub end: Moment,
-    /// What an undo would take back.
-    pub undo: Option<Changed>,
-    /// What a redo would bring back.
-    pub redo: Option<Changed>,
-    /// Branches that were left for others, the oldest first.
-    pub kept: Vec<Arc<Branch>>,
-    /// Memory that keyframes take [bytes].
-    pub memory: usize,
 }
 
 impl Timeline {
@@ -109,8 +78,8 @@ impl Timeline {
         }
     }
 
-    /// The timeline of `scene` that was put into `archive`, on `threads` threads, with keyframes in `budget` bytes. What
-    /// an archive that is not whole refers to and does not hold is left out.
+    /// The timeline of `scene` that was put into `archive`, on `threads` threads, with keyframes in
+    /// `budget` bytes. What an archive that is not whole refers to and does not hold is left out.
     pub fn unpack(archive: Archive, scene: Arc<Scene>, threads: usize, budget: usize) -> Self {
         let branches: Vec<Arc<Branch>> = archive.branches.into_iter().map(Arc::new).collect();
         let entry = |entry: ArchivedEntry| entry.unpack(&branches);
@@ -217,10 +186,7 @@ impl Timeline {
 
     /// How much of the way to it is done, 0 … 1.
     pub fn progress(&self) -> f32 {
-        self.journey.map_or(1.0, |Journey { from, to }| {
-            let done = self.step().saturating_sub(from);
-            done as f32 / (to - from).max(1) as f32
-        })
+        (self.journey).map_or(1.0, |journey| journey.progress(self.step()))
     }
 
     /// Stays where it is on the way.
@@ -247,8 +213,8 @@ impl Timeline {
         outcome
     }
 
-    /// Goes ahead in the present branch to the last keyframe at or before `step`: for those who want to see it faster than
-    /// it can be computed.
+    /// Goes ahead in the present branch to the last keyframe at or before `step`: for those who
+    /// want to see it faster than it can be computed.
     pub fn skip_towards(&mut self, step: u64) {
         let step = step.min(self.branch().end.step);
         let ahead = self.keyframes.nearest(&self.branch().history, step);
@@ -266,13 +232,17 @@ impl Timeline {
         self.travel(here, step.min(self.branch().end.step));
     }
 
-    /// Carries out `command` at the moment shown. At an earlier moment this begins another branch and keeps the one that
-    /// is left. It is part of the change before it where it `joins`.
+    /// Carries out `command` at the moment shown. At an earlier moment this begins another branch
+    /// and keeps the one that is left. It is part of the change before it where it `joins`.
     ///
     /// # Errors
     /// As [`Run::apply`].
     pub fn change(&mut self, command: Command, joins: bool) -> Result<(), CommandError> {
-        self.change_by(command, joins, Run::apply_change)
+        self.run.check(&command)?;
+        match self.begin_change(&command, joins) {
+            Some(joins) => self.run.apply_change(command, joins),
+            None => Ok(()),
+        }
     }
 
     /// The same in one of two runs that keep one time: the time step follows no limit.
@@ -284,25 +254,15 @@ impl Timeline {
         command: Command,
         joins: bool,
     ) -> Result<(), CommandError> {
-        self.change_by(command, joins, Run::apply_at_this_step)
-    }
-
-    fn change_by(
-        &mut self,
-        command: Command,
-        joins: bool,
-        apply: fn(&mut Run, Command, bool) -> Result<(), CommandError>,
-    ) -> Result<(), CommandError> {
         self.run.check(&command)?;
-        let Command::Set { parameter, .. } = &command else {
-            return Ok(());
-        };
-        let joins = self.begin_change(parameter, joins);
-        apply(&mut self.run, command, joins)
+        match self.begin_change(&command, joins) {
+            Some(joins) => self.run.apply_at_this_step(command, joins),
+            None => Ok(()),
+        }
     }
 
-    /// Notes that `command` was carried out in the run beside this one and not here: an undo takes it back in both, and
-    /// where it was made at an earlier moment both go on from there.
+    /// Notes that `command` was carried out in the run beside this one and not here: an undo takes
+    /// it back in both, and where it was made at an earlier moment both go on from there.
     ///
     /// # Errors
     /// As [`Timeline::change`].
@@ -312,21 +272,23 @@ impl Timeline {
         joins: bool,
     ) -> Result<(), CommandError> {
         self.run.check(command)?;
-        if let Command::Set { parameter, .. } = command {
-            self.begin_change(parameter, joins);
-        }
+        self.begin_change(command, joins);
         Ok(())
     }
 
-    /// Makes a change of `parameter` one that can be taken back; whether it is part of the one before it.
-    fn begin_change(&mut self, parameter: &Parameter, joins: bool) -> bool {
+    /// Makes what `command` sets a change that can be taken back; whether it is part of the one
+    /// before it. None where it sets nothing.
+    fn begin_change(&mut self, command: &Command, joins: bool) -> Option<bool> {
+        let Command::Set { parameter, .. } = command else {
+            return None;
+        };
         self.stop();
         let what = Changed::Parameter(parameter.clone());
         let moment = Moment::of(self.run.world());
         let joins = joins && self.run.is_at_end() && self.changes.can_join();
         if joins {
             self.changes.join(what);
-            return joins;
+            return Some(true);
         }
         self.keep_end();
         let destination = if self.run.is_at_end() {
@@ -339,7 +301,7 @@ impl Timeline {
             }
         };
         self.changes.note(UndoEntry { what, destination });
-        joins
+        Some(false)
     }
 
     /// Starts afresh at time zero with the present values, keeping the branch that is left.
@@ -393,8 +355,8 @@ impl Timeline {
         }
     }
 
-    /// Keeps `branch`, which began from the same bed, beside the present one, with the state at its `end` where that is
-    /// known; returns its index.
+    /// Keeps `branch`, which began from the same bed, beside the present one, with the state at its
+    /// `end` where that is known; returns its index.
     pub(crate) fn adopt(&mut self, mut branch: Branch, end: Option<Snapshot>) -> usize {
         branch.number = self.next_number();
         if let Some(end) = end {
@@ -437,7 +399,8 @@ impl Timeline {
         self.keyframes.keep(position, || self.run.snapshot());
     }
 
-    /// Keeps the end of the present branch where that is shown, so that it can be shown again at once.
+    /// Keeps the end of the present branch where that is shown, so that it can be shown again at
+    /// once.
     fn keep_end(&mut self) {
         if self.run.is_at_end() {
             self.keep_keyframe();
@@ -497,7 +460,8 @@ impl Timeline {
         }
     }
 
-    /// Sets out from `here` for `step` of the present branch: from the nearest keyframe, where that is nearer.
+    /// Sets out from `here` for `step` of the present branch: from the nearest keyframe, where that
+    /// is nearer.
     fn travel(&mut self, here: Position, step: u64) {
         let history = &self.branch().history;
         let start = self.keyframes.nearest(history, step).cloned();

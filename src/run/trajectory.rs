@@ -1,23 +1,23 @@
 //! The trajectory of a scene: its world, the commands carried out and the samples taken.
 //!
-//! In: a scene and its settled bed, then commands and step numbers to advance to. Out: the world at that step and a
-//! [`Sample`] every [`SAMPLE_INTERVAL`] of simulated time. Nothing here knows of wall-clock time, ticks or threads:
-//! however a run is sliced, the same scene, seed and commands give the same bits.
+//! In: a scene and its settled bed, then commands and step numbers to advance to. Out: the world at
+//! that step and a [`Sample`] every [`SAMPLE_INTERVAL`] of simulated time. Nothing here knows of
+//! wall-clock time, ticks or threads: however a run is sliced, the same scene, seed and commands
+//! give the same bits.
 
 use super::branch::Branch;
+use super::check::check;
 use super::history::Moment;
 use super::parameter::{self, ParameterInfo};
+use super::sampling::{next_sample, sample_step};
 use super::script::Script;
-use super::{Command, Parameter, StampedCommand};
+use super::snapshot::{Checkpoint, Snapshot};
+use super::{Command, CommandError, Parameter, StampedCommand};
 use crate::measure::{FlowHistory, Series, sample_and_surface};
 use crate::scene::{Scene, TimeStep};
 use crate::solver::{Extremes, Fault, Profile, Solver, TimeStepAdvice};
 use crate::world::World;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// Simulated time between two samples [s].
-pub const SAMPLE_INTERVAL: f64 = 0.02;
 
 /// A run from time zero to now.
 pub struct Run {
@@ -39,106 +39,6 @@ pub struct Run {
     /// How many of the script's commands are recorded already, with what the time step became.
     recorded: usize,
     extremes: Extremes,
-}
-
-/// Where a run stood: all it takes to go on from there, together with the run's commands and samples until then.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Snapshot {
-    world: World,
-    commands: usize,
-    samples: usize,
-    #[serde(with = "super::shared")]
-    flow: Arc<FlowHistory>,
-    next_sample: u64,
-}
-
-impl Snapshot {
-    /// Steps taken then.
-    pub fn step(&self) -> u64 {
-        self.world.clock.step
-    }
-
-    /// Commands carried out until then.
-    pub fn commands(&self) -> usize {
-        self.commands
-    }
-
-    /// The state then.
-    pub fn world(&self) -> &World {
-        &self.world
-    }
-
-    /// The same with the shapes of polyhedra that `shapes_of` has.
-    pub(crate) fn sharing(mut self, shapes_of: Option<&World>) -> Self {
-        let shapes = shapes_of.and_then(|world| Some(world.polyhedra.as_ref()?.shapes.clone()));
-        if let Some(polyhedra) = &mut self.world.polyhedra {
-            polyhedra.shapes = shapes.unwrap_or_else(|| Arc::new([]));
-        }
-        self
-    }
-
-    /// Memory that it takes [bytes].
-    pub fn memory(&self) -> usize {
-        self.world.memory() + self.flow.memory()
-    }
-}
-
-/// A run as a file can keep it: all it takes to go on in another process, to the same bits.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Checkpoint {
-    world: World,
-    commands: Vec<StampedCommand>,
-    #[serde(with = "super::shared")]
-    series: Arc<Series>,
-    #[serde(with = "super::shared")]
-    flow: Arc<FlowHistory>,
-    next_sample: u64,
-}
-
-impl Checkpoint {
-    /// The state `world` at the end of a run that had these `commands`, this `series` and this
-    /// `flow`.
-    pub fn of(
-        world: &World,
-        commands: &[StampedCommand],
-        series: &Series,
-        flow: &FlowHistory,
-    ) -> Self {
-        Self {
-            world: world.clone(),
-            commands: commands.to_vec(),
-            series: Arc::new(series.clone()),
-            flow: Arc::new(flow.clone()),
-            next_sample: next_sample(world, series.len()),
-        }
-    }
-}
-
-/// Why a command was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CommandError {
-    /// The scene has no such live parameter.
-    #[error("the scene has no parameter `{parameter}`; it has {}", .known.join(", "))]
-    Unknown {
-        /// The key that was given.
-        parameter: String,
-        /// The keys there are.
-        known: Vec<String>,
-    },
-    /// The value lies outside the parameter's range.
-    #[error("`{parameter}` cannot be {value} {unit}; expected {low} … {high} {unit}")]
-    OutOfRange {
-        /// Which parameter.
-        parameter: Parameter,
-        /// The value asked for.
-        value: f64,
-        /// Smallest value it can take.
-        low: f64,
-        /// Largest value it can take.
-        high: f64,
-        /// SI unit of the three.
-        unit: &'static str,
-    },
 }
 
 impl Run {
@@ -180,7 +80,8 @@ impl Run {
         &self.bed
     }
 
-    /// The samples of the run, one every [`SAMPLE_INTERVAL`]; where the state is an earlier one, those after it too.
+    /// The samples of the run, one every [`SAMPLE_INTERVAL`]; where the state is an earlier one,
+    /// those after it too.
     pub fn series(&self) -> &Series {
         &self.branch.series
     }
@@ -234,7 +135,8 @@ impl Run {
         self.follow(script, 0)
     }
 
-    /// The same for all the commands of a recorded run: no time step follows a limit but by a command.
+    /// The same for all the commands of a recorded run: no time step follows a limit but by a
+    /// command.
     ///
     /// # Errors
     /// As [`Run::schedule`].
@@ -258,12 +160,13 @@ impl Run {
         self.apply_due(false);
     }
 
-    /// Carries out `command` now and keeps it. What concerns the clock alone (play, pause, step, seek …) is passed over.
-    /// Where the scene's time step follows its limit and the command moves that limit, a command about the time step is
-    /// carried out after it.
+    /// Carries out `command` now and keeps it. What concerns the clock alone (play, pause, step,
+    /// seek …) is passed over. Where the scene's time step follows its limit and the command moves
+    /// that limit, a command about the time step is carried out after it.
     ///
     /// # Errors
-    /// A [`CommandError`] when the scene has no such parameter or the value is out of its range; nothing changes then.
+    /// A [`CommandError`] when the scene has no such parameter or the value is out of its range;
+    /// nothing changes then.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
         self.apply_change(command, false)
     }
@@ -338,8 +241,8 @@ impl Run {
         }
     }
 
-    /// Goes on from a `checkpoint` of a run of the same scene and script. Commands of the script that were carried out
-    /// before it are not carried out again.
+    /// Goes on from a `checkpoint` of a run of the same scene and script. Commands of the script
+    /// that were carried out before it are not carried out again.
     pub fn resume(&mut self, checkpoint: Checkpoint) {
         self.world = checkpoint.world;
         self.script.forget_past(&self.world.clock);
@@ -386,7 +289,8 @@ impl Run {
         self.note_end();
     }
 
-    /// Goes to time zero, before any command of the present branch; what followed there stays known.
+    /// Goes to time zero, before any command of the present branch; what followed there stays
+    /// known.
     pub(crate) fn rewind(&mut self) {
         self.world.clone_from(&self.bed);
         (self.commands, self.samples, self.next_sample) = (0, 0, 0);
@@ -396,14 +300,14 @@ impl Run {
         self.note_end();
     }
 
-    /// Is about `branch` from now on, of which the state need not be one, and returns the branch that is left. The caller
-    /// goes to a state of it next.
+    /// Is about `branch` from now on, of which the state need not be one, and returns the branch
+    /// that is left. The caller goes to a state of it next.
     pub(crate) fn replace_branch(&mut self, branch: Branch) -> Branch {
         std::mem::replace(&mut self.branch, branch)
     }
 
-    /// Ends the present branch at the state, which becomes the beginning of one of this `number`; returns the branch that
-    /// is left.
+    /// Ends the present branch at the state, which becomes the beginning of one of this `number`;
+    /// returns the branch that is left.
     pub(crate) fn begin_branch(&mut self, number: u32) -> Branch {
         let end = Moment::of(&self.world);
         let branch = self.branch.until(self.commands, end, number);
@@ -412,8 +316,9 @@ impl Run {
         left
     }
 
-    /// Goes to time zero and begins a branch of this `number` there. Those of the `values` that differ from the bed's
-    /// become commands at step zero, all of them one change. Returns the branch that is left.
+    /// Goes to time zero and begins a branch of this `number` there. Those of the `values` that
+    /// differ from the bed's become commands at step zero, all of them one change. Returns the
+    /// branch that is left.
     pub(crate) fn start_afresh(&mut self, values: &[(Parameter, f64)], number: u32) -> Branch {
         let left = self.replace_branch(Branch::begin(number));
         self.rewind();
@@ -447,8 +352,8 @@ impl Run {
         }
     }
 
-    /// Makes a change; where the time step follows its limit and that has moved, takes the largest stable time step from
-    /// here on, as part of the change.
+    /// Makes a change; where the time step follows its limit and that has moved, takes the largest
+    /// stable time step from here on, as part of the change.
     fn followed(&mut self, change: impl FnOnce(&mut Self)) {
         if self.scene.time_step != TimeStep::Following {
             return change(self);
@@ -515,9 +420,7 @@ impl Run {
             Arc::make_mut(&mut self.branch.series).push(sample);
         }
         self.samples += 1;
-        while sample_step(&self.world, self.next_sample) <= self.world.clock.step {
-            self.next_sample += 1;
-        }
+        self.next_sample = next_sample(&self.world, self.next_sample);
     }
 
     /// Notes the state as the branch's end, where it is at or beyond it.
@@ -530,48 +433,4 @@ impl Run {
             }
         }
     }
-}
-
-/// The index of the next sample of a run that stands at `world` with so many `samples`.
-fn next_sample(world: &World, samples: usize) -> u64 {
-    let mut next = samples as u64;
-    while sample_step(world, next) <= world.clock.step {
-        next += 1;
-    }
-    next
-}
-
-/// The step after which the sample of this index is taken.
-fn sample_step(world: &World, sample: u64) -> u64 {
-    world.clock.step_at(sample as f64 * SAMPLE_INTERVAL)
-}
-
-/// Refuses a command that cannot be carried out in `world`.
-pub(crate) fn check(
-    parameters: &[ParameterInfo],
-    world: &World,
-    command: &Command,
-) -> Result<(), CommandError> {
-    let Command::Set { parameter, value } = command else {
-        return Ok(());
-    };
-    let parameter = parameter::canonical(parameter, &world.materials);
-    let step = parameter::time_step(world.clock.time_step);
-    let known = || parameters.iter().chain([&step]);
-    let Some(info) = known().find(|info| info.parameter == parameter) else {
-        return Err(CommandError::Unknown {
-            parameter: parameter.to_string(),
-            known: known().map(|info| info.parameter.to_string()).collect(),
-        });
-    };
-    if info.range.contains(value) {
-        return Ok(());
-    }
-    Err(CommandError::OutOfRange {
-        low: *info.range.start(),
-        high: *info.range.end(),
-        unit: info.unit,
-        value: *value,
-        parameter,
-    })
 }

@@ -1,6 +1,7 @@
 //! What can be taken back and brought back, and where each leads.
 //!
-//! In: changes as they are made. Out: the entry to undo or to redo next. Going there is the timeline's work.
+//! In: changes as they are made. Out: the entry to undo or to redo next. Going there is the
+//! timeline's work.
 
 use super::Parameter;
 use super::branch::Branch;
@@ -38,7 +39,8 @@ pub enum Destination {
     Other { branch: Arc<Branch>, step: u64 },
 }
 
-/// The changes that can be taken back, and those that were, each in the order in which they were made.
+/// The changes that can be taken back, and those that were, each in the order in which they were
+/// made.
 #[derive(Default)]
 pub struct UndoList {
     pub undo: Vec<UndoEntry>,

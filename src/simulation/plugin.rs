@@ -54,8 +54,8 @@ impl Component for Half {
     type Mutability = Mutable;
 }
 
-/// Steps the [`Simulation`] resource, where there is one, in `FixedUpdate`; under `MinimalPlugins` and `DefaultPlugins`
-/// alike.
+/// Steps the [`Simulation`] resource, where there is one, in `FixedUpdate`; under `MinimalPlugins`
+/// and `DefaultPlugins` alike.
 pub struct SimulationPlugin;
 
 /// What the plugin does, for ordering other systems by.

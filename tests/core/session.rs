@@ -1,4 +1,5 @@
-//! Claims about sessions in files: they reopen to the same bits, and a file that cannot is refused in words.
+//! Claims about sessions in files: they reopen to the same bits, and a file that cannot is refused
+//! in words.
 
 use crate::run::{bits, prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
@@ -26,8 +27,8 @@ fn reopened(path: &Path, memory: usize) -> Timeline {
     Session::read(path).unwrap().into_timeline(1, memory)
 }
 
-/// A run with changes, a branch from its middle that goes on, a change there that was taken back, and a moment of the
-/// branch that is not its newest.
+/// A run with changes, a branch from its middle that goes on, a change there that was taken back,
+/// and a moment of the branch that is not its newest.
 fn explored(lab: &Explored) -> Timeline {
     let (mut timeline, _) = lab.recorded(PLENTY);
     lab.seek(&mut timeline, 7);

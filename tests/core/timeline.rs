@@ -1,4 +1,5 @@
-//! Claims about going back in time: the same bits on every way to a moment, whatever was changed, taken back or forgotten.
+//! Claims about going back in time: the same bits on every way to a moment, whatever was changed,
+//! taken back or forgotten.
 
 use crate::run::{bits, friction, prepared, set, shared_beds};
 use grainfall::measure::{Measure, NON_RIGID_TEMPERATURE, Series};
@@ -23,7 +24,8 @@ fn wet() -> Scene {
     scene
 }
 
-/// A scene to explore: how far apart the places are that are looked at, and what is changed at some of them.
+/// A scene to explore: how far apart the places are that are looked at, and what is changed at some
+/// of them.
 pub struct Explored {
     pub scene: Scene,
     pub beds: BedStore,
@@ -46,7 +48,8 @@ pub fn wet_lab() -> Explored {
     }
 }
 
-/// A column of about a hundred Voronoi grains that falls, looked at every 8 ms: within a tenth of a second it has spread.
+/// A column of about a hundred Voronoi grains that falls, looked at every 8 ms: within a tenth of a
+/// second it has spread.
 pub fn column_lab() -> Explored {
     let mut scene = Scene::open("small-column").unwrap();
     scene.set("radius", "12mm").unwrap();
@@ -175,7 +178,8 @@ fn flowing(series: &Series) -> Vec<u64> {
         .collect()
 }
 
-/// A run of 360 ms whose liquid and friction change on the way, with the hash of every twelfth of it.
+/// A run of 360 ms whose liquid and friction change on the way, with the hash of every twelfth of
+/// it.
 fn recorded(memory: usize) -> (Timeline, Vec<StateHash>) {
     wet_lab().recorded(memory)
 }

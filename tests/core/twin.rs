@@ -1,4 +1,5 @@
-//! Claims about two runs side by side: always shown at the same step, each the run that it would be by itself.
+//! Claims about two runs side by side: always shown at the same step, each the run that it would be
+//! by itself.
 
 use crate::run::{bits, prepared, set};
 use crate::timeline::{Explored, column_lab, wet_lab};
@@ -92,7 +93,8 @@ fn common(commands: &[StampedCommand], parameter: &Parameter) -> Vec<(u64, Comma
     others.map(|c| (c.step, c.command.clone())).collect()
 }
 
-/// Claims that `simulation` is what a run by itself becomes that has these `values` at its start and is changed as it was.
+/// Claims that `simulation` is what a run by itself becomes that has these `values` at its start
+/// and is changed as it was.
 fn is_a_lone_run(simulation: &RunView, lab: &Explored, values: &[Command]) {
     let world = simulation.world().unwrap();
     let mut alone = prepared(&lab.scene, 1, lab.beds.clone()).0;
@@ -200,7 +202,8 @@ fn hashes(simulation: &Lab) -> [String; 2] {
     })
 }
 
-/// A change of both halves and one of each alone, taken back one after the other and brought back again.
+/// A change of both halves and one of each alone, taken back one after the other and brought back
+/// again.
 fn is_taken_back_in_both(lab: &Explored, parameter: &Parameter, values: [f64; 4]) {
     let mut simulation = opened(lab, DriverKind::Thread);
     carry_out(&mut simulation, Command::Step(lab.unit));

@@ -1,0 +1,65 @@
+//! Whether a command can be carried out in a run, and why not.
+//!
+//! In: a command, the run's parameters, a state of it. Out: nothing, or a [`CommandError`] with the
+//! value, the range and the keys there are. Nothing is changed here.
+
+use super::parameter::{self, ParameterInfo};
+use super::{Command, Parameter};
+use crate::world::World;
+
+/// Why a command was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CommandError {
+    /// The scene has no such live parameter.
+    #[error("the scene has no parameter `{parameter}`; it has {}", .known.join(", "))]
+    Unknown {
+        /// The key that was given.
+        parameter: String,
+        /// The keys there are.
+        known: Vec<String>,
+    },
+    /// The value lies outside the parameter's range.
+    #[error("`{parameter}` cannot be {value} {unit}; expected {low} … {high} {unit}")]
+    OutOfRange {
+        /// Which parameter.
+        parameter: Parameter,
+        /// The value asked for.
+        value: f64,
+        /// Smallest value it can take.
+        low: f64,
+        /// Largest value it can take.
+        high: f64,
+        /// SI unit of the three.
+        unit: &'static str,
+    },
+}
+
+/// Refuses a command that cannot be carried out in `world`.
+pub(crate) fn check(
+    parameters: &[ParameterInfo],
+    world: &World,
+    command: &Command,
+) -> Result<(), CommandError> {
+    let Command::Set { parameter, value } = command else {
+        return Ok(());
+    };
+    let parameter = parameter::canonical(parameter, &world.materials);
+    let step = parameter::time_step(world.clock.time_step);
+    let known = || parameters.iter().chain([&step]);
+    let Some(info) = known().find(|info| info.parameter == parameter) else {
+        return Err(CommandError::Unknown {
+            parameter: parameter.to_string(),
+            known: known().map(|info| info.parameter.to_string()).collect(),
+        });
+    };
+    if info.range.contains(value) {
+        return Ok(());
+    }
+    Err(CommandError::OutOfRange {
+        low: *info.range.start(),
+        high: *info.range.end(),
+        unit: info.unit,
+        value: *value,
+        parameter,
+    })
+}

@@ -1,0 +1,86 @@
+//! Where a run stood, kept in memory or in a file.
+//!
+//! In: what a run is at a moment. Out: the same again. A [`Snapshot`] leaves out the commands and
+//! samples before it, which its branch has; a [`Checkpoint`] holds them. Going on from either is
+//! the run's work.
+
+use super::StampedCommand;
+use super::sampling::next_sample;
+use crate::measure::{FlowHistory, Series};
+use crate::world::World;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Where a run stood: all it takes to go on from there, together with the run's commands and
+/// samples until then.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Snapshot {
+    pub(super) world: World,
+    pub(super) commands: usize,
+    pub(super) samples: usize,
+    #[serde(with = "super::shared")]
+    pub(super) flow: Arc<FlowHistory>,
+    pub(super) next_sample: u64,
+}
+
+impl Snapshot {
+    /// Steps taken then.
+    pub fn step(&self) -> u64 {
+        self.world.clock.step
+    }
+
+    /// Commands carried out until then.
+    pub fn commands(&self) -> usize {
+        self.commands
+    }
+
+    /// The state then.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The same with the shapes of polyhedra that `shapes_of` has.
+    pub(crate) fn sharing(mut self, shapes_of: Option<&World>) -> Self {
+        let shapes = shapes_of.and_then(|world| Some(world.polyhedra.as_ref()?.shapes.clone()));
+        if let Some(polyhedra) = &mut self.world.polyhedra {
+            polyhedra.shapes = shapes.unwrap_or_else(|| Arc::new([]));
+        }
+        self
+    }
+
+    /// Memory that it takes [bytes].
+    pub fn memory(&self) -> usize {
+        self.world.memory() + self.flow.memory()
+    }
+}
+
+/// A run as a file can keep it: all it takes to go on in another process, to the same bits.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Checkpoint {
+    pub(super) world: World,
+    pub(super) commands: Vec<StampedCommand>,
+    #[serde(with = "super::shared")]
+    pub(super) series: Arc<Series>,
+    #[serde(with = "super::shared")]
+    pub(super) flow: Arc<FlowHistory>,
+    pub(super) next_sample: u64,
+}
+
+impl Checkpoint {
+    /// The state `world` at the end of a run that had these `commands`, this `series` and this
+    /// `flow`.
+    pub fn of(
+        world: &World,
+        commands: &[StampedCommand],
+        series: &Series,
+        flow: &FlowHistory,
+    ) -> Self {
+        Self {
+            world: world.clone(),
+            commands: commands.to_vec(),
+            series: Arc::new(series.clone()),
+            flow: Arc::new(flow.clone()),
+            next_sample: next_sample(world, series.len() as u64),
+        }
+    }
+}
