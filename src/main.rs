@@ -14,7 +14,7 @@ use grainfall::runner::{
 #[cfg(feature = "desktop")]
 use grainfall::scene::seconds;
 use grainfall::scene::{Scene, StoredCells, built_in};
-use grainfall::simulation::{BedStore, Claim, Options, ScriptedCommand, Session, make_bed};
+use grainfall::simulation::{BedStore, Options, RunRecord, ScriptedCommand, Session, make_bed};
 use grainfall::sweep::{Sweep, Variation};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
@@ -392,11 +392,11 @@ fn run_sweep(task: Task) -> Result<u8, RunnerError> {
 
 /// Computes the run of `file` again and says what came out. Returns the exit code.
 fn verify(file: &Path, threads: Option<u16>) -> Result<u8, RunnerError> {
-    let claim = Claim::read(file)?;
+    let record = RunRecord::read(file)?;
     let interruption = interruption()?;
     let stop = || interruption.load(Ordering::Relaxed);
     let mut progress = Progress::new();
-    let verdict = claim.verify(
+    let verdict = record.verify(
         self::threads(threads),
         BedStore::user(),
         &mut progress,
@@ -404,8 +404,8 @@ fn verify(file: &Path, threads: Option<u16>) -> Result<u8, RunnerError> {
     );
     progress.finish();
     let verdict = verdict?;
-    let (name, steps, time) = (&claim.name, claim.steps, claim.time);
-    let stated = claim.state_hash.as_deref().unwrap_or_default();
+    let (name, steps, time) = (&record.name, record.steps, record.time);
+    let stated = record.state_hash.as_deref().unwrap_or_default();
     let found = match &verdict {
         Verdict::Same => {
             println!("the same: {name}, state {stated} at t = {time:.6} s, step {steps}");
@@ -413,7 +413,7 @@ fn verify(file: &Path, threads: Option<u16>) -> Result<u8, RunnerError> {
         }
         Verdict::Other(found) => format!(
             "error: {name} comes to state {found} at step {steps}, not to {stated}; the file was written by version {}",
-            claim.version
+            record.version
         ),
         Verdict::Faulted(fault) => format!("error: {name} does not come to step {steps}: {fault}"),
         Verdict::Interrupted => format!("stopped before step {steps}"),

@@ -90,7 +90,7 @@ impl Lab {
     /// Opens `session` at the moment that was shown. What `options` say of beds and scripts means
     /// nothing for it.
     pub fn resume(session: Session, options: Options) -> Self {
-        let scene = Arc::new(session.claim().scene.clone());
+        let scene = Arc::new(session.record().scene.clone());
         let original = Arc::new(session.original().clone());
         let advice = advise(&scene);
         Self::with(scene, original, advice, options, move |options| {

@@ -17,7 +17,7 @@
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
-//! | `provenance`, `claim` | where a file came from; a state and what leads to it, as files state it |
+//! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `steps` | which step was when, where the time step changed |
 //! | `start` | the numbers that act from the next start on |
@@ -29,7 +29,6 @@ mod archive;
 mod bed;
 mod branch;
 mod check;
-mod claim;
 mod command;
 mod history;
 mod keyframes;
@@ -38,6 +37,7 @@ mod past;
 mod pieces;
 mod preparation;
 mod provenance;
+mod record;
 mod relabel;
 mod sampling;
 mod script;
@@ -55,7 +55,6 @@ pub use bed::BedStore;
 pub use branch::Branch;
 pub use check::CommandError;
 pub(crate) use check::check;
-pub use claim::{Claim, VERSION, fingerprint};
 pub use command::{Command, Parameter, StampedCommand};
 pub use history::{History, Moment};
 pub(crate) use parameter::time_step;
@@ -64,6 +63,7 @@ pub use past::Past;
 pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};
 pub use provenance::{Provenance, TABLES_METADATA};
+pub use record::{RunRecord, VERSION, fingerprint};
 pub use sampling::SAMPLE_INTERVAL;
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};

@@ -2,13 +2,13 @@
 //! bit.
 //!
 //! In: a timeline. Out: a file, and from it the same timeline. Its first line names program,
-//! layout, version and the checksum of the rest; its second line is the [`Claim`] of the moment
+//! layout, version and the checksum of the rest; its second line is the [`RunRecord`] of the moment
 //! shown, as JSON that people and `grainfall verify` read; then come states and samples, and the
 //! grains that the scene takes from a file. A file of another version is refused: another version
 //! may compute other bits.
 
 use super::archive::Archive;
-use super::claim::{Claim, VERSION};
+use super::record::{RunRecord, VERSION};
 use super::timeline::Timeline;
 use crate::files::write_whole;
 use crate::geometry::Rounded;
@@ -30,7 +30,7 @@ pub const SESSION_EXTENSION: &str = "grainfall";
 /// A session as it was kept.
 #[derive(Clone)]
 pub struct Session {
-    claim: Claim,
+    record: RunRecord,
     archive: Archive,
     /// The scene as it was opened, where what acts from the next start on was changed since.
     original: Option<Scene>,
@@ -84,7 +84,7 @@ impl Session {
         let run = timeline.run();
         let commands = timeline.branch().history.commands();
         Self {
-            claim: Claim::of(name, run.scene(), commands, run.world()),
+            record: RunRecord::of(name, run.scene(), commands, run.world()),
             archive: timeline.archive(),
             original: None,
         }
@@ -93,7 +93,7 @@ impl Session {
     /// The same of a scene that was made of the `original` by changing what acts from a start on.
     #[must_use]
     pub fn of_original(self, original: &Scene) -> Self {
-        let is_other = *original != self.claim.scene;
+        let is_other = *original != self.record.scene;
         Self {
             original: is_other.then(|| original.clone()),
             ..self
@@ -126,12 +126,12 @@ impl Session {
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        self.claim.check_fingerprint()?;
-        let mut body = serde_json::to_vec(&self.claim)?;
+        self.record.check_fingerprint()?;
+        let mut body = serde_json::to_vec(&self.record)?;
         body.push(b'\n');
         let rest = Rest {
             archive: &self.archive,
-            cells: self.claim.scene.stored_cells().map(StoredCells::grains),
+            cells: self.record.scene.stored_cells().map(StoredCells::grains),
             original: self
                 .original
                 .as_ref()
@@ -147,23 +147,23 @@ impl Session {
     }
 
     /// What it states: scene, changes, the moment shown and its state.
-    pub fn claim(&self) -> &Claim {
-        &self.claim
+    pub fn record(&self) -> &RunRecord {
+        &self.record
     }
 
     /// The scene as it was opened, before what acts from the next start on was changed.
     pub fn original(&self) -> &Scene {
-        self.original.as_ref().unwrap_or(&self.claim.scene)
+        self.original.as_ref().unwrap_or(&self.record.scene)
     }
 
     /// What it states, without the rest.
-    pub fn into_claim(self) -> Claim {
-        self.claim
+    pub fn into_record(self) -> RunRecord {
+        self.record
     }
 
     /// The timeline as it was, on `threads` threads, with keyframes in `budget` bytes.
     pub fn into_timeline(self, threads: usize, budget: usize) -> Timeline {
-        Timeline::unpack(self.archive, self.claim.scene.into(), threads, budget)
+        Timeline::unpack(self.archive, self.record.scene.into(), threads, budget)
     }
 
     fn decode(bytes: &[u8]) -> Result<Self, Reason> {
@@ -191,17 +191,17 @@ impl Session {
         let rest: Rest<Archive, Vec<Rounded>> =
             postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
         let _held = rest.cells.and_then(HeldCells::hold);
-        let claim: Claim = of_json(second)?;
+        let record: RunRecord = of_json(second)?;
         let original = rest.original.as_deref().map(of_json::<Scene>).transpose()?;
         let archive = rest.archive;
         let hash = archive.shown().map(|world| world.hash().to_string());
-        if !archive.is_whole() || !claim.is_genuine() || hash != claim.state_hash {
+        if !archive.is_whole() || !record.is_genuine() || hash != record.state_hash {
             return Err(Reason::Damaged(
                 "the state in it has another hash than it states",
             ));
         }
         Ok(Self {
-            claim,
+            record,
             archive,
             original,
         })

@@ -32,7 +32,7 @@ pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, RunnerError> {
     };
     if Session::is_at(path) {
         let session = Session::read(path).map_err(|e| RunnerError::Input(e.to_string()))?;
-        return Ok(session.into_claim().commands);
+        return Ok(session.into_record().commands);
     }
     let text =
         fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;

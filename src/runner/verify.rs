@@ -6,7 +6,7 @@
 use super::drive::{End, drive};
 use super::{DirectRun, RunnerError, Watch, exit};
 use crate::output::Ending;
-use crate::run::{BedStore, Claim, Session, VERSION};
+use crate::run::{BedStore, RunRecord, Session, VERSION};
 use crate::solver::Fault;
 use crate::world::StateHash;
 use std::fs;
@@ -38,15 +38,15 @@ impl Verdict {
     }
 }
 
-impl Claim {
-    /// The claim of the file at `path`: a session or JSON.
+impl RunRecord {
+    /// The record in the file at `path`: a session or JSON.
     ///
     /// # Errors
-    /// When the file cannot be read, makes no claim, or was edited since it was written.
+    /// When the file cannot be read, holds no record, or was edited since it was written.
     pub fn read(path: &Path) -> Result<Self, RunnerError> {
         if Session::is_at(path) {
             let session = Session::read(path).map_err(|e| RunnerError::Input(e.to_string()))?;
-            return Ok(session.into_claim());
+            return Ok(session.into_record());
         }
         let name = path.display();
         let refuse = |reason: String| {
@@ -56,18 +56,19 @@ impl Claim {
         };
         let text =
             fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
-        let claim: Self = serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
-        if claim.program != "grainfall" || claim.state_hash.is_none() {
+        let record: Self =
+            serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
+        if record.program != "grainfall" || record.state_hash.is_none() {
             return Err(refuse("states no state to come to".into()));
         }
-        if !claim.is_genuine() {
+        if !record.is_genuine() {
             return Err(refuse(format!(
                 "its fingerprint does not fit: the file was edited or damaged, or written by another version than \
                  {VERSION} (it says {})",
-                claim.version
+                record.version
             )));
         }
-        Ok(claim)
+        Ok(record)
     }
 
     /// Computes the state again on `threads` threads, from time zero, until `stop` says so; `watch`

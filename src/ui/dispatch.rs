@@ -6,7 +6,7 @@
 
 use crate::scene::Scene;
 use crate::simulation::{
-    Claim, Command, Half, LabCommand, Options, Parameter, SavedFile, ScriptedCommand, Session,
+    Command, Half, LabCommand, Options, Parameter, RunRecord, SavedFile, ScriptedCommand, Session,
     SessionError, Simulation,
 };
 use crate::ui::dialogs::path_dialog::Purpose;
@@ -242,7 +242,7 @@ pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
     match read {
         Ok(session) => {
             let options = Options {
-                speed: first_speed(session.claim().scene.duration),
+                speed: first_speed(session.record().scene.duration),
                 ..opener.options.0.clone()
             };
             opener.show(Simulation::resume(session, options));
@@ -337,7 +337,7 @@ fn save_changes(simulation: &Simulation, path: &Path) -> io::Result<()> {
     let world = simulation.world();
     let world = world.ok_or_else(|| io::Error::other("there is no run yet"))?;
     let scene = simulation.scene();
-    Claim::of(&scene.title, scene, simulation.commands(), world).write(path)
+    RunRecord::of(&scene.title, scene, simulation.commands(), world).write(path)
 }
 
 /// What to tell a person about a file that was to be written.

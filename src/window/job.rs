@@ -38,7 +38,7 @@ impl Opened {
     pub(super) fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
-            Self::Session(session) => &session.claim().scene,
+            Self::Session(session) => &session.record().scene,
         }
     }
 

@@ -317,7 +317,7 @@ fn verify_refuses_what_was_edited_or_states_nothing() {
 #[test]
 fn claim_of_a_state_that_the_run_does_not_come_to_is_not_confirmed() {
     use grainfall::runner::Verdict;
-    use grainfall::simulation::{BedStore, Claim};
+    use grainfall::simulation::{BedStore, RunRecord};
     let scene = grainfall::scene::Scene::open("bouncing-grain").unwrap();
     let run = || crate::run::prepared(&scene, 1, BedStore::none()).0;
     let (mut honest, mut other) = (run(), run());
@@ -329,11 +329,11 @@ fn claim_of_a_state_that_the_run_does_not_come_to_is_not_confirmed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("claim.json");
     let verdict = |commands, world| {
-        Claim::of("grain", &scene, commands, world)
+        RunRecord::of("grain", &scene, commands, world)
             .write(&path)
             .unwrap();
-        let claim = Claim::read(&path).unwrap();
-        claim
+        let record = RunRecord::read(&path).unwrap();
+        record
             .verify(1, BedStore::none(), &mut (), &|| false)
             .unwrap()
     };

@@ -1,6 +1,7 @@
 //! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
 
 mod architecture;
+mod comparison;
 #[cfg(feature = "headless")]
 mod headless;
 mod measure;
@@ -11,6 +12,5 @@ mod solver;
 mod step;
 mod sweep;
 mod timeline;
-mod twin;
 mod vtk;
 mod world;

@@ -6,7 +6,7 @@ use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab
 use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, StoredCells};
 use grainfall::simulation::{
-    BedStore, Claim, Command, DriverKind, Lab, LabCommand, Options, Parameter, Session, Status,
+    BedStore, Command, DriverKind, Lab, LabCommand, Options, Parameter, RunRecord, Session, Status,
     Timeline, VERSION,
 };
 use grainfall::world::Packing;
@@ -91,8 +91,8 @@ fn reopens_to_the_same_bits(lab: &Explored) {
         assert_eq!(bits(&same.branch().series), bits(&timeline.branch().series));
         timeline = reopened(&path, PLENTY);
     }
-    let claim = Claim::read(&path).unwrap();
-    let verdict = claim
+    let record = RunRecord::read(&path).unwrap();
+    let verdict = record
         .verify(2, lab.beds.clone(), &mut (), &|| false)
         .unwrap();
     assert_eq!(verdict, Verdict::Same);
@@ -204,9 +204,9 @@ fn session_holds_the_grains_that_its_scene_takes_from_a_file() {
 
     fs::remove_file(&cells).unwrap();
     let session = Session::read(&path).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(session.claim().scene, scene);
+    assert_eq!(session.record().scene, scene);
     let verdict = session
-        .claim()
+        .record()
         .verify(1, BedStore::none(), &mut (), &|| false);
     assert_eq!(verdict.unwrap(), Verdict::Same);
     assert_eq!(hash(&session.into_timeline(1, PLENTY)), hash(&timeline));

@@ -7,8 +7,8 @@ use grainfall::physics::{LIQUID_CASES, LiquidCase};
 use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, TimeStep};
 use grainfall::simulation::{
-    BedStore, Changed, Claim, Command, CommandError, DriverKind, Half, Lab, LabCommand, Options,
-    Parameter, Run, Script, ScriptedCommand, Session, Status, StepTimes, Timeline,
+    BedStore, Changed, Command, CommandError, DriverKind, Half, Lab, LabCommand, Options,
+    Parameter, Run, RunRecord, Script, ScriptedCommand, Session, Status, StepTimes, Timeline,
 };
 use grainfall::solver::advise;
 use std::time::Duration;
@@ -136,8 +136,8 @@ fn is_verified(timeline: &Timeline) {
     Session::of("wet", timeline).write(&path).unwrap();
     let same = Session::read(&path).unwrap().into_timeline(1, PLENTY);
     assert_eq!(hash(&same), hash(timeline));
-    let claim = Claim::read(&path).unwrap();
-    let verdict = claim
+    let record = RunRecord::read(&path).unwrap();
+    let verdict = record
         .verify(2, BedStore::none(), &mut (), &|| false)
         .unwrap();
     assert_eq!(verdict, Verdict::Same);

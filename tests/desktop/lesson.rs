@@ -1,11 +1,11 @@
 //! A whole lesson in the app as a whole: played, changed, scrubbed, branched, taken back, compared,
 //! saved and verified, and at each moment the grain is drawn where the solver says.
 
-use crate::twin::{ask, falling_from_the_front, place, simulation};
+use crate::comparison::{ask, falling_from_the_front, place, simulation};
 use crate::view::{photographed, studio};
 use bevy::prelude::*;
 use grainfall::runner::Verdict;
-use grainfall::simulation::{BedStore, Claim, Command, Half, Parameter, Simulation};
+use grainfall::simulation::{BedStore, Command, Half, Parameter, RunRecord, Simulation};
 use grainfall::ui::{Request, Requests};
 use grainfall::world::StateHash;
 use std::time::Duration;
@@ -113,9 +113,9 @@ fn saved_and_verified(app: &mut App) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lesson.grainfall");
     ask(app, Request::SaveSession(path.clone()), |s| !s.is_saving());
-    let claim = Claim::read(&path).unwrap();
-    assert_eq!(claim.state_hash, Some(hash(app).to_string()));
-    let verdict = claim
+    let record = RunRecord::read(&path).unwrap();
+    assert_eq!(record.state_hash, Some(hash(app).to_string()));
+    let verdict = record
         .verify(1, BedStore::none(), &mut (), &|| false)
         .unwrap();
     assert_eq!(verdict, Verdict::Same);

@@ -1,6 +1,6 @@
 //! The record of a run, as files hold it: that this scene with these commands comes to that state.
 //!
-//! In: a state and all that leads to it. Out: a [`Claim`], as JSON files hold it. Its fingerprint
+//! In: a state and all that leads to it. Out: a [`RunRecord`], as JSON files hold it. Its fingerprint
 //! shows whether the file was edited or damaged since. Nothing is computed again here: `grainfall
 //! verify FILE` does that.
 
@@ -17,7 +17,7 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// A state and all that leads to it, as JSON files hold it; what else they hold is passed over.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Claim {
+pub struct RunRecord {
     /// Always `grainfall`.
     pub program: String,
     /// Version of the program that wrote it.
@@ -38,7 +38,7 @@ pub struct Claim {
     pub fingerprint: Option<String>,
 }
 
-/// Hash of all that a claim states; none where that cannot be written as bytes. Commands count by
+/// Hash of all that a record states; none where that cannot be written as bytes. Commands count by
 /// step and content.
 pub fn fingerprint<'a>(
     scene: &Scene,
@@ -52,11 +52,11 @@ pub fn fingerprint<'a>(
     Some(blake3::hash(&all).to_hex()[..32].to_owned())
 }
 
-impl Claim {
+impl RunRecord {
     /// That `scene`, called `name`, with `commands` comes to `world`.
     pub fn of(name: &str, scene: &Scene, commands: &[StampedCommand], world: &World) -> Self {
         let commands: Vec<ScriptedCommand> = commands.iter().map(Into::into).collect();
-        let mut claim = Self {
+        let mut record = Self {
             program: "grainfall".into(),
             version: VERSION.into(),
             name: name.into(),
@@ -67,8 +67,8 @@ impl Claim {
             state_hash: Some(world.hash().to_string()),
             fingerprint: None,
         };
-        claim.fingerprint = claim.own_fingerprint();
-        claim
+        record.fingerprint = record.own_fingerprint();
+        record
     }
 
     /// Writes it to the JSON file at `path`, whole or not at all.
