@@ -15,6 +15,7 @@ mod bridge;
 mod hertz_mindlin;
 mod hooke;
 mod rolling;
+mod spring_dashpot;
 mod step_limit;
 
 pub use bridge::{
@@ -24,6 +25,7 @@ pub use bridge::{
 pub use hertz_mindlin::HertzMindlin;
 pub use hooke::Hooke;
 pub use rolling::rolling_gain;
+pub use spring_dashpot::SpringDashpot;
 pub use step_limit::{Circumstances, SmallestGrain, StepLimit};
 
 use crate::lanes::{Lanes, One, Row};
@@ -46,6 +48,13 @@ pub enum ContactLaw {
         /// What the stiffnesses belong to where two polyhedra touch in several places.
         #[serde(default)]
         features: FeatureRule,
+    },
+    /// Linear springs with dashpots along and across the normal, for spheres.
+    SpringDashpot {
+        /// `K_n` of a contact [N/m].
+        normal_stiffness: f64,
+        /// `K_t` of a contact [N/m].
+        tangential_stiffness: f64,
     },
 }
 
@@ -207,6 +216,13 @@ impl ContactLaw {
                 normal_stiffness,
                 tangential_stiffness,
                 features,
+            }),
+            Self::SpringDashpot {
+                normal_stiffness,
+                tangential_stiffness,
+            } => user.with(SpringDashpot {
+                normal_stiffness,
+                tangential_stiffness,
             }),
         }
     }
