@@ -8,7 +8,7 @@ use super::bridges::{BridgeColumns, BridgeGroup, Encounter, LiquidAction, Wettin
 use super::lanes::{
     Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
 };
-use super::law::{FilmConstants, Law, PairConstants, rolling_gain};
+use super::law::{FilmConstants, Law, PairConstants, normal_contact, rolling_gain};
 use super::spring::stretch;
 use crate::physics::CoulombBound;
 use crate::world::{Motion, Surface};
@@ -324,12 +324,8 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     // Normal force.
     let velocity = partners.velocity(processor);
     let approach = dot(velocity, normal);
-    let law = all.law.coefficients(law_constants, overlap);
-    let normal_damping = N::choose(touching, law.normal_damping, zero);
-    let elastic = law.normal_stiffness * overlap;
-    let repulsion = all
-        .law
-        .normal_force(elastic, normal_damping * approach, zero);
+    let along = normal_contact(all.law, law_constants, (touching, overlap), approach, zero);
+    let (law, elastic, repulsion) = (along.coefficients, along.elastic, along.repulsion);
 
     // Slip of the grain's surface over its partner's.
     let (spin, partner_spin) = partners.spins(processor);
@@ -344,7 +340,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     );
     let rolling_spin = partners.rolling(processor);
 
-    let mut bounding = all.law.coulomb_force(elastic, repulsion, zero);
+    let mut bounding = along.bounding;
     let bridge = if let Some((bridges, film)) = liquid {
         let encounter = Encounter {
             depth,

@@ -10,8 +10,8 @@
 
 use super::lanes::{Lanes, One, Row};
 use super::law::{
-    BridgeConstants, Coefficients, FilmConstants, Law, LawUser, PairConstants, Pairing, attraction,
-    contributions, drag, rolling_gain,
+    BridgeConstants, FilmConstants, Law, LawUser, NormalContact, PairConstants, Pairing,
+    attraction, contributions, drag, normal_contact, rolling_gain,
 };
 use super::polyhedra;
 use crate::physics::{BridgeLaw, ContactLaw, CoulombBound, Liquid};
@@ -187,15 +187,15 @@ impl Meeting {
 
     fn terms(&self, law: impl Law, world: &World, contact: &Contact) -> ForceTerms {
         let pair = Side::of(world, contact);
-        let (normal, zero) = (self.normal, One::splat((), 0.0));
+        let normal = self.normal;
         let touching = self.overlap > 0.0;
-        let elastic = pair.elastic(law, self.overlap);
-        let repulsion = pair.repulsion(law, self.overlap, self.approach);
+        let along = pair.along(law, self.overlap, self.approach);
+        let (elastic, repulsion) = (along.elastic.get(), along.repulsion.get());
         let (pull, resistance) = (contact.bridge.as_ref())
             .map_or((0.0, 0.0), |bridge| (bridge.capillary, bridge.viscous));
         let bounding = match (contact.partner, world.wetting().map(|l| l.law.coulomb)) {
             (Partner::Grain(_), Some(CoulombBound::Total)) => (repulsion + resistance - pull).abs(),
-            _ => (law.coulomb_force(one(elastic), one(repulsion), zero)).get(),
+            _ => along.bounding.get(),
         };
         let coulomb_bound = pair.constants.contact[0] * bounding;
         let spring = if touching {
@@ -205,7 +205,7 @@ impl Meeting {
         };
         let slides = touching && spring.length() >= coulomb_bound * (1.0 - AT_THE_BOUND);
         let damping = if touching && !slides {
-            pair.at(law, self.overlap).tangential_damping.get()
+            along.coefficients.tangential_damping.get()
         } else {
             0.0
         };
@@ -275,25 +275,13 @@ impl Side {
         }
     }
 
-    /// Stiffnesses and dashpots where the two overlap.
-    fn at(&self, law: impl Law, overlap: f64) -> Coefficients<One> {
-        law.coefficients(ones(&self.constants.coefficients), one(overlap.max(0.0)))
-    }
-
-    /// The normal spring's repulsion [N].
-    fn elastic(&self, law: impl Law, overlap: f64) -> f64 {
-        self.at(law, overlap).normal_stiffness.get() * overlap.max(0.0)
-    }
-
-    /// Repulsion of normal spring and dashpot [N].
-    fn repulsion(&self, law: impl Law, overlap: f64, approach: f64) -> f64 {
-        if overlap <= 0.0 {
-            return 0.0;
-        }
-        let at = self.at(law, overlap);
-        let elastic = self.elastic(law, overlap);
-        let damping = at.normal_damping.get() * approach;
-        (law.normal_force(one(elastic), one(damping), one(0.0))).get()
+    /// What the law makes of the two along their normal, as the pair loop has it.
+    fn along(&self, law: impl Law, overlap: f64, approach: f64) -> NormalContact<One> {
+        let (depth, zero) = (one(overlap), one(0.0));
+        let touching = depth.exceeds(zero);
+        let overlap = One::choose(touching, depth, zero);
+        let constants = ones(&self.constants.coefficients);
+        normal_contact(law, constants, (touching, overlap), one(approach), zero)
     }
 }
 
@@ -308,7 +296,9 @@ impl LawUser for Repulsion<'_> {
     type Output = f64;
 
     fn with<L: Law>(self, law: L) -> f64 {
-        self.pair.repulsion(law, self.overlap, self.approach)
+        (self.pair.along(law, self.overlap, self.approach))
+            .repulsion
+            .get()
     }
 }
 

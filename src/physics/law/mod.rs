@@ -193,6 +193,42 @@ fn mistaken_spring(normal: f64, tangential: f64) -> Option<LawMistake> {
     })
 }
 
+/// What a contact does along the normal.
+#[derive(Clone, Copy, Debug)]
+pub struct NormalContact<N> {
+    /// Stiffnesses and dashpots at the overlap.
+    pub coefficients: Coefficients<N>,
+    /// Repulsion of the spring [N].
+    pub elastic: N,
+    /// Repulsion of spring and dashpot [N].
+    pub repulsion: N,
+    /// The normal force that bounds the tangential one [N].
+    pub bounding: N,
+}
+
+/// What `law` makes of contacts with these `constants` at this `overlap` [m], none of those that do not
+/// touch, whose sides approach each other at this speed [m/s]. The pair loop runs it, and what explains
+/// a force term by term.
+#[inline(always)]
+pub fn normal_contact<N: Lanes, L: Law>(
+    law: L,
+    constants: [N; 4],
+    (touching, overlap): (N::Mask, N),
+    approach: N,
+    zero: N,
+) -> NormalContact<N> {
+    let coefficients = law.coefficients(constants, overlap);
+    let damping = N::choose(touching, coefficients.normal_damping, zero);
+    let elastic = coefficients.normal_stiffness * overlap;
+    let repulsion = law.normal_force(elastic, damping * approach, zero);
+    NormalContact {
+        coefficients,
+        elastic,
+        repulsion,
+        bounding: law.coulomb_force(elastic, repulsion, zero),
+    }
+}
+
 /// What is to be done with a law, once it is known which: so that a loop is compiled for each law and
 /// none asks for it again.
 pub trait LawUser {
