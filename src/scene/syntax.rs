@@ -5,6 +5,7 @@
 
 use super::error::{SceneError, one_of, suggestion};
 use super::outline::{Entry, Outline, byte_at};
+use crate::physics::ContactLaw;
 
 const WHOLE_NUMBER: &str = "a whole number of at least 0";
 
@@ -235,7 +236,7 @@ fn meaning(key: &str) -> &'static str {
         "normal" => "the direction `(x, y, z)` towards the grains",
         "between" => "two materials, `(\"glass\", \"drum\")`",
         "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
-        "law" => "`HertzMindlin` or `Hooke(…)`",
+        "law" => ContactLaw::FORMS,
         "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
         "duration" | "output_interval" => "a time in s",
         _ => "",

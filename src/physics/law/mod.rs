@@ -240,6 +240,9 @@ pub trait LawUser {
 }
 
 impl ContactLaw {
+    /// What a scene file can state.
+    pub const FORMS: &'static str = "`HertzMindlin`, `Hooke(…)` or `SpringDashpot(…)`";
+
     /// Does with the law what `user` does.
     pub fn choose<U: LawUser>(self, user: U) -> U::Output {
         match self {
