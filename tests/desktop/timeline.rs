@@ -335,7 +335,7 @@ fn the_badge_offers_the_step_that_a_change_asks_for() {
     harness.get_by_label_contains("29 % over").click();
     harness.run_steps(4);
     harness
-        .get_by_label_contains("Go on with steps of 6.57")
+        .get_by_label_contains("Go on with steps of 6.567")
         .click();
     harness.run_steps(2);
     let asked = commands(&harness.state().asked);
@@ -348,7 +348,7 @@ fn the_badge_offers_the_step_that_a_change_asks_for() {
     assert!(stable_step(&harness.state().simulation).is_none());
     harness.state_mut().show_panel("Changes and runs");
     harness.run_steps(4);
-    harness.get_by_label_contains("time step 8.45 → 6.57 µs");
+    harness.get_by_label_contains("time step 8.45 → 6.567 µs");
 }
 
 /// Three of the paper's finest grains in water, which allows them a step of 8.45 µs.
