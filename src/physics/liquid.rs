@@ -1,4 +1,5 @@
-//! The liquid between the grains: its properties, the cases of Kasper et al. 2021, the choices of the bridge law.
+//! The liquid between the grains: its properties, the cases of Kasper et al. 2021, the choices of
+//! the bridge law.
 
 use serde::{Deserialize, Serialize};
 
@@ -40,7 +41,8 @@ pub struct BridgeLaw {
 pub enum BridgeVolume {
     /// `0.05 (Vf_i + Vf_j)`, Eq. 11.
     FilmShare,
-    /// `0.5 Vf_i (1 − √(1 − r_j²/(r_i + r_j)²))` and the same for j: the cap of a grain that the other one shades.
+    /// `0.5 Vf_i (1 − √(1 − r_j²/(r_i + r_j)²))` and the same for j: the cap of a grain that the
+    /// other one shades.
     ShadedCap,
 }
 
@@ -100,7 +102,8 @@ impl BridgeLaw {
         coulomb: CoulombBound::Contact,
     };
 
-    /// What the public LIGGGHTS 3.8, the paper's program, computes with the settings its manual recommends.
+    /// What the public LIGGGHTS 3.8, the paper's program, computes with the settings its manual
+    /// recommends.
     pub const AS_CODED: Self = Self {
         volume: BridgeVolume::ShadedCap,
         angle: PairAngle::HalfProduct,
@@ -159,8 +162,9 @@ impl LiquidCase {
         LIQUID_CASES.iter().find(|case| case.number == number)
     }
 
-    /// Surface tension γ [N/m]. The paper does not print it: water's own, and `63.4 + 9.4 (1 − glycerol)` mN/m for the
-    /// mixtures, which gives back the capillary numbers of Table 1.
+    /// Surface tension γ [N/m]. The paper does not print it: water's own, and
+    /// `63.4 + 9.4 (1 − glycerol)` mN/m for the mixtures, which gives back the capillary numbers of
+    /// Table 1.
     pub fn surface_tension(&self) -> f64 {
         if self.glycerol == 0.0 {
             72.8e-3

@@ -40,8 +40,8 @@ pub struct PairProperties {
 }
 
 impl PairProperties {
-    /// How two materials meet whose bodies meet their own kind like `a` and `b`: the harmonic mean of
-    /// each value, Eq. 3.7 of Man et al. 2023.
+    /// How two materials meet whose bodies meet their own kind like `a` and `b`: the harmonic mean
+    /// of each value, Eq. 3.7 of Man et al. 2023.
     pub fn mixed(a: &Self, b: &Self) -> Self {
         Self {
             restitution: harmonic_mean(a.restitution, b.restitution),
@@ -61,7 +61,8 @@ fn harmonic_mean(a: f64, b: f64) -> f64 {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Materials {
     list: Vec<Material>,
-    /// Lower triangle with diagonal, row by row: the pair (a, b) with a ≥ b stands at `a (a + 1) / 2 + b`.
+    /// Lower triangle with diagonal, row by row: the pair (a, b) with a ≥ b stands at
+    /// `a (a + 1) / 2 + b`.
     pairs: Vec<PairProperties>,
 }
 

@@ -1,7 +1,8 @@
-//! The physics that everything else speaks of: force laws and their choices, materials and how two of
-//! them meet, liquids.
+//! The physics that everything else speaks of: force laws and their choices, materials and how two
+//! of them meet, liquids.
 //!
-//! In: numbers. Out: constants, stiffnesses, forces. Nothing here knows of scene files, grains or time.
+//! In: numbers. Out: constants, stiffnesses, forces. Nothing here knows of scene files, grains or
+//! time.
 //!
 //! | file | holds |
 //! |---|---|

@@ -14,7 +14,8 @@ pub enum Command {
     Step(u64),
     /// Simulated seconds per wall-clock second to aim for; infinity for as fast as the machine can.
     Speed(f64),
-    /// Start afresh at time zero with the settled bed and the present values of the live parameters.
+    /// Start afresh at time zero with the settled bed and the present values of the live
+    /// parameters.
     Reset,
     /// Show the run as it was at this step, and hold.
     Seek(u64),
@@ -61,7 +62,8 @@ pub struct StampedCommand {
     pub command: Command,
 }
 
-/// A number that can change while a run goes on. Materials and species go by the names the scene gives them.
+/// A number that can change while a run goes on. Materials and species go by the names the scene
+/// gives them.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Parameter {

@@ -1,12 +1,13 @@
 //! The force of a contact, term by term.
 //!
-//! In: a world as a solver left it and one of its contacts. Out: what each term of the contact law and of a bridge gives,
-//! from the functions that the pair loop calls, so that the sum is the force the solver applied, to rounding. The loop saw
-//! velocities half a step ago; they follow from those of now and the sum of the forces. Until the next step, a parameter
-//! that was just changed shows in the terms but not in the force applied.
+//! In: a world as a solver left it and one of its contacts. Out: what each term of the contact law
+//! and of a bridge gives, from the functions that the pair loop calls, so that the sum is the force
+//! the solver applied, to rounding. The loop saw velocities half a step ago; they follow from those
+//! of now and the sum of the forces. Until the next step, a parameter that was just changed shows
+//! in the terms but not in the force applied.
 //!
-//! Not here: the rolling torque to the last digit. It depends on the torque of one step before, which nobody keeps; the one
-//! of now stands for it.
+//! Not here: the rolling torque to the last digit. It depends on the torque of one step before,
+//! which nobody keeps; the one of now stands for it.
 
 use super::lanes::{Lanes, One, Row};
 use super::law::{
@@ -18,7 +19,8 @@ use crate::physics::{BridgeLaw, ContactLaw, CoulombBound, Liquid};
 use crate::world::{Contact, Feature, Partner, World};
 use glam::DVec3;
 
-/// A force within this share of the Coulomb bound is taken to slide: the loop makes it equal to the bound, to rounding.
+/// A force within this share of the Coulomb bound is taken to slide: the loop makes it equal to the
+/// bound, to rounding.
 pub(super) const AT_THE_BOUND: f64 = 1e-9;
 
 /// What makes up the force on a contact's grain. All forces are those on [`Contact::grain`] [N].
@@ -124,7 +126,8 @@ struct Meeting {
     overlap: f64,
     approach: f64,
     slip: DVec3,
-    /// Relative spin that rolling friction works against [rad/s], and how much of it a unit of torque stops.
+    /// Relative spin that rolling friction works against [rad/s], and how much of it a unit of
+    /// torque stops.
     rolling: (DVec3, f64),
 }
 
@@ -238,8 +241,8 @@ impl Meeting {
     }
 }
 
-/// Spin that grain `i` would have after the step without rolling friction, from its spin half a step ago [rad/s], and how
-/// much of it a unit of torque stops [1/(N m s)].
+/// Spin that grain `i` would have after the step without rolling friction, from its spin half a
+/// step ago [rad/s], and how much of it a unit of torque stops [1/(N m s)].
 fn free_spin(world: &World, i: usize, spin: DVec3) -> (DVec3, f64) {
     let grains = &world.grains;
     let compliance = world.clock.time_step / grains.inertia[i];
@@ -318,8 +321,9 @@ struct Film {
 }
 
 impl NormalLaw {
-    /// The law between the grain and the partner of `contact`; of a wet pair of grains with the bridge that `choice` makes
-    /// between them, or the one that is there where that is the world's own choice.
+    /// The law between the grain and the partner of `contact`; of a wet pair of grains with the
+    /// bridge that `choice` makes between them, or the one that is there where that is the world's
+    /// own choice.
     pub fn of(world: &World, contact: &Contact, choice: BridgeLaw) -> Self {
         let pair = Side::of(world, contact);
         let film = match (contact.partner, world.wetting()) {
@@ -347,8 +351,8 @@ impl NormalLaw {
         }
     }
 
-    /// Force that pushes the two apart (positive) or pulls them together [N] at this `gap`, negative for an overlap [m],
-    /// while they approach each other at this speed [m/s].
+    /// Force that pushes the two apart (positive) or pulls them together [N] at this `gap`,
+    /// negative for an overlap [m], while they approach each other at this speed [m/s].
     pub fn force(&self, gap: f64, approach: f64) -> f64 {
         let repulsion = self.law.choose(Repulsion {
             pair: &self.pair,

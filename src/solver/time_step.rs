@@ -1,9 +1,9 @@
 //! How long a step may be, and why.
 //!
-//! In: a scene that has no world yet, or the state of its run. Out: every limit on the step with its
-//! reason, the smallest first. Before a run [`advise`] chooses the step, or takes the one that the
-//! scene gives; while it goes on [`Extremes::advise`] holds the present step against the limits of
-//! the present state, so that no change of a material, a liquid or a law goes unnoticed.
+//! In: a scene that has no world yet, or the state of its run. Out: every limit on the step with
+//! its reason, the smallest first. Before a run [`advise`] chooses the step, or takes the one that
+//! the scene gives; while it goes on [`Extremes::advise`] holds the present step against the limits
+//! of the present state, so that no change of a material, a liquid or a law goes unnoticed.
 //!
 //! Not here: changing the step. A command does that (the parameter `time-step`), so that it is
 //! recorded.
@@ -55,8 +55,8 @@ impl TimeStepAdvice {
     }
 }
 
-/// What of a scene limits the step and changes in no run: how small its grains are, and how fast they
-/// may hit each other.
+/// What of a scene limits the step and changes in no run: how small its grains are, and how fast
+/// they may hit each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extremes {
     /// The smallest radius of the grains of each material [m], in order of the materials' names.
@@ -65,8 +65,8 @@ pub struct Extremes {
     impact_speed: f64,
 }
 
-/// The time step for `scene` before there is a world of it: the one it gives, or the largest that every
-/// limit allows.
+/// The time step for `scene` before there is a world of it: the one it gives, or the largest that
+/// every limit allows.
 pub fn advise(scene: &Scene) -> TimeStepAdvice {
     let materials = world::materials(scene);
     let extremes = Extremes::of(scene);
@@ -96,9 +96,9 @@ impl Extremes {
     /// The present step of `world`, a world of this scene, against the limits of its present state:
     /// materials and their pairs, law and liquid.
     ///
-    /// At time zero and unchanged the limits are those of [`advise`], but where a pair that the scene
-    /// states restitutes less than each of its two materials among its own kind: only here is it
-    /// looked at.
+    /// At time zero and unchanged the limits are those of [`advise`], but where a pair that the
+    /// scene states restitutes less than each of its two materials among its own kind: only here is
+    /// it looked at.
     pub fn advise(&self, world: &World) -> TimeStepAdvice {
         let materials = &world.materials;
         let grains = self.grains(materials, |material| {
@@ -130,8 +130,8 @@ impl Extremes {
     }
 }
 
-/// Restitution of the most strongly damped contacts of bodies of this material. A mean of two materials
-/// is that of one of them among its own kind, so that only a pair below both counts.
+/// Restitution of the most strongly damped contacts of bodies of this material. A mean of two
+/// materials is that of one of them among its own kind, so that only a pair below both counts.
 fn lowest_restitution(materials: &Materials, material: MaterialId) -> f64 {
     let between = |a, b| materials.pair(a, b).restitution;
     let own = between(material, material);
@@ -142,7 +142,8 @@ fn lowest_restitution(materials: &Materials, material: MaterialId) -> f64 {
         .fold(own, |lowest, (pair, _)| lowest.min(pair))
 }
 
-/// Every limit of the `grains` under the `law` with the bridges of a `liquid`, the binding one first.
+/// Every limit of the `grains` under the `law` with the bridges of a `liquid`, the binding one
+/// first.
 fn limits(
     grains: &[SmallestGrain],
     law: ContactLaw,

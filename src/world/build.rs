@@ -1,8 +1,9 @@
 //! From a scene to the world it starts with: grains placed without overlap, nothing settled yet.
 //!
-//! In: a checked scene. Out: its world at time zero. A filling of spheres is put on the scene's lattice from below: which
-//! size stands where, how far each grain is off its site and which species it is of come from the seed. Voronoi cells come
-//! from [`Packing`]; only their species are chosen here.
+//! In: a checked scene. Out: its world at time zero. A filling of spheres is put on the scene's
+//! lattice from below: which size stands where, how far each grain is off its site and which
+//! species it is of come from the seed. Voronoi cells come from [`Packing`]; only their species are
+//! chosen here.
 
 use super::mixture::{assign_species, labelled, random};
 use super::{
@@ -20,13 +21,14 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
 
-/// How far a grain may be off its site, in parts of the free width round it; below one half neighbours cannot touch.
+/// How far a grain may be off its site, in parts of the free width round it; below one half
+/// neighbours cannot touch.
 const JITTER: f64 = 0.45;
 /// Random stream of the places of the grains.
 const PLACES: u64 = 1;
 
-/// The world that `scene` asks for at time zero, with steps of `time_step` [s]. The scene is one that was parsed, or that
-/// [`Scene::check`] passed; of any other, what does not fit is left out.
+/// The world that `scene` asks for at time zero, with steps of `time_step` [s]. The scene is one
+/// that was parsed, or that [`Scene::check`] passed; of any other, what does not fit is left out.
 pub fn build(scene: &Scene, time_step: f64) -> World {
     let cells = Packing::new(scene).map_or_else(|| stored_cells(scene), Packing::finish);
     build_packed(scene, time_step, cells)
@@ -38,7 +40,8 @@ fn stored_cells(scene: &Scene) -> Vec<Rounded> {
     stored.map_or(Vec::new(), |cells| cells.grains().to_vec())
 }
 
-/// As [`build`], with the grains `cells` that a [`Packing`] of the scene made where its grains are Voronoi cells.
+/// As [`build`], with the grains `cells` that a [`Packing`] of the scene made where its grains are
+/// Voronoi cells.
 pub fn build_packed(scene: &Scene, time_step: f64, cells: Vec<Rounded>) -> World {
     let (species, grains, polyhedra) = match &scene.grains {
         SceneGrains::Fill { count, species, .. } => {
@@ -247,7 +250,8 @@ fn wall(scene: &Scene, plane: &ScenePlane) -> Wall {
     }
 }
 
-/// One species for each material that a listed grain is made of, in the order of the materials, and the grains.
+/// One species for each material that a listed grain is made of, in the order of the materials, and
+/// the grains.
 fn listed(scene: &Scene, list: &[SceneGrain]) -> (Vec<Species>, Grains, Option<Polyhedra>) {
     let used = |name: &str| list.iter().any(|grain| grain.material == name);
     let materials = scene.materials.iter().filter(|m| used(&m.name));
@@ -315,7 +319,8 @@ fn listed_polyhedra(
     placed(shapes, &bodies)
 }
 
-/// The shape of a listed grain, and the rotation from its body axes to the axes that the scene gave it in.
+/// The shape of a listed grain, and the rotation from its body axes to the axes that the scene gave
+/// it in.
 fn shape_of(grain: &SceneGrain) -> (Polyhedron, DQuat) {
     let rounding = grain.shape.rounding().unwrap_or(0.0);
     let rounded = grain
@@ -411,7 +416,8 @@ struct Place {
     class: usize,
 }
 
-/// Places for all grains of `classes`, cell by cell from below, so that grains near in number are near in space.
+/// Places for all grains of `classes`, cell by cell from below, so that grains near in number are
+/// near in space.
 fn places(scene: &Scene, classes: &[SizeClass]) -> Vec<Place> {
     let Some(lattice) = Lattice::for_filling(&scene.container, classes) else {
         return Vec::new();

@@ -21,8 +21,8 @@ pub struct Contact {
     pub grain: u32,
     /// The other side.
     pub partner: Partner,
-    /// Tangential spring ξ, the elastic part of the tangential displacement of the grain's surface over its
-    /// partner's [m].
+    /// Tangential spring ξ, the elastic part of the tangential displacement of the grain's surface
+    /// over its partner's [m].
     pub spring: DVec3,
     /// Stiffness `k_t` with which the spring was last stretched [N/m].
     pub stiffness: f64,

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Bridge {
     /// Its volume V, fixed when it formed [m³].
     pub volume: f64,
-    /// What the film of the contact's grain gains, and its partner's loses, when the bridge breaks and its volume is
-    /// shared evenly [m³].
+    /// What the film of the contact's grain gains, and its partner's loses, when the bridge breaks
+    /// and its volume is shared evenly [m³].
     pub transfer: f64,
     /// Capillary attraction at the last force evaluation [N].
     pub capillary: f64,
@@ -27,8 +27,8 @@ impl World {
         self.liquid.as_ref().filter(|liquid| liquid.volume > 0.0)
     }
 
-    /// Changes the volume of all the liquid [m³]; films and bridges keep their shares of it. Without a liquid nothing
-    /// happens.
+    /// Changes the volume of all the liquid [m³]; films and bridges keep their shares of it.
+    /// Without a liquid nothing happens.
     pub fn set_liquid_volume(&mut self, volume: f64) {
         let Some(liquid) = &mut self.liquid else {
             return;

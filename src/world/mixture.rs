@@ -1,8 +1,10 @@
-//! Which grain of a filling is of which species, at the start and after the mixing ratio was changed.
+//! Which grain of a filling is of which species, at the start and after the mixing ratio was
+//! changed.
 //!
-//! In: a seed and the number of grains of each species. Out: a label for each grain: exact in number, random in place.
-//! The grains of one radius stand in a random order that the seed fixes, and the species take successive runs of it. So a
-//! larger share only adds grains to a species, and going back takes the same ones away.
+//! In: a seed and the number of grains of each species. Out: a label for each grain: exact in
+//! number, random in place. The grains of one radius stand in a random order that the seed fixes,
+//! and the species take successive runs of it. So a larger share only adds grains to a species, and
+//! going back takes the same ones away.
 
 use super::{SpeciesId, World};
 use crate::geometry::sphere_volume;
@@ -46,14 +48,16 @@ pub(super) fn assign_species(
     labels
 }
 
-/// Makes the share by number of the species `species` of a filling as near `share` as whole grains allow.
+/// Makes the share by number of the species `species` of a filling as near `share` as whole grains
+/// allow.
 ///
-/// The difference goes to, or comes from, the species that it can change places with (of the same radius, or all species
-/// of Voronoi cells) and that follow in the scene's list, the next one first and round: so giving the shares of all but the
-/// last one after another reaches any mixture. A species without such others keeps its grains, and so do listed grains.
+/// The difference goes to, or comes from, the species that it can change places with (of the same
+/// radius, or all species of Voronoi cells) and that follow in the scene's list, the next one first
+/// and round: so giving the shares of all but the last one after another reaches any mixture. A
+/// species without such others keeps its grains, and so do listed grains.
 ///
-/// A grain that changes its species keeps its place, its shape and its motion and takes the other material's density. What that does
-/// to the energies is for the caller to book.
+/// A grain that changes its species keeps its place, its shape and its motion and takes the other
+/// material's density. What that does to the energies is for the caller to book.
 pub fn set_share(world: &mut World, scene: &Scene, species: SpeciesId, share: f64) {
     let members = scene.interchangeable_species(usize::from(species.0));
     let Some(own) = members.iter().position(|&m| m == usize::from(species.0)) else {
@@ -73,8 +77,8 @@ pub fn set_share(world: &mut World, scene: &Scene, species: SpeciesId, share: f6
 }
 
 impl World {
-    /// Makes grain `i` one of `species`, with the mass that its shape and the species' density give. It keeps its place and
-    /// its motion.
+    /// Makes grain `i` one of `species`, with the mass that its shape and the species' density
+    /// give. It keeps its place and its motion.
     fn relabel(&mut self, i: usize, species: SpeciesId) {
         let material = self.species[usize::from(species.0)].material;
         let density = self.materials.get(material).density;
@@ -119,7 +123,8 @@ fn relabel(world: &mut World, seed: u64, wanted: &[(usize, usize)]) {
     }
 }
 
-/// The grains `members` in label order, each with its species: the first run is of the first species, and so on.
+/// The grains `members` in label order, each with its species: the first run is of the first
+/// species, and so on.
 pub(super) fn labelled<'a>(
     seed: u64,
     members: &'a [usize],

@@ -1,8 +1,9 @@
 //! The state of a granular system at one instant, in columns.
 //!
-//! A [`World`] holds all that determines its future, so that a clone is a snapshot and putting the clone back restores
-//! it: the run then continues bit for bit. Only the solver moves it and only commands change its settings; measures and
-//! views read it. Caches (neighbour lists, lane buffers) are no part of it.
+//! A [`World`] holds all that determines its future, so that a clone is a snapshot and putting the
+//! clone back restores it: the run then continues bit for bit. Only the solver moves it and only
+//! commands change its settings; measures and views read it. Caches (neighbour lists, lane buffers)
+//! are no part of it.
 
 mod build;
 mod contact;
@@ -53,8 +54,8 @@ pub struct World {
     pub liquid: Option<Liquid>,
     /// Which contact law acts.
     pub law: ContactLaw,
-    /// Every pair that touches or is held by a bridge, with its history, sorted by ([`Contact::grain`],
-    /// [`Contact::partner`]).
+    /// Every pair that touches or is held by a bridge, with its history, sorted by
+    /// ([`Contact::grain`], [`Contact::partner`]).
     pub contacts: Vec<Contact>,
     /// What grains that are no spheres need beside their columns; none where all are spheres.
     pub polyhedra: Option<Box<Polyhedra>>,
@@ -62,7 +63,8 @@ pub struct World {
     pub ledger: Ledger,
 }
 
-/// Steps taken and simulated time. The time step may change during a run; time stays exact to rounding.
+/// Steps taken and simulated time. The time step may change during a run; time stays exact to
+/// rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Steps taken since the start.
@@ -157,7 +159,8 @@ impl World {
         self.ledger.close_gravity_segment(before, after);
     }
 
-    /// Starts the clock, the energy ledger and the container's angle afresh, keeping the grains where they are.
+    /// Starts the clock, the energy ledger and the container's angle afresh, keeping the grains
+    /// where they are.
     ///
     /// `elastic` is the elastic energy stored in the contacts now [J].
     pub fn restart_clock(&mut self, elastic: f64) {

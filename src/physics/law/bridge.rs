@@ -1,12 +1,14 @@
 //! Liquid bridges, Eqs. 11–17 of Kasper et al. 2021, built from the named choices of [`BridgeLaw`].
 //!
-//! In: the liquid, the pair, the bridge's volume, the gap and the relative motion. Out: capillary attraction, viscous forces
-//! along and across the normal, the rupture gap. What depends on the volume alone is computed once, when a bridge forms
-//! ([`BridgeConstants`]); a step then takes one exponential and one logarithm, both of sums and products alone.
+//! In: the liquid, the pair, the bridge's volume, the gap and the relative motion. Out: capillary
+//! attraction, viscous forces along and across the normal, the rupture gap. What depends on the
+//! volume alone is computed once, when a bridge forms ([`BridgeConstants`]); a step then takes one
+//! exponential and one logarithm, both of sums and products alone.
 //!
-//! The drag of a thin film can exceed what a step of this length can bear. It is bounded so that it never can: with `d`
-//! partners of each grain, coefficients `c ≤ 1.6/(Δt Σ d/m)` leave the explicit step stable whatever the viscosity (for
-//! any grains that hold together, `Σ c (v_i − v_j)² ≤ Σ c (d_i/m_i + d_j/m_j)(m_i v_i²/d_i + m_j v_j²/d_j) ≤ (1.6/Δt) Σ m v²`).
+//! The drag of a thin film can exceed what a step of this length can bear. It is bounded so that it
+//! never can: with `d` partners of each grain, coefficients `c ≤ 1.6/(Δt Σ d/m)` leave the explicit
+//! step stable whatever the viscosity (for any grains that hold together,
+//! `Σ c (v_i − v_j)² ≤ Σ c (d_i/m_i + d_j/m_j)(m_i v_i²/d_i + m_j v_j²/d_j) ≤ (1.6/Δt) Σ m v²`).
 //! The advised time step is short enough that the bound acts on next to no pair.
 
 use super::{Pairing, SmallestGrain, StepLimit, natural_log};
@@ -18,8 +20,8 @@ use std::f64::consts::{LN_2, PI};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub struct FilmConstants {
-    /// `6π η r*²` [N s]; `6π η r*` [N s/m]; logarithm of the effective radius r* in metres; `2/5 r²` of the larger grain
-    /// [m²].
+    /// `6π η r*²` [N s]; `6π η r*` [N s/m]; logarithm of the effective radius r* in metres;
+    /// `2/5 r²` of the larger grain [m²].
     pub viscous: Row,
     /// Smallest gap in the capillary and in the viscous forces, largest gap in both [m]; unused.
     pub gaps: Row,
@@ -28,7 +30,8 @@ pub struct FilmConstants {
 /// What the capillary force of one bridge depends on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeConstants {
-    /// Constant part of the attraction [N], its decaying part at no gap [N], rate of the decay [1/m], rupture gap [m].
+    /// Constant part of the attraction [N], its decaying part at no gap [N], rate of the decay
+    /// [1/m], rupture gap [m].
     pub row: Row,
 }
 
@@ -37,11 +40,13 @@ const SMALLEST_GAP: f64 = 0.01;
 const LARGEST_GAP: f64 = 0.1;
 /// Share of both films that makes a bridge, Eq. 11.
 const FILM_SHARE: f64 = 0.05;
-/// Largest drag coefficient times the step over the mass that partners leave free; 2 is the limit of stability.
+/// Largest drag coefficient times the step over the mass that partners leave free; 2 is the limit
+/// of stability.
 pub(super) const LARGEST_DRAG: f64 = 1.6;
 /// Neighbours of a grain whose drag the step must bear without bounding it.
 const DRAGGING_NEIGHBOURS: f64 = 6.0;
-/// How much more freely a sphere's surface moves across the normal than its centre does: `1 + m r²/I`.
+/// How much more freely a sphere's surface moves across the normal than its centre does:
+/// `1 + m r²/I`.
 const SURFACE_MOBILITY: f64 = 3.5;
 
 impl FilmConstants {
@@ -117,7 +122,8 @@ pub fn rupture_gap(liquid: &Liquid, radii: (f64, f64), volume: f64) -> f64 {
     }
 }
 
-/// Constants of bridges that are asked for one after another. As a rule all are the same, and computed once.
+/// Constants of bridges that are asked for one after another. As a rule all are the same, and
+/// computed once.
 pub struct BridgeKinds<'a> {
     liquid: &'a Liquid,
     /// Both radii and the volume that were asked for last, and what came of them.
@@ -181,7 +187,8 @@ pub fn attraction<N: Lanes>(processor: N::Processor, constants: [N; 4], gap: N) 
     constant + decaying * decay(processor, rate * gap)
 }
 
-/// Coefficients of the drag along and across the normal [N s/m] at the gap, clamped as the law says [m].
+/// Coefficients of the drag along and across the normal [N s/m] at the gap, clamped as the law says
+/// [m].
 ///
 /// `mobility` is the step over the mass that partners leave free, summed over both sides [s/kg].
 #[inline(always)]
@@ -243,7 +250,8 @@ const INVERSE_FACTORIALS: [f64; 12] = {
     inverse
 };
 
-/// `1/x` and `ln x`, the latter as [`natural_log`] but side by side, for positive x far from the ends of what a number holds.
+/// `1/x` and `ln x`, the latter as [`natural_log`] but side by side, for positive x far from the
+/// ends of what a number holds.
 #[inline(always)]
 fn inverse_and_logarithm<N: Lanes>(processor: N::Processor, x: N) -> (N, N) {
     let one = N::splat(processor, 1.0);
@@ -320,7 +328,8 @@ mod tests {
         }
     }
 
-    /// Attraction over `π γ r` of equal grains of radius 1 mm with bridges of `Ṽ` and a contact angle in degrees.
+    /// Attraction over `π γ r` of equal grains of radius 1 mm with bridges of `Ṽ` and a contact
+    /// angle in degrees.
     fn soulie(volume: f64, degrees: f64, gap: f64) -> f64 {
         let liquid = Liquid {
             surface_tension: 0.07,

@@ -1,8 +1,9 @@
 //! Hertz–Mindlin, Eqs. 5–9 of Kasper et al. 2021.
 //!
-//! With `s = √δ`: `k_n = (4/3) E* √r* s`, `η_n = −√5 β √(m* k_n)`, `k_t = 8 G* √r* s`, `η_t = −2 √(5/6) β √(m* k_t)`,
-//! `β = ln e / √(ln² e + π²)`. Each is a constant of the pair times `s` or `√s`. The attraction that the dashpot makes at
-//! the end of a contact is kept: only then does the restitution come out as e.
+//! With `s = √δ`: `k_n = (4/3) E* √r* s`, `η_n = −√5 β √(m* k_n)`, `k_t = 8 G* √r* s`,
+//! `η_t = −2 √(5/6) β √(m* k_t)`, `β = ln e / √(ln² e + π²)`. Each is a constant of the pair times
+//! `s` or `√s`. The attraction that the dashpot makes at the end of a contact is kept: only then
+//! does the restitution come out as e.
 
 use super::{
     Circumstances, Coefficients, Law, LawFacts, LawWords, Pairing, SmallestGrain, StepLimit,

@@ -1,8 +1,9 @@
 //! Linear springs and dashpots, Eqs. 3.3–3.5 of Man et al. 2023.
 //!
-//! `F_n = K_n δ − m_e γ_n v_n` with `γ_n = 2 √(ln² e (K_n/m_e) / (π² + ln² e))` (Eq. 3.4 solved for it) and
-//! `m_e = m_1 m_2/(m_1 + m_2)`; the paper's printed `0.5 (1/m_1 + 1/m_2)` is not a mass. A net attraction is cut to
-//! zero, the Coulomb bound uses the elastic part `K_n δ`, and there is no tangential dashpot, as in the paper's program.
+//! `F_n = K_n δ − m_e γ_n v_n` with `γ_n = 2 √(ln² e (K_n/m_e) / (π² + ln² e))` (Eq. 3.4 solved for
+//! it) and `m_e = m_1 m_2/(m_1 + m_2)`; the paper's printed `0.5 (1/m_1 + 1/m_2)` is not a mass. A
+//! net attraction is cut to zero, the Coulomb bound uses the elastic part `K_n δ`, and there is no
+//! tangential dashpot, as in the paper's program.
 
 use super::bridge::LARGEST_DRAG;
 use super::{
@@ -91,7 +92,8 @@ impl LawFacts for Hooke {
     }
 }
 
-/// Half a period of two equal grains on a spring, `π √(m*/K)`; on several, where polyhedra touch in several places.
+/// Half a period of two equal grains on a spring, `π √(m*/K)`; on several, where polyhedra touch in
+/// several places.
 fn spring_limit(grain: &SmallestGrain, stiffness: f64, touching: Option<FeatureRule>) -> StepLimit {
     let springs = match touching {
         Some(FeatureRule::Full) => FEATURES_OF_PAIR,
@@ -108,8 +110,8 @@ fn spring_limit(grain: &SmallestGrain, stiffness: f64, touching: Option<FeatureR
     }
 }
 
-/// `1.6 m/(M c)` with the dashpot `c = 2 √(ln² e K_n m/(π² + ln² e))` of a grain against a heavy one: up to that step the
-/// dashpots of `M` contacts take no more than all of its speed.
+/// `1.6 m/(M c)` with the dashpot `c = 2 √(ln² e K_n m/(π² + ln² e))` of a grain against a heavy
+/// one: up to that step the dashpots of `M` contacts take no more than all of its speed.
 fn dashpot_limit(grain: &SmallestGrain, normal_stiffness: f64, rule: FeatureRule) -> StepLimit {
     let contacts = match rule {
         FeatureRule::Full => FEATURES_OF_GRAIN,

@@ -1,14 +1,14 @@
 //! Contact laws, one file each.
 //!
 //! A law turns the constants of a pair ([`PairConstants`], computed once per kind of pair) and the
-//! overlap into stiffnesses and dashpots, and says how the normal force and the Coulomb bound come from
-//! them ([`Law`], which the pair loop inlines). All laws share the tangential spring, the rolling
-//! friction and the geometry in the solver. A wall is a partner of infinite mass and radius, so no law
-//! asks whether there is one.
+//! overlap into stiffnesses and dashpots, and says how the normal force and the Coulomb bound come
+//! from them ([`Law`], which the pair loop inlines). All laws share the tangential spring, the
+//! rolling friction and the geometry in the solver. A wall is a partner of infinite mass and
+//! radius, so no law asks whether there is one.
 //!
 //! Whatever else depends on the law, the law says too ([`LawFacts`]): the constants of a pair, the
-//! limits on the time step with their reasons, what people call it and its equations, which grains it
-//! suits. So a new law takes a file with both traits here, and a line each in [`ContactLaw`] and
+//! limits on the time step with their reasons, what people call it and its equations, which grains
+//! it suits. So a new law takes a file with both traits here, and a line each in [`ContactLaw`] and
 //! [`ContactLaw::choose`].
 
 mod bridge;
@@ -58,14 +58,15 @@ pub enum ContactLaw {
     },
 }
 
-/// What the stiffnesses and the dashpot of two polyhedra belong to. Two features (a vertex and a face, or two edges) that
-/// are closer than the sum of their rounding radii are in contact.
+/// What the stiffnesses and the dashpot of two polyhedra belong to. Two features (a vertex and a
+/// face, or two edges) that are closer than the sum of their rounding radii are in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FeatureRule {
     /// Each pair of features is a full contact, as in the program of Man et al. 2023.
     #[default]
     Full,
-    /// The features of two polyhedra share one contact's stiffness and dashpot, each by its part of their overlap.
+    /// The features of two polyhedra share one contact's stiffness and dashpot, each by its part of
+    /// their overlap.
     Shared,
 }
 
@@ -86,7 +87,8 @@ impl FeatureRule {
 pub struct PairConstants {
     /// The law's own constants, in the order of its [`Coefficients`].
     pub coefficients: Row,
-    /// Coefficient of sliding friction μ; `μ_R r*`, the arm of rolling friction [m]; radii of both, 0 for a wall [m].
+    /// Coefficient of sliding friction μ; `μ_R r*`, the arm of rolling friction [m]; radii of both,
+    /// 0 for a wall [m].
     pub contact: Row,
 }
 
@@ -177,8 +179,8 @@ pub struct LawMistake {
 /// Stiffnesses that a linear spring can have [N/m].
 const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e12;
 
-/// The stiffness [N/m] of linear springs that cannot be, if one cannot. Without a tangential spring there
-/// is no friction at rest, which may be wanted.
+/// The stiffness [N/m] of linear springs that cannot be, if one cannot. Without a tangential spring
+/// there is no friction at rest, which may be wanted.
 fn mistaken_spring(normal: f64, tangential: f64) -> Option<LawMistake> {
     let springs = [
         ("normal_stiffness", normal, false),
@@ -206,9 +208,9 @@ pub struct NormalContact<N> {
     pub bounding: N,
 }
 
-/// What `law` makes of contacts with these `constants` at this `overlap` [m], none of those that do not
-/// touch, whose sides approach each other at this speed [m/s]. The pair loop runs it, and what explains
-/// a force term by term.
+/// What `law` makes of contacts with these `constants` at this `overlap` [m], none of those that do
+/// not touch, whose sides approach each other at this speed [m/s]. The pair loop runs it, and what
+/// explains a force term by term.
 #[inline(always)]
 pub fn normal_contact<N: Lanes, L: Law>(
     law: L,
@@ -229,8 +231,8 @@ pub fn normal_contact<N: Lanes, L: Law>(
     }
 }
 
-/// What is to be done with a law, once it is known which: so that a loop is compiled for each law and
-/// none asks for it again.
+/// What is to be done with a law, once it is known which: so that a loop is compiled for each law
+/// and none asks for it again.
 pub trait LawUser {
     /// What comes of it.
     type Output;
@@ -314,7 +316,8 @@ impl LawUser for ElasticEnergy {
     }
 }
 
-/// Effective (reduced) quantities of two partners, which an infinite partner leaves at the other's value.
+/// Effective (reduced) quantities of two partners, which an infinite partner leaves at the other's
+/// value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pairing {
     /// `r* = r_i r_j / (r_i + r_j)` [m].
@@ -347,7 +350,8 @@ impl Pairing {
         }
     }
 
-    /// Elastic energy stored at the overlap [m] with a tangential spring of the given length [m], in J.
+    /// Elastic energy stored at the overlap [m] with a tangential spring of the given length [m],
+    /// in J.
     pub fn elastic_energy(
         &self,
         law: ContactLaw,
@@ -370,7 +374,8 @@ pub fn reduced(a: f64, b: f64) -> f64 {
 
 /// `ln x` for `x > 0` by sums and products alone: a platform's own may differ in the last bit.
 ///
-/// `x = 2^k m` with `m` near 1 and `ln m = 2 (s + s³/3 + s⁵/5 + …)`, `s = (m − 1)/(m + 1)`, |s| ≤ 1/5.
+/// `x = 2^k m` with `m` near 1 and `ln m = 2 (s + s³/3 + s⁵/5 + …)`, `s = (m − 1)/(m + 1)`, |s| ≤
+/// 1/5.
 pub fn natural_log(x: f64) -> f64 {
     const TERMS: u8 = 13;
     let (mut m, mut k) = (x, 0.0);

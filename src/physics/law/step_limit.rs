@@ -1,7 +1,8 @@
 //! What limits a time step, as laws and bridges say it.
 //!
 //! The words that laws and bridges state their limits in: the smallest grain of a material and its
-//! circumstances go in, limits with their reasons come out. What is done with limits is the solver's.
+//! circumstances go in, limits with their reasons come out. What is done with limits is the
+//! solver's.
 
 use crate::physics::Material;
 use std::f64::consts::PI;

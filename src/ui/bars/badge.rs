@@ -1,8 +1,8 @@
 //! The badge that says at any time whether the run can be trusted, and why.
 //!
-//! In: the simulation. Out: one mark, told by its shape and a word as well as by its colour, with one line why; a click
-//! shows every number that was looked at, its limits and what to do, and where a step is too long a button that
-//! shortens it.
+//! In: the simulation. Out: one mark, told by its shape and a word as well as by its colour, with
+//! one line why; a click shows every number that was looked at, its limits and what to do, and
+//! where a step is too long a button that shortens it.
 
 use crate::measure::{Measure, Sample};
 use crate::simulation::{Command, Half, Parameter, RunView, Simulation, Status};
@@ -15,17 +15,20 @@ use crate::world::{StateHash, World};
 use bevy_egui::egui::{self, Color32, Popup, PopupCloseBehavior, RichText, WidgetInfo, WidgetType};
 use std::borrow::Cow;
 
-/// Largest overlap over the smaller radius up to which contacts are small deformations, and above which forces no longer
-/// mean what the contact laws say.
+/// Largest overlap over the smaller radius up to which contacts are small deformations, and above
+/// which forces no longer mean what the contact laws say.
 const OVERLAPS: [f64; 2] = [0.02, 0.05];
-/// The same for polyhedra, over the smaller rounding radius: an eighth and half of the way to where the cores of two grains
-/// meet. A rounding radius is a small part of a grain, and their law is linear all the way.
+/// The same for polyhedra, over the smaller rounding radius: an eighth and half of the way to where
+/// the cores of two grains meet. A rounding radius is a small part of a grain, and their law is
+/// linear all the way.
 const OVERLAPS_OF_ROUNDING: [f64; 2] = [0.25, 1.0];
-/// Energy that the ledger leaves unexplained, as a share of its largest term: what users of explicit codes commonly allow.
+/// Energy that the ledger leaves unexplained, as a share of its largest term: what users of
+/// explicit codes commonly allow.
 const RESIDUALS: [f64; 2] = [0.05, 0.10];
 /// Time step over the smallest of its limits.
 const STEPS: [f64; 2] = [1.0, 2.0];
-/// Least energy that has been turned over before a residual means anything, in lifts of all grains by their radius.
+/// Least energy that has been turned over before a residual means anything, in lifts of all grains
+/// by their radius.
 const LIFTS: f64 = 1.0;
 /// Width of what a click shows, in points.
 const WIDTH: f32 = 430.0;
@@ -178,8 +181,8 @@ fn stable_step_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Requ
     }
 }
 
-/// The change that makes a step that exceeds its limit the largest stable one; of two runs side by side, which have one
-/// step, that of both.
+/// The change that makes a step that exceeds its limit the largest stable one; of two runs side by
+/// side, which have one step, that of both.
 pub fn stable_step(simulation: &Simulation) -> Option<Command> {
     let advices = Half::ALL.map(|half| simulation.half(half).advice());
     let exceeded = advices.iter().any(|advice| advice.excess().is_some());
