@@ -1,8 +1,8 @@
 //! Linear springs and dashpots along and across the normal, for spheres (Cundall & Strack 1979;
 //! Schäfer, Dippel & Wolf, J. Phys. I France 6, 1996, Sect. 3).
 //!
-//! `F_n = K_n δ + c_n v_n`, `F_t = K_t ξ + c_t v_t` up to `μ |F_n|`, with `c = 2 ζ √(m K)` and
-//! `ζ = −ln e/√(π² + ln² e)`. Normal: `m = m*`. The attraction that the dashpot makes at the end of
+//! `F_n = K_n δ + c_n v_n`, `F_t = K_t ξ + c_t v_t`, sliding where `K_t ξ` reaches `μ K_n δ`, with
+//! `c = 2 ζ √(m K)` and `ζ = −ln e/√(π² + ln² e)`. Normal: `m = m*`. The attraction that the dashpot makes at the end of
 //! a contact is kept, so that the restitution is e at any speed and a contact lasts
 //! `π/(ω √(1 − ζ²))`, `ω = √(K_n/m*)`. Tangential: `m = 2/7 m*`, what the surfaces of solid spheres
 //! resist a force with, so that both motions have one damping ratio; with `K_t = 2/7 K_n` also one
@@ -75,7 +75,7 @@ impl LawFacts for SpringDashpot {
     fn words(&self) -> LawWords {
         LawWords {
             name: "spring and dashpot",
-            friction: "|F_t| ≤ μ |F_n|, Coulomb's bound",
+            friction: "K_t ξ ≤ μ K_n δ, Coulomb's bound",
             restitution: "c = 2 ζ √(m K), ζ = −ln e/√(π² + ln² e), in both dashpots",
         }
     }
@@ -105,8 +105,9 @@ impl Law for SpringDashpot {
         elastic + damping
     }
 
+    /// The spring's part alone: where dashpot and spring cancel, a contact that sticks goes on doing so.
     #[inline(always)]
-    fn coulomb_force<N: Lanes>(self, _elastic: N, normal: N, zero: N) -> N {
-        N::choose(zero.exceeds(normal), -normal, normal)
+    fn coulomb_force<N: Lanes>(self, elastic: N, _normal: N, _zero: N) -> N {
+        elastic
     }
 }
