@@ -15,37 +15,14 @@ mod plot_files;
 mod results_table;
 mod velocity_plot;
 
-pub use plan::{Case, Variation};
+pub use plan::{Case, Sweep, Variation};
 
-use crate::output::{Ending, write_file};
-use crate::run::BedStore;
+use crate::output::Ending;
 use crate::runner::{RunnerError, Watch, exit, spoken};
-use crate::scene::Scene;
 use case::{Outcome, Share};
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
-
-/// What to run.
-#[derive(Clone, Debug)]
-pub struct Sweep {
-    /// What the scene was called.
-    pub name: String,
-    /// The scene that is varied.
-    pub scene: Scene,
-    /// What is changed in every case, as `--set` has it.
-    pub settings: Vec<String>,
-    /// What is varied.
-    pub variations: Vec<Variation>,
-    /// The output folder.
-    pub out: PathBuf,
-    /// Cases that run at the same time.
-    pub jobs: usize,
-    /// Where settled beds are looked for and kept.
-    pub beds: BedStore,
-}
 
 /// How a sweep ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,12 +156,4 @@ fn follow(cases: &[Case], shares: &[Share], watch: &mut dyn Watch, working: &dyn
             )
         });
     }
-}
-
-/// Writes a file of a sweep, whole or not at all.
-fn write(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), RunnerError> {
-    Ok(write_file(path, fill)?)
 }

@@ -1,13 +1,32 @@
-//! Which cases a sweep consists of.
+//! What a sweep varies, and the cases that it consists of.
 
-use super::Sweep;
-use crate::run::ScriptedCommand;
+use crate::run::{BedStore, ScriptedCommand};
 use crate::runner::{RunnerError, apply_setting};
 use crate::scene::Scene;
 use crate::solver::advise;
+use std::path::PathBuf;
 
 /// Cases a sweep may have.
 const MOST_CASES: u16 = 10_000;
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// What the scene was called.
+    pub name: String,
+    /// The scene that is varied.
+    pub scene: Scene,
+    /// What is changed in every case, as `--set` has it.
+    pub settings: Vec<String>,
+    /// What is varied.
+    pub variations: Vec<Variation>,
+    /// The output folder.
+    pub out: PathBuf,
+    /// Cases that run at the same time.
+    pub jobs: usize,
+    /// Where settled beds are looked for and kept.
+    pub beds: BedStore,
+}
 
 /// A key and the values it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,11 +2,12 @@
 //!
 //! In: what became of the cases. Out: one file for each plot that has points.
 
+use super::Sweep;
 use super::case::Outcome;
 use super::chart::Plot;
 use super::column_plots::column_plots;
 use super::drum_plots::drum_plots;
-use super::{Sweep, write};
+use crate::output::write_file;
 use crate::run::Provenance;
 use crate::runner::RunnerError;
 
@@ -21,7 +22,7 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerErro
         })?;
         let path = sweep.out.join("plots").join(&plot.file);
         let text = Provenance::of_scene(&sweep.scene).in_svg(&text);
-        write(&path, |file| file.write_all(text.as_bytes()))?;
+        write_file(&path, |file| file.write_all(text.as_bytes()))?;
     }
     Ok(())
 }

@@ -3,11 +3,12 @@
 //! In: what became of the cases of a sweep. Out: `table.csv` and `table.md`, with the columns that
 //! suit drums or columns. Units and digits come from the registry of quantities.
 
+use super::Sweep;
 use super::case::Outcome;
-use super::{Sweep, write};
 use crate::measure::numeral::NOTHING;
 use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary, Unit};
 use crate::output::Ending;
+use crate::output::write_file;
 use crate::run::{Provenance, TABLES_METADATA};
 use crate::runner::RunnerError;
 
@@ -133,7 +134,7 @@ fn columns(outcomes: &[Outcome]) -> &'static [TableColumn] {
 /// When a file cannot be written.
 pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
     let columns = columns(outcomes);
-    write(&sweep.out.join("table.csv"), |file| {
+    write_file(&sweep.out.join("table.csv"), |file| {
         let mut writer = csv::Writer::from_writer(file);
         writer.write_record(heads(sweep, columns))?;
         for outcome in outcomes {
@@ -141,13 +142,14 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerErr
         }
         writer.flush()
     })?;
-    write(&sweep.out.join(TABLES_METADATA), |file| {
+    write_file(&sweep.out.join(TABLES_METADATA), |file| {
         Provenance::of_scene(&sweep.scene).write_tables(&["table.csv"], file)
     })?;
     let text = markdown(sweep, outcomes);
-    write(&sweep.out.join("table.md"), |file| {
+    write_file(&sweep.out.join("table.md"), |file| {
         file.write_all(text.as_bytes())
-    })
+    })?;
+    Ok(())
 }
 
 /// The table in Markdown.

@@ -1,9 +1,10 @@
 //! The velocities in the cross-section of each case at its fastest moment, as in Fig. 4a–d of
 //! Kasper et al. 2021: colours for the speed, arrows for the direction, the drum's rim.
 
+use super::Sweep;
 use super::case::Outcome;
-use super::{Sweep, write};
 use crate::measure::VelocityMap;
+use crate::output::write_file;
 use crate::run::Provenance;
 use crate::runner::RunnerError;
 use crate::scene::SceneContainer;
@@ -42,7 +43,7 @@ pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), R
         })?;
         let path = sweep.out.join("plots/velocity").join(format!("{name}.svg"));
         let text = Provenance::of_scene(&outcome.case.scene).in_svg(&text);
-        write(&path, |file| file.write_all(text.as_bytes()))?;
+        write_file(&path, |file| file.write_all(text.as_bytes()))?;
     }
     Ok(())
 }
