@@ -1,6 +1,9 @@
 //! Where the time goes.
+//!
+//! In: times of the stages of steps ([`super::step`]). Out: what each stage took, and per grain and
+//! step.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A stage of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,13 +58,27 @@ impl Stage {
 }
 
 impl Profile {
+    /// Does `work` on the clock of `stage`.
+    pub(super) fn time_stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        let begin = Instant::now();
+        let result = work();
+        self.add(stage, begin.elapsed());
+        result
+    }
+
+    /// Books `time` spent in `stage`.
+    pub(super) fn add(&mut self, stage: Stage, time: Duration) {
+        self.stages[stage as usize] += time;
+    }
+
     /// Time spent in `stage`.
     pub fn time(&self, stage: Stage) -> Duration {
         self.stages[stage as usize]
     }
 
-    /// Part of the time that `stage` took, 0 … 1. Some stages are timed in some steps only and that is scaled up: where a step
-    /// takes no longer than to look at the clock, they come to more than the whole, and count as parts of their sum.
+    /// Part of the time that `stage` took, 0 … 1. Some stages are timed in some steps only and that
+    /// is scaled up: where a step takes no longer than to look at the clock, they come to more than
+    /// the whole, and count as parts of their sum.
     pub fn share(&self, stage: Stage) -> f64 {
         let whole = self.total.max(self.stages.iter().sum());
         self.time(stage).as_secs_f64() / whole.as_secs_f64().max(f64::MIN_POSITIVE)

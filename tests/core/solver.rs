@@ -7,6 +7,7 @@ mod cloud;
 mod determinism;
 mod drum;
 mod faults;
+mod golden;
 mod impact;
 mod pair_forces;
 mod polyhedra;

@@ -2,9 +2,9 @@
 //!
 //! Vertices are turned anew from the body frame in every step, so that shapes never drift.
 
-use super::super::lanes::{Lanes, Quad, Work, prefetch};
 use super::super::row::{Row, length_squared, row, vector};
 use super::nearest::Places;
+use crate::lanes::{Lanes, Quad, Work, prefetch};
 use crate::world::{Polyhedron, World};
 use glam::{DQuat, DVec3};
 use std::ops::Range;
@@ -17,10 +17,10 @@ pub struct Body {
     pub position: Row,
     /// Velocity half a step ago [m/s]; largest speed of any of its points that is not absurd [m/s].
     pub velocity: Row,
-    /// Spin that the angular momentum of half a step ago is at the present orientation [rad/s]; distance of the farthest
-    /// point of the surface from the centroid [m].
+    /// Spin that the angular momentum of half a step ago is at the present orientation [rad/s];
+    /// distance of the farthest point of the surface from the centroid [m].
     pub spin: Row,
-    /// Angular momentum half a step ago [kg m²/s]; rounding radius [m].
+    /// Angular momentum half a step ago [kg m²/s]; sphero-radius [m].
     pub angular_momentum: Row,
     /// Rotation from body axes to world axes: x, y, z, w of a unit quaternion.
     pub orientation: Row,
@@ -50,6 +50,13 @@ pub struct Place {
     pub face: u32,
     /// First entry of the faces' outlines.
     pub corner: u32,
+}
+
+impl Load {
+    /// Number of touching partners.
+    pub fn contact_count(&self) -> f64 {
+        self.force[3]
+    }
 }
 
 /// The shapes of all bodies, feature by feature.
@@ -93,11 +100,13 @@ impl Shapes {
         number
     }
 
+    /// Closes the tables: where the last body ends.
     fn close(&mut self) {
         self.places.push(self.end());
         self.loop_starts.push(self.loops.len() as u32);
     }
 
+    /// The ends of the tables.
     fn end(&self) -> Place {
         Place {
             vertex: self.body_vertices.len() as u32,
@@ -107,6 +116,7 @@ impl Shapes {
         }
     }
 
+    /// Adds a body of this shape to tables that are open.
     fn push(&mut self, shape: &Polyhedron) {
         self.places.push(self.end());
         self.body_vertices
@@ -278,6 +288,7 @@ fn axes(orientation: Row) -> [[f64; 3]; 3] {
     ]
 }
 
+/// A vector of the world along the body axes.
 #[inline(always)]
 fn into_body([x, y, z]: &[[f64; 3]; 3], v: Row) -> [f64; 3] {
     let along = |axis: &[f64; 3]| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
@@ -306,7 +317,7 @@ impl Body {
     /// Half a step of velocity and angular momentum.
     #[inline(always)]
     pub fn kick(&mut self, load: &Load, half: f64, gravity: Row) {
-        let inverse_mass = self.position[3];
+        let inverse_mass = self.inverse_mass();
         for axis in 0..3 {
             self.velocity[axis] += (load.force[axis] * inverse_mass + gravity[axis]) * half;
             self.angular_momentum[axis] += load.torque[axis] * half;
@@ -335,9 +346,10 @@ impl Body {
         }
     }
 
-    /// Turns the free body for `dt` [s]: its angular momentum stays, its orientation follows by rotations about one body
-    /// axis after the other, forwards and back (the symmetric splitting of Dullweber, Leimkuhler and `McLachlan` 1997).
-    /// Each is symplectic, so the energy of a free body does not drift.
+    /// Turns the free body for `dt` [s]: its angular momentum stays, its orientation follows by
+    /// rotations about one body axis after the other, forwards and back (the symmetric splitting of
+    /// Dullweber, Leimkuhler and `McLachlan` 1997). Each is symplectic, so the energy of a free
+    /// body does not drift.
     #[inline(always)]
     fn turn(&mut self, dt: f64) {
         let mut momentum = into_body(&axes(self.orientation), self.angular_momentum);
@@ -353,16 +365,16 @@ impl Body {
         self.orientation = q.map(|x| x / norm);
     }
 
-    /// Square of a speed that no point of the body exceeds [m²/s²], and whether that is sane. Written so that a NaN is not.
+    /// Whether no point of it is absurdly fast. Written so that a NaN is not sane.
     #[inline(always)]
     pub fn is_sane(&self) -> bool {
-        self.fastest() <= self.velocity[3]
+        self.fastest() <= self.speed_limit()
     }
 
     /// A speed that no point of the body exceeds [m/s].
     #[inline(always)]
     pub fn fastest(&self) -> f64 {
-        length_squared(self.velocity).sqrt() + length_squared(self.spin).sqrt() * self.spin[3]
+        length_squared(self.velocity).sqrt() + length_squared(self.spin).sqrt() * self.reach()
     }
 
     /// Orientation as a quaternion.
@@ -370,9 +382,27 @@ impl Body {
         DQuat::from_array(self.orientation)
     }
 
-    /// Rounding radius [m].
+    /// Inverse mass [1/kg].
     #[inline(always)]
-    pub fn rounding(&self) -> f64 {
+    fn inverse_mass(&self) -> f64 {
+        self.position[3]
+    }
+
+    /// Largest speed of any of its points that is not absurd [m/s].
+    #[inline(always)]
+    fn speed_limit(&self) -> f64 {
+        self.velocity[3]
+    }
+
+    /// Distance of the farthest point of its surface from its centroid [m].
+    #[inline(always)]
+    pub fn reach(&self) -> f64 {
+        self.spin[3]
+    }
+
+    /// Sphero-radius: by how much its core is rounded [m].
+    #[inline(always)]
+    pub fn sphero_radius(&self) -> f64 {
         self.angular_momentum[3]
     }
 
@@ -382,12 +412,13 @@ impl Body {
     }
 }
 
-/// A body no point of which may move in one step by more than this share of its rounding radius: features could pass
-/// through each other unseen.
+/// A body no point of which may move in one step by more than this share of its sphero-radius:
+/// features could pass through each other unseen.
 pub const LARGEST_MOVE: f64 = 0.25;
 
-/// A rotation about body axis `K` by the angle whose half has the tangent `momentum[K] rate / 2`: that of the axis' own
-/// free rotation to third order, and symplectic as any function of that momentum alone.
+/// A rotation about body axis `K` by the angle whose half has the tangent `momentum[K] rate / 2`:
+/// that of the axis' own free rotation to third order, and symplectic as any function of that
+/// momentum alone.
 #[inline(always)]
 fn about<const K: usize>(momentum: &mut [f64; 3], q: &mut Row, rate: f64) {
     let (u, v) = ((K + 1) % 3, (K + 2) % 3);

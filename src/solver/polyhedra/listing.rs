@@ -1,15 +1,17 @@
-//! Which features of a pair may touch before long: a list that is good until the bodies have moved by its skin.
+//! Which features of a pair may touch before long: a list that is good until the bodies have moved
+//! by its skin.
 //!
-//! In: two bodies. Out: every pair of their features nearer than the sum of the rounding radii and the skin, in order of
-//! [`Feature`], or none and how far apart the bodies are at least. Two convex cores that a plane parts can only touch near
-//! that plane: the best of the face normals, or the direction found last time, is that plane's, and only features
-//! within reach of it are tried one by one. The list is a cache: whatever it holds beyond the touching features adds
-//! nothing to any result.
+//! In: two bodies. Out: every pair of their features nearer than the sum of the sphero-radii and
+//! the skin, in order of [`Feature`], or none and how far apart the bodies are at least. Two convex
+//! cores that a plane separates can only touch near that plane: the best of the face normals, or
+//! the direction found last time, is that plane's, and only features within reach of it are tried
+//! one by one. The list is a cache: whatever it holds beyond the touching features adds nothing to
+//! any result.
 
-use super::super::lanes::{Lanes, Row, dot, side_by_side};
 use super::super::row::{sub, vector};
 use super::bodies::{Geometry, Place, Shapes};
 use super::nearest::{EdgeJob, FaceJob, Jobs, Nearest, OutlineJob, Places};
+use crate::lanes::{Lanes, Row, dot, side_by_side};
 use crate::world::Feature;
 
 /// Two features that may touch before long.
@@ -17,8 +19,8 @@ use crate::world::Feature;
 pub struct Listed {
     /// Which.
     pub feature: Feature,
-    /// Of two edges their ends, by their numbers in the bodies; of a vertex and a face the edges of its outline that matter,
-    /// bit by bit in two halves: none where the vertex is over the inside.
+    /// Of two edges their ends, by their numbers in the bodies; of a vertex and a face the edges of
+    /// its outline that matter, bit by bit in two halves: none where the vertex is over the inside.
     marks: [u16; 4],
 }
 
@@ -67,31 +69,40 @@ impl Listed {
 /// What a search needs again and again.
 #[derive(Default)]
 pub struct Search {
+    /// Pairs of features that may be near each other.
     candidates: Vec<Listed>,
+    /// Nearest points to compute.
     jobs: Jobs,
+    /// The nearest points.
     results: Vec<Nearest>,
+    /// Features of either body within reach of the separating plane.
     near: [NearFeatures; 2],
+    /// Which vertices of a body are.
     marks: Vec<bool>,
 }
 
-/// Features of a body within reach of the parting plane, by their indices in the shape.
+/// Features of a body within reach of the separating plane, by their indices in the shape.
 #[derive(Default)]
 struct NearFeatures {
+    /// Vertices.
     vertices: Vec<u16>,
+    /// Edges of which an end is.
     edges: Vec<u16>,
+    /// Faces of which a corner is.
     faces: Vec<u16>,
 }
 
-/// A direction from the first body to the second, and what it parts.
+/// A direction from the first body to the second, and how far apart they are along it.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
+    /// Unit vector.
     direction: [f64; 3],
     /// Largest coordinate of the first body's core along it, and smallest of the second's [m].
     ends: [f64; 2],
 }
 
 impl Axis {
-    /// What `direction` parts.
+    /// How far apart they are along `direction`.
     fn between(vertices: [&[Row]; 2], direction: [f64; 3]) -> Self {
         let [first, second] = vertices;
         Self {
@@ -111,7 +122,7 @@ impl Axis {
 pub struct Wanted {
     /// The two bodies.
     pub bodies: [usize; 2],
-    /// The direction that parted them best last time, or about that; zero at the first time.
+    /// The axis that separated them best last time, or about that; zero at the first time.
     pub axis: [f64; 3],
     /// Distance of the farthest point of the first from its centroid [m].
     pub reach: f64,
@@ -127,8 +138,9 @@ impl Wanted {
         self.touch + self.skin
     }
 
-    /// How far the foot of a vertex near a face may move along that face while distances change by the skin [m]: a
-    /// body that turns moves what is beyond its surface by more than any point of its own.
+    /// How far the foot of a vertex near a face may move along that face while distances change by
+    /// the skin [m]: a body that turns moves what is beyond its surface by more than any point of
+    /// its own.
     fn leeway(&self) -> f64 {
         self.skin * (1.0 + (self.cutoff() + self.skin) / self.reach)
     }
@@ -139,7 +151,7 @@ impl Wanted {
 pub struct Found {
     /// How far the two may move relative to each other before the list must be made anew [m].
     pub slack: f64,
-    /// The direction that parts them best.
+    /// The axis that separates them best.
     pub axis: [f64; 3],
 }
 
@@ -155,6 +167,7 @@ fn extent(vertices: &[Row], direction: [f64; 3]) -> [f64; 2] {
     ends
 }
 
+/// Coordinate of a point along a direction.
 #[inline(always)]
 fn along(v: Row, direction: [f64; 3]) -> f64 {
     v[0] * direction[0] + v[1] * direction[1] + v[2] * direction[2]
@@ -205,7 +218,7 @@ impl Search {
         list.clear();
         let vertices = wanted.bodies.map(|body| geometry.vertices_of(body));
         let planes = wanted.bodies.map(|body| geometry.planes_of(body));
-        let axis = parting_axis::<N>(processor, vertices, planes, wanted.axis);
+        let axis = separating_axis::<N>(processor, vertices, planes, wanted.axis);
         let mut found = Found {
             slack: wanted.skin,
             axis: axis.direction,
@@ -232,7 +245,7 @@ impl Search {
         }
         self.keep_near(&geometry.places, wanted, list);
         if list.is_empty() {
-            // The nearest features tell a better direction, which may part the two by more.
+            // The nearest features tell a better direction, which may separate the two by more.
             let gap = Axis::between(vertices, found.axis).gap();
             found.slack = found.slack.max(gap - wanted.touch);
         }
@@ -310,8 +323,8 @@ impl Search {
         self.jobs.extend_sorted(shapes, &starts, candidates, 0);
     }
 
-    /// Keeps the candidates nearer than the cutoff, each with what matters while the bodies move by the skin. A vertex
-    /// behind a face is near nothing, but it may come round an edge of it.
+    /// Keeps the candidates nearer than the cutoff, each with what matters while the bodies move by
+    /// the skin. A vertex behind a face is near nothing, but it may come round an edge of it.
     fn keep_near(&self, places: &Places<'_>, wanted: &Wanted, list: &mut Vec<Listed>) {
         let (cutoff, leeway) = (wanted.cutoff(), wanted.leeway());
         for (number, (listed, result)) in self.candidates.iter().zip(&self.results).enumerate() {
@@ -345,7 +358,8 @@ struct Sides {
 }
 
 impl Sides {
-    /// Which edges of a face matter to a vertex while distances change by `skin` and its foot moves by `leeway` [m].
+    /// Which edges of a face matter to a vertex while distances change by `skin` and its foot moves
+    /// by `leeway` [m].
     fn near(places: &Places<'_>, job: &OutlineJob, skin: f64, leeway: f64) -> Self {
         let ends = |side: u32| job.ends(places.corners, side);
         let beside = || (0..job.count).map(|side| along_side(places, &job.face, ends(side)));
@@ -360,7 +374,8 @@ impl Sides {
     }
 }
 
-/// How far inside a `side` of a face the foot of a vertex lies, and how far the vertex is from that edge [m].
+/// How far inside a `side` of a face the foot of a vertex lies, and how far the vertex is from that
+/// edge [m].
 fn along_side(places: &Places<'_>, job: &FaceJob, side: [u32; 2]) -> (f64, f64) {
     let [begin, end] = side.map(|corner| places.vertices[corner as usize]);
     let point = places.vertices[job.vertex as usize];
@@ -372,8 +387,8 @@ fn along_side(places: &Places<'_>, job: &FaceJob, side: [u32; 2]) -> (f64, f64) 
 }
 
 impl Jobs {
-    /// Adds what there is to compute for features of the bodies whose features begin at `starts`: vertices with faces, then
-    /// edges with edges. The results begin at `out`.
+    /// Adds what there is to compute for features of the bodies whose features begin at `starts`:
+    /// vertices with faces, then edges with edges. The results begin at `out`.
     #[inline(always)]
     pub fn extend(
         &mut self,
@@ -383,8 +398,8 @@ impl Jobs {
         out: u32,
     ) {
         let edge_out = out + faces.len() as u32;
-        // Either kind is written to the end of both queues and stays in its own: a branch would be foretold wrongly half of
-        // the time.
+        // Either kind is written to the end of both queues and stays in its own: a branch would be
+        // foretold wrongly half of the time.
         let (mut above, mut outlines) = (self.above.len(), self.outlines.len());
         self.above.resize(above + faces.len(), FaceJob::default());
         self.outlines
@@ -441,8 +456,8 @@ impl Jobs {
     }
 }
 
-/// Those of `near` that are nearer than `cutoff` by `results` [m], and vertices behind faces, which may come round an
-/// edge at any time; returns the distance of the nearest of the others [m].
+/// Those of `near` that are nearer than `cutoff` by `results` [m], and vertices behind faces, which
+/// may come round an edge at any time; returns the distance of the nearest of the others [m].
 pub fn choose(near: &[Listed], results: &[Nearest], cutoff: f64, chosen: &mut Vec<Listed>) -> f64 {
     chosen.clear();
     let mut nearest = f64::INFINITY;
@@ -457,9 +472,10 @@ pub fn choose(near: &[Listed], results: &[Nearest], cutoff: f64, chosen: &mut Ve
     nearest
 }
 
-/// The direction that parts the two bodies best among the normals of their faces and `known`, that of last time.
+/// The direction that separates the two bodies best among the normals of their faces and `known`,
+/// that of last time.
 #[inline(always)]
-fn parting_axis<N: Lanes>(
+fn separating_axis<N: Lanes>(
     processor: N::Processor,
     vertices: [&[Row]; 2],
     planes: [&[Row]; 2],

@@ -1,18 +1,19 @@
 //! Nearest points of two features: an edge and an edge, a vertex and a face.
 //!
-//! In: jobs that name vertices and faces by their indices in the world's tables. Out: for each the unit vector from the
-//! first body to the second, the distance, and the point in the middle. Each is computed in lanes, every lane for itself.
+//! In: jobs that name vertices and faces by their indices in the world's tables. Out: for each the
+//! unit vector from the first body to the second, the distance, and the point in the middle. Each
+//! is computed in lanes, every lane for itself.
 
-use super::super::lanes::{Lanes, Quad, Row, WIDEST, cross, dot, minus, plus, side_by_side, times};
+use crate::lanes::{Lanes, Quad, Row, Rows, WIDEST, cross, dot, minus, plus, side_by_side, times};
 
 /// Nearest points of two features.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Nearest {
-    /// Unit vector from the point of the first body to that of the second; their distance [m], infinite for a vertex
-    /// behind a face.
+    /// Unit vector from the point of the first body to that of the second; their distance [m],
+    /// infinite for a vertex behind a face.
     pub normal: Row,
-    /// The point halfway [m]; a companion for the user: how far the vertex lies inside the face's outline [m] where that
-    /// was asked for.
+    /// The point halfway [m]; a companion for the user: how far the vertex lies inside the face's
+    /// outline [m] where that was asked for.
     pub middle: Row,
 }
 
@@ -149,20 +150,24 @@ pub fn group<N: Lanes, T>(items: &[T]) -> [&T; WIDEST] {
     side_by_side::<N, _>(|k| &items[k.min(last)])
 }
 
-/// Sines squared below which two edges count as parallel: the middle of their overlap is taken then.
+/// Sines squared below which two edges count as parallel: the middle of their overlap is taken
+/// then.
 pub const PARALLEL: f64 = 1e-10;
 
+/// `x` between `zero` and `one`.
 #[inline(always)]
 fn clamp<N: Lanes>(x: N, zero: N, one: N) -> N {
     let x = N::choose(x.exceeds(zero), x, zero);
     N::choose(x.exceeds(one), one, x)
 }
 
+/// The smaller of two.
 #[inline(always)]
 fn smaller<N: Lanes>(a: N, b: N) -> N {
     N::choose(a.exceeds(b), b, a)
 }
 
+/// The vector part.
 #[inline(always)]
 fn vector<N: Lanes>([x, y, z, _]: [N; 4]) -> [N; 3] {
     [x, y, z]
@@ -203,8 +208,8 @@ fn between_edges<N: Lanes>(
     }
 }
 
-/// Where on the edges `along` and `across`, the first beginning at `offset` from the second, the nearest points lie (0 at
-/// the beginning, 1 at the end).
+/// Where on the edges `along` and `across`, the first beginning at `offset` from the second, the
+/// nearest points lie (0 at the beginning, 1 at the end).
 #[inline(always)]
 fn on_edges<N: Lanes>(
     processor: N::Processor,
@@ -232,10 +237,12 @@ fn on_edges<N: Lanes>(
     (s, t)
 }
 
-/// Signs of the vector and its companion that turn "from the vertex to the face" into "from the first to the second".
+/// Signs of the vector and its companion that turn "from the vertex to the face" into "from the
+/// first to the second".
 const TURN: [Row; 2] = [[1.0, 1.0, 1.0, 1.0], [-1.0, -1.0, -1.0, 1.0]];
 
-/// Nearest points of vertices and faces on which they stand: those whose foot is known to lie inside the outline.
+/// Nearest points of vertices and faces on which they stand: those whose foot is known to lie
+/// inside the outline.
 #[inline(always)]
 fn above_faces<N: Lanes>(
     processor: N::Processor,
@@ -282,8 +289,72 @@ fn on_plane<N: Lanes>(
     )
 }
 
-/// Nearest points of vertices and faces, wherever the vertices are: of the outlines only the edges named matter. With
-/// `MARGIN` the companion of the middle tells how far inside these edges the foot of the vertex lies [m], negative outside.
+/// The outlines of faces as vertices side by side see them.
+struct Outlines<N> {
+    /// Vectors from the vertices to the nearest points of the edges that were looked at [m].
+    to_edge: [N; 3],
+    /// Squares of their lengths [m²].
+    square: N,
+    /// How far inside these edges the feet of the vertices lie, times the length of an edge unless
+    /// the margin itself was asked for; negative outside.
+    inside: N,
+}
+
+/// Looks at the edges of the outlines that the jobs name. With `MARGIN` it is told how far inside
+/// them the feet of the vertices lie [m].
+#[inline(always)]
+fn look_at_outlines<N: Lanes, const MARGIN: bool>(
+    processor: N::Processor,
+    places: &Places<'_>,
+    jobs: &[OutlineJob],
+    vertex: Rows<'_>,
+    outward: [N; 3],
+) -> Outlines<N> {
+    let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let all = group::<N, _>(jobs);
+    let mut to_nearest = [zero; 3];
+    let mut square = N::splat(processor, f64::INFINITY);
+    let mut inside = N::splat(processor, f64::INFINITY);
+    let mut count = 0;
+    for job in jobs {
+        count = count.max(job.side_count());
+    }
+    let mut next = [0; WIDEST];
+    for _ in 0..count {
+        let ends = side_by_side::<N, _>(|k| {
+            let side = all[k].side_from(next[k]);
+            (side, all[k].ends(places.corners, side))
+        });
+        next = ends.map(|(side, _)| side + 1);
+        let begin = side_by_side::<N, _>(|k| places.vertex(ends[k].1[0]));
+        let end = side_by_side::<N, _>(|k| places.vertex(ends[k].1[1]));
+        let edge = vector(N::gather_difference(processor, end, begin));
+        let away = vector(N::gather_difference(processor, vertex, begin));
+        let length = dot(edge, edge);
+        let foot = clamp(dot(away, edge) / length, zero, one);
+        let to_edge = minus(times(edge, foot), away);
+        let to_edge_square = dot(to_edge, to_edge);
+        let closer = square.exceeds(to_edge_square);
+        for axis in 0..3 {
+            to_nearest[axis] = N::choose(closer, to_edge[axis], to_nearest[axis]);
+        }
+        square = N::choose(closer, to_edge_square, square);
+        let mut within = dot(cross(outward, edge), away);
+        if MARGIN {
+            within = within / length.sqrt();
+        }
+        inside = smaller(inside, within);
+    }
+    Outlines {
+        to_edge: to_nearest,
+        square,
+        inside,
+    }
+}
+
+/// Nearest points of vertices and faces, wherever the vertices are: of the outlines only the edges
+/// named matter. With `MARGIN` the companion of the middle tells how far inside these edges the
+/// foot of the vertex lies [m], negative outside.
 #[inline(always)]
 fn at_outlines<N: Lanes, const MARGIN: bool>(
     processor: N::Processor,
@@ -300,55 +371,23 @@ fn at_outlines<N: Lanes, const MARGIN: bool>(
         let [nx, ny, nz, offset] = N::gather(processor, plane);
         let outward = [nx, ny, nz];
         let height = dot(outward, point) - offset;
-
-        let mut nearest = [zero; 3];
-        let mut square = N::splat(processor, f64::INFINITY);
-        let mut inside = N::splat(processor, f64::INFINITY);
-        let mut count = 0;
-        for job in chunk {
-            count = count.max(job.side_count());
-        }
-        let mut next = [0; WIDEST];
-        for _ in 0..count {
-            let ends = side_by_side::<N, _>(|k| {
-                let side = all[k].side_from(next[k]);
-                (side, all[k].ends(places.corners, side))
-            });
-            next = ends.map(|(side, _)| side + 1);
-            let begin = side_by_side::<N, _>(|k| places.vertex(ends[k].1[0]));
-            let end = side_by_side::<N, _>(|k| places.vertex(ends[k].1[1]));
-            let edge = vector(N::gather_difference(processor, end, begin));
-            let away = vector(N::gather_difference(processor, vertex, begin));
-            let length = dot(edge, edge);
-            let foot = clamp(dot(away, edge) / length, zero, one);
-            let to_edge = minus(times(edge, foot), away);
-            let to_edge_square = dot(to_edge, to_edge);
-            let closer = square.exceeds(to_edge_square);
-            for axis in 0..3 {
-                nearest[axis] = N::choose(closer, to_edge[axis], nearest[axis]);
-            }
-            square = N::choose(closer, to_edge_square, square);
-            let mut within = dot(cross(outward, edge), away);
-            if MARGIN {
-                within = within / length.sqrt();
-            }
-            inside = smaller(inside, within);
-        }
+        let seen = look_at_outlines::<N, MARGIN>(processor, places, chunk, vertex, outward);
 
         let (below, at_height, foot_middle) = on_plane(processor, point, outward, height);
-        let distance = square.sqrt();
-        let over = inside.exceeds(zero);
+        let distance = seen.square.sqrt();
+        let over = seen.inside.exceeds(zero);
         let inverse = one / distance;
         let half = N::splat(processor, 0.5);
         let mut normal = [zero; 3];
         let mut middle = [zero; 3];
         for axis in 0..3 {
-            normal[axis] = N::choose(over, below[axis], nearest[axis] * inverse);
-            middle[axis] = N::choose(over, foot_middle[axis], point[axis] + half * nearest[axis]);
+            let to_edge = seen.to_edge[axis];
+            normal[axis] = N::choose(over, below[axis], to_edge * inverse);
+            middle[axis] = N::choose(over, foot_middle[axis], point[axis] + half * to_edge);
         }
         let distance = N::choose(over, at_height, distance);
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
-        let middles = N::rows([middle[0], middle[1], middle[2], inside]);
+        let middles = N::rows([middle[0], middle[1], middle[2], seen.inside]);
         for (k, job) in chunk.iter().enumerate() {
             let turn = N::Quad::load(processor, &TURN[job.face.side as usize]);
             results[job.face.out as usize] = Nearest {

@@ -1,78 +1,37 @@
 //! The pair loop: geometry, contact law, sliding and rolling friction of every listed pair.
 //!
-//! In: bodies, listed pairs with their constants and tangential springs. Out: forces, torques and exchanged energy per
-//! pair, new springs. Pairs are computed in lanes and each writes rows of its own; nothing is summed here, so the order of
-//! work never shows.
+//! In: bodies, listed pairs with their constants and tangential springs. Out: forces, torques and
+//! exchanged energy per pair, new springs. Pairs are computed in lanes and each writes rows of its
+//! own; nothing is summed here, so the order of work never shows.
 
-use super::bridges::{BridgeColumns, BridgeGroup, Encounter, LiquidAction, Wetting};
-use super::lanes::{
+use super::super::tangential::update;
+use super::super::walls::WallBody;
+use super::bridges::{BridgeColumns, BridgeEffect, BridgeGroup, Encounter, LiquidForce, Wetting};
+use super::rows::{Body, ContactForce, GROUP, Pair};
+use crate::lanes::{
     Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
 };
-use super::law::{FilmConstants, Law, PairConstants, normal_contact, rolling_gain};
-use super::spring::stretch;
 use crate::physics::CoulombBound;
-use crate::world::{Motion, Surface};
+use crate::physics::law::{
+    FilmConstants, Law, NormalContact, PairConstants, normal_contact, rolling_gain,
+};
+use crate::world::Surface;
 use glam::DVec3;
 
-/// Listed pairs come in groups of this many, filled up with ghosts, whatever lanes the processor has.
-pub const GROUP: usize = WIDEST;
-
-/// What the pair loop reads of a grain: two cache lines.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(128))]
-pub struct Body {
-    /// Centre [m]; inverse mass [1/kg].
-    pub position: Row,
-    /// Velocity half a step ago [m/s]; inverse moment of inertia [1/(kg m²)].
-    pub velocity: Row,
-    /// Spin half a step ago [rad/s]; radius [m].
-    pub spin: Row,
-    /// Spin after the step if nothing resisted rolling [rad/s]; time step and contact count over inertia [1/(N m s)].
-    pub free_spin: Row,
-}
-
-/// What the pair loop reads of a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallBody {
-    /// Where it is.
-    pub surface: Surface,
-    /// How it moves.
-    pub motion: Motion,
-}
-
-/// A pair on the list: a grain, its partner (a grain or a wall) and the index of its constants.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Pair {
-    /// The grain on which the computed force acts.
-    pub grain: u32,
-    /// The other grain's index, or the wall's.
-    pub partner: u32,
-    /// Index into the pair constants.
-    pub kind: u32,
-}
-
-/// What a pair does to its partners, in rows.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(128))]
-pub struct Action {
-    /// Force on the grain [N]; arm from the grain's centre to the contact [m].
-    pub force: Row,
-    /// Normal × force [N]; arm from the partner's centre to the contact [m]. Times the arm, the torque on either side.
-    pub twist: Row,
-    /// Torque of rolling friction on the grain [N m]; 1 while touching, else 0.
-    pub rolling: Row,
-    /// Energy lost in dashpots, by the tangential spring (in sliding and as its stiffness changes), in rolling and done by a
-    /// wall during the step [J].
-    pub exchanged: Row,
-}
-
-/// Partners side by side, as many as there are lanes. What a law needs of them is read when it is needed: registers are
-/// few.
+/// Partners side by side, as many as there are lanes: geometry and kinematics of a pair, for two
+/// grains and for a grain at a wall.
+///
+/// With centres `x`, radii `r`, velocities `v`, spins `ω` and arms `a` from the centres to the
+/// contact, the normal is `n = (x₂ − x₁)/|x₂ − x₁|`, the overlap `δ = r₁ + r₂ − |x₂ − x₁|`, the
+/// speed of approach `(v₁ − v₂) · n` and the slip of the surfaces `v − (v · n) n + (a₁ ω₁ + a₂ ω₂)
+/// × n` with `v = v₁ − v₂`. What a law needs of them is read when it is needed: registers are few.
 trait Partners<N: Lanes>: Copy {
-    /// Whether the second side is a wall: its velocity is taken at the contact, so that it needs no arm.
+    /// Whether the second side is a wall: its velocity is taken at the contact, so that it needs no
+    /// arm.
     const WALL: bool;
 
-    /// Unit vectors from the grains to their partners, and the overlaps (negative at a gap), for these radii.
+    /// Unit vectors from the grains to their partners, and the overlaps (negative at a gap), for
+    /// these radii.
     fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N);
     /// Velocity of the partner at the contact, where it is a wall.
     fn wall_velocity(self, processor: N::Processor) -> [N; 3];
@@ -87,6 +46,7 @@ trait Partners<N: Lanes>: Copy {
 /// Pairs of grains.
 #[derive(Clone, Copy)]
 struct TwoGrains<'a> {
+    /// The grains on which the computed forces act, then their partners.
     first: [&'a Body; WIDEST],
     second: [&'a Body; WIDEST],
 }
@@ -94,13 +54,19 @@ struct TwoGrains<'a> {
 /// Grains at one wall.
 #[derive(Clone, Copy)]
 struct GrainAndWall<'a, N> {
+    /// The grains.
     grain: [&'a Body; WIDEST],
+    /// The wall that all of them meet.
     wall: &'a WallBody,
+    /// Unit vectors from the grains to the wall.
     normal: [N; 3],
+    /// Distances of their centres from it, not a number behind it [m].
     gap: N,
+    /// Where the forces act [m].
     contact: [N; 3],
 }
 
+/// One row of each body.
 #[inline(always)]
 fn rows<'a>(bodies: [&'a Body; WIDEST], row: impl Fn(&'a Body) -> &'a Row) -> Rows<'a> {
     bodies.map(row)
@@ -155,6 +121,7 @@ impl<N: Lanes> Partners<N> for TwoGrains<'_> {
 }
 
 impl<'a, N: Lanes> GrainAndWall<'a, N> {
+    /// Grains at `wall`: the rule of [`Surface::distance`], in lanes.
     #[inline(always)]
     fn new(processor: N::Processor, grain: [&'a Body; WIDEST], wall: &'a WallBody) -> Self {
         let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
@@ -189,7 +156,8 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
                 )
             }
         };
-        // A centre on or behind the surface is no contact any more: the check after the step reports it.
+        // A centre on or behind the surface is no contact any more: the check after the step
+        // reports it.
         let gap = N::choose(
             gap.exceeds(N::splat(processor, 0.0)),
             gap,
@@ -200,7 +168,8 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
             wall,
             normal,
             gap,
-            // Where the force acts, half the overlap behind the surface: else a grain at rest on a turning wall would slip.
+            // Where the force acts, half the overlap behind the surface: else a grain at rest on a
+            // turning wall would slip.
             contact: plus(
                 position,
                 times(normal, N::splat(processor, 0.5) * (radius + gap)),
@@ -248,6 +217,7 @@ impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
     }
 }
 
+/// A vector in every lane.
 #[inline(always)]
 fn splat_vector<N: Lanes>(processor: N::Processor, v: DVec3) -> [N; 3] {
     [
@@ -260,6 +230,7 @@ fn splat_vector<N: Lanes>(processor: N::Processor, v: DVec3) -> [N; 3] {
 /// Constants of pairs side by side: the law's, then friction, rolling arm and both radii.
 type Constants<N> = ([N; 4], [N; 4]);
 
+/// Constants of pairs that are all of one kind.
 #[inline(always)]
 fn common_constants<N: Lanes>(processor: N::Processor, constants: &PairConstants) -> Constants<N> {
     (
@@ -268,6 +239,7 @@ fn common_constants<N: Lanes>(processor: N::Processor, constants: &PairConstants
     )
 }
 
+/// Constants of pairs of several kinds.
 #[inline(always)]
 fn own_constants<N: Lanes>(
     processor: N::Processor,
@@ -281,7 +253,9 @@ fn own_constants<N: Lanes>(
     )
 }
 
-/// Torque of rolling friction on the grains, at most `cap` [N m].
+/// Torque of rolling friction on the grains, at most `cap` [N m]: against the relative spin that
+/// they would have without it, but for its part about the normal, and no more than stops that spin
+/// within the step (Eq. 10 of Kasper et al. 2021, see [`rolling_gain`]).
 #[inline(always)]
 fn roll<N: Lanes>(
     processor: N::Processor,
@@ -296,7 +270,113 @@ fn roll<N: Lanes>(
     times(without_twist, -gain)
 }
 
-/// Contact law, bridges, sliding and rolling of as many pairs as there are lanes. Returns how many bridges broke.
+/// How pairs side by side press each other before anything drags them: geometry, normal force,
+/// slip.
+struct Meeting<N: Lanes> {
+    /// Unit vectors from the grains to their partners.
+    normal: [N; 3],
+    /// Overlaps, negative at a gap [m].
+    depth: N,
+    /// Where they are positive.
+    touching: N::Mask,
+    /// Arms from both centres to the contact [m]; walls need none.
+    arms: [N; 2],
+    /// What the law makes of them along the normal.
+    along: NormalContact<N>,
+    /// Speeds of approach [m/s].
+    approach: N,
+    /// Spins of both [rad/s].
+    spins: [[N; 3]; 2],
+    /// Velocities of the grains' surfaces over their partners' [m/s].
+    slip: [N; 3],
+}
+
+impl<N: Lanes> Meeting<N> {
+    /// Pairs of `partners` with these constants.
+    #[inline(always)]
+    fn of<L: Law, P: Partners<N>>(
+        processor: N::Processor,
+        law: L,
+        partners: P,
+        (law_constants, [_, _, radius, partner_radius]): &Constants<N>,
+    ) -> Self {
+        let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
+        let (normal, depth) = partners.geometry(processor, [*radius, *partner_radius]);
+        let touching = depth.exceeds(zero);
+        let overlap = N::choose(touching, depth, zero);
+        let arm = *radius - half * overlap;
+        let partner_arm = if P::WALL {
+            zero
+        } else {
+            *partner_radius - half * overlap
+        };
+        let velocity = partners.velocity(processor);
+        let approach = dot(velocity, normal);
+        let met = (touching, overlap);
+        let along = normal_contact(law, *law_constants, met, approach, zero);
+        let (spin, partner_spin) = partners.spins(processor);
+        let rolling_sum = if P::WALL {
+            times(spin, arm)
+        } else {
+            plus(times(spin, arm), times(partner_spin, partner_arm))
+        };
+        Self {
+            normal,
+            depth,
+            touching,
+            arms: [arm, partner_arm],
+            along,
+            approach,
+            spins: [spin, partner_spin],
+            slip: plus(
+                minus(velocity, times(normal, approach)),
+                cross(rolling_sum, normal),
+            ),
+        }
+    }
+
+    /// The bridges' forces, where there is liquid, and the normal forces that bound Coulomb
+    /// friction.
+    #[inline(always)]
+    fn wetted<L: Law>(
+        &self,
+        processor: N::Processor,
+        all: &Surroundings<'_, L>,
+        liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
+        (_, [_, _, radius, partner_radius]): &Constants<N>,
+        compliance: N,
+    ) -> (Option<LiquidForce<N>>, N) {
+        let zero = N::splat(processor, 0.0);
+        let bounding = self.along.bounding;
+        let Some((bridges, film)) = liquid else {
+            return (None, bounding);
+        };
+        let encounter = Encounter {
+            depth: self.depth,
+            touching: self.touching,
+            approach: self.approach,
+            slip: self.slip,
+            compliance,
+        };
+        let coulomb = bridges.wetting.liquid.law.coulomb;
+        let dt = N::splat(processor, all.dt);
+        let force = bridges.act(processor, dt, [*radius, *partner_radius], &film, &encounter);
+        if coulomb == CoulombBound::Total {
+            let total = self.along.repulsion + force.repulsion;
+            return (Some(force), N::choose(zero.exceeds(total), -total, total));
+        }
+        (Some(force), bounding)
+    }
+}
+
+/// Contact law, bridges, sliding and rolling of as many pairs as there are lanes. Returns how many
+/// bridges broke.
+///
+/// The normal force is what the law makes of overlap and approach. The tangential one is that of a
+/// spring and a dashpot, capped by Coulomb's law; a contact that slides has no tangential dashpot.
+/// Rolling friction works against the spin that the grain would have after the step without it.
+/// Energy is booked pair by pair: what dashpots and springs lose, what rolling takes, what a wall
+/// does. Pairs that do not touch and padding lanes come to exact zeros.
 #[inline(always)]
 fn interact<N: Lanes, L: Law, P: Partners<N>>(
     processor: N::Processor,
@@ -304,111 +384,88 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     partners: P,
     constants: &Constants<N>,
     springs: &mut [Row],
-    actions: &mut [Action],
+    contacts: &mut [ContactForce],
     liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
 ) -> u32 {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
-    let (half, dt) = (N::splat(processor, 0.5), N::splat(processor, all.dt));
-    let (law_constants, [friction, rolling_arm, radius, partner_radius]) = *constants;
-
-    let (normal, depth) = partners.geometry(processor, [radius, partner_radius]);
-    let touching = depth.exceeds(zero);
-    let overlap = N::choose(touching, depth, zero);
-    let arm = radius - half * overlap;
-    let partner_arm = if P::WALL {
-        zero
-    } else {
-        partner_radius - half * overlap
-    };
-
-    // Normal force.
-    let velocity = partners.velocity(processor);
-    let approach = dot(velocity, normal);
-    let along = normal_contact(all.law, law_constants, (touching, overlap), approach, zero);
-    let (law, elastic, repulsion) = (along.coefficients, along.elastic, along.repulsion);
-
-    // Slip of the grain's surface over its partner's.
-    let (spin, partner_spin) = partners.spins(processor);
-    let rolling_sum = if P::WALL {
-        times(spin, arm)
-    } else {
-        plus(times(spin, arm), times(partner_spin, partner_arm))
-    };
-    let slip = plus(
-        minus(velocity, times(normal, approach)),
-        cross(rolling_sum, normal),
-    );
+    let dt = N::splat(processor, all.dt);
+    let (_, [friction, rolling_arm, ..]) = *constants;
+    let met = Meeting::of(processor, all.law, partners, constants);
     let rolling_spin = partners.rolling(processor);
+    let (bridge, bounding) = met.wetted(processor, all, liquid, constants, rolling_spin.1);
 
-    let mut bounding = along.bounding;
-    let bridge = if let Some((bridges, film)) = liquid {
-        let encounter = Encounter {
-            depth,
-            touching,
-            approach,
-            slip,
-            compliance: rolling_spin.1,
-        };
-        let coulomb = bridges.wetting.liquid.law.coulomb;
-        let force = bridges.act(processor, dt, [radius, partner_radius], &film, &encounter);
-        if coulomb == CoulombBound::Total {
-            let total = repulsion + force.repulsion;
-            bounding = N::choose(zero.exceeds(total), -total, total);
-        }
-        Some(force)
-    } else {
-        None
-    };
-
-    // Tangential force.
-    let stiffness = N::choose(touching, law.tangential_stiffness, zero);
-    let slipped = times(slip, dt);
-    let stretched = stretch(
+    let (normal, slip, touching) = (met.normal, met.slip, met.touching);
+    let stiffness = N::choose(touching, met.along.coefficients.tangential_stiffness, zero);
+    let updated = update(
         processor,
         side_by_side::<N, _>(|k| &springs[k]),
-        slipped,
+        times(slip, dt),
         normal,
         touching,
         stiffness,
         friction * bounding,
     );
-    for (row, new) in springs.iter_mut().zip(stretched.rows) {
-        *row = new.row();
-    }
-    let unslid = N::choose(stretched.slides, zero, law.tangential_damping);
+    updated.store(springs);
+    let unslid = N::choose(
+        updated.slides,
+        zero,
+        met.along.coefficients.tangential_damping,
+    );
     let damping = N::choose(touching, unslid, zero);
-    let mut tangential = minus(times(stretched.spring, -stiffness), times(slip, damping));
-    let in_dashpots = dt * ((repulsion - elastic) * approach + damping * dot(slip, slip));
-
-    let (mut total_repulsion, mut ruptures) = (repulsion, 0);
+    let mut tangential = minus(times(updated.spring, -stiffness), times(slip, damping));
+    let damped = (met.along.repulsion - met.along.elastic) * met.approach;
+    let in_dashpots = dt * (damped + damping * dot(slip, slip));
+    let (mut repulsion, mut ruptures) = (met.along.repulsion, 0);
     if let Some(bridge) = bridge {
-        total_repulsion = repulsion + bridge.repulsion;
+        repulsion = repulsion + bridge.repulsion;
         tangential = plus(tangential, bridge.drag);
         ruptures = bridge.ruptures;
     }
-    let force = minus(tangential, times(normal, total_repulsion));
-    let twist = cross(normal, tangential);
+    let force = minus(tangential, times(normal, repulsion));
+    let moment = cross(normal, tangential);
 
-    let rolling = roll(processor, normal, rolling_arm * elastic, rolling_spin);
+    let rolling = roll(
+        processor,
+        normal,
+        rolling_arm * met.along.elastic,
+        rolling_spin,
+    );
+    let [spin, partner_spin] = met.spins;
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = if P::WALL {
         dt * (dot(force, partners.wall_velocity(processor)) + dot(rolling, partner_spin))
     } else {
         zero
     };
-
     let count = N::choose(touching, one, zero);
-    let forces = N::rows([force[0], force[1], force[2], arm]);
-    let twists = N::rows([twist[0], twist[1], twist[2], partner_arm]);
-    let rollings = N::rows([rolling[0], rolling[1], rolling[2], count]);
-    let exchanged = N::rows([in_dashpots, stretched.lost, in_rolling, by_wall]);
-    for (k, action) in actions.iter_mut().enumerate() {
-        action.force = forces[k].row();
-        action.twist = twists[k].row();
-        action.rolling = rollings[k].row();
-        action.exchanged = exchanged[k].row();
-    }
+    let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
+    write(
+        contacts,
+        [force, moment, rolling],
+        [met.arms[0], met.arms[1], count],
+        exchanged,
+    );
     ruptures
+}
+
+/// Writes contact forces: force, moment and rolling torque, each with its companion, and energies.
+#[inline(always)]
+fn write<N: Lanes>(
+    contacts: &mut [ContactForce],
+    [force, moment, rolling]: [[N; 3]; 3],
+    [arm, partner_arm, count]: [N; 3],
+    exchanged: [N; 4],
+) {
+    let forces = N::rows([force[0], force[1], force[2], arm]);
+    let moments = N::rows([moment[0], moment[1], moment[2], partner_arm]);
+    let rollings = N::rows([rolling[0], rolling[1], rolling[2], count]);
+    let exchanged = N::rows(exchanged);
+    for (k, contact) in contacts.iter_mut().enumerate() {
+        contact.force = forces[k].row();
+        contact.moment = moments[k].row();
+        contact.rolling = rollings[k].row();
+        contact.exchanged = exchanged[k].row();
+    }
 }
 
 /// A range of pairs with the rows they write.
@@ -417,14 +474,14 @@ pub struct PairRows<'a> {
     pub pairs: &'a [Pair],
     /// The kind of all of them, if it is one.
     pub kind: Option<u32>,
-    /// Their tangential springs [m], and the stiffness of each when it was last stretched [N/m].
+    /// Their tangential springs [m], and the stiffness of each when it was last updated [N/m].
     pub springs: &'a mut [Row],
-    /// What they do.
-    pub actions: &'a mut [Action],
+    /// Their contact forces.
+    pub forces: &'a mut [ContactForce],
     /// Their bridges, by groups; empty where nothing is wet.
     pub bridges: &'a mut [BridgeColumns],
     /// What the bridges do.
-    pub liquid_actions: &'a mut [LiquidAction],
+    pub bridge_effects: &'a mut [BridgeEffect],
 }
 
 /// What every pair's force depends on.
@@ -453,6 +510,7 @@ pub struct Forces<'a, L, W> {
     pub of_walls: W,
 }
 
+/// What bridges of pairs that are all of one kind depend on.
 #[inline(always)]
 fn common_film_constants<N: Lanes>(
     processor: N::Processor,
@@ -464,6 +522,7 @@ fn common_film_constants<N: Lanes>(
     )
 }
 
+/// What bridges of pairs of several kinds depend on.
 #[inline(always)]
 fn own_film_constants<N: Lanes>(
     processor: N::Processor,
@@ -477,7 +536,8 @@ fn own_film_constants<N: Lanes>(
     )
 }
 
-/// Pairs of grains, as many at a time as there are lanes; with bridges where `WET`. Returns how many of those broke.
+/// Pairs of grains, as many at a time as there are lanes; with bridges where `WET`. Returns how
+/// many of those broke.
 #[inline(always)]
 fn between_grains<N: Lanes, L: Law, const WET: bool>(
     processor: N::Processor,
@@ -502,7 +562,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner as usize]),
         };
         let springs = &mut rows.springs[group.clone()];
-        let actions = &mut rows.actions[group.clone()];
+        let forces = &mut rows.forces[group.clone()];
         let liquid = match all.wetting {
             Some(wetting) if WET => Some((
                 BridgeGroup {
@@ -510,7 +570,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
                     pairs,
                     columns: &mut rows.bridges[first / GROUP],
                     first: first % GROUP,
-                    actions: &mut rows.liquid_actions[group],
+                    effects: &mut rows.bridge_effects[group],
                 },
                 match &common_film {
                     Some(film) => *film,
@@ -524,7 +584,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             None => own_constants::<N>(processor, all.constants, pairs),
         };
         ruptures += u64::from(interact(
-            processor, all, partners, &constants, springs, actions, liquid,
+            processor, all, partners, &constants, springs, forces, liquid,
         ));
     }
     ruptures
@@ -540,13 +600,13 @@ fn at_walls<N: Lanes, L: Law>(
     let outputs = rows
         .springs
         .chunks_exact_mut(N::COUNT)
-        .zip(rows.actions.chunks_exact_mut(N::COUNT));
-    for (pairs, (springs, actions)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
+        .zip(rows.forces.chunks_exact_mut(N::COUNT));
+    for (pairs, (springs, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
         let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]);
         let partners =
             GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
         let own = own_constants::<N>(processor, all.constants, pairs);
-        interact(processor, all, partners, &own, springs, actions, None);
+        interact(processor, all, partners, &own, springs, forces, None);
     }
 }
 

@@ -1,19 +1,24 @@
-//! The liquid side of the pair loop: bridges that form, pull, drag and break, as many side by side as there are lanes.
+//! The liquid side of the pair loop: bridges that form, pull, drag and break, as many side by side
+//! as there are lanes.
 //!
-//! In: gaps and relative motion of pairs of grains, their bridges. Out: the bridges' forces, what they lose, what their
-//! liquid does when they break. A bridge forms where grains touch, breaks at its rupture gap, and walls have none.
+//! In: gaps and relative motion of pairs of grains, their bridges. Out: the bridges' forces, what
+//! they lose, what their liquid does when they break. A bridge forms where grains touch, breaks at
+//! its rupture gap, and walls have none.
 
-use super::contacts::{GROUP, Pair};
-use super::lanes::{Lanes, Quad, Row, WIDEST, dot, plus, times};
-use super::law::{BridgeConstants, BridgeKinds, FilmConstants, attraction, contributions, drag};
-use super::row::{row, vector};
+use super::super::row::{row, vector};
+use super::rows::{GROUP, Pair};
+use crate::lanes::{Lanes, Quad, Row, WIDEST, dot, plus, times};
 use crate::physics::Liquid;
+use crate::physics::law::{
+    BridgeConstants, BridgeKinds, FilmConstants, attraction, contributions, drag,
+};
 use crate::world::Bridge;
 
 /// What the solver keeps of a bridge; all zero where there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeRow {
-    /// Volume [m³], transfer on rupture [m³], capillary attraction and viscous normal force at the last step [N].
+    /// Volume [m³], transfer on rupture [m³], capillary attraction and viscous normal force at the
+    /// last step [N].
     pub state: Row,
     /// Viscous force on the grain across the normal at the last step [N].
     pub drag: Row,
@@ -37,16 +42,17 @@ pub struct Bridges {
     pub groups: Vec<BridgeColumns>,
 }
 
-/// What a bridge does beside its force: energy lost to viscosity and to capillary forces during the step [J], 1 where it
-/// holds grains that do not touch, volume that the grain's film gains from its partner's [m³].
-pub type LiquidAction = Row;
+/// What a bridge does beside its force: energy lost to viscosity and to capillary forces during the
+/// step [J], 1 where it holds grains that do not touch, volume that the grain's film gains from its
+/// partner's [m³].
+pub type BridgeEffect = Row;
 
 /// What bridges depend on.
 #[derive(Clone, Copy)]
 pub struct Wetting<'a> {
     /// The liquid.
     pub liquid: &'a Liquid,
-    /// Volume of the film on every grain; the ghost has none [m³].
+    /// Volume of the film on every grain; the padding body has none [m³].
     pub films: &'a [f64],
     /// Constants of every kind of pair.
     pub constants: &'a [FilmConstants],
@@ -63,7 +69,7 @@ pub struct BridgeGroup<'a> {
     /// Where in it the first of them stands.
     pub first: usize,
     /// What those do.
-    pub actions: &'a mut [LiquidAction],
+    pub effects: &'a mut [BridgeEffect],
 }
 
 /// How the grains of each pair stand and move to each other.
@@ -93,7 +99,8 @@ pub struct LiquidForce<N> {
 }
 
 impl BridgeRow {
-    /// The solver's copy of `bridge` between grains of these radii [m], one of several of these `kinds`.
+    /// The solver's copy of `bridge` between grains of these radii [m], one of several of these
+    /// `kinds`.
     pub fn of(bridge: &Bridge, kinds: &mut BridgeKinds, radii: (f64, f64)) -> Self {
         Self {
             state: [
@@ -107,7 +114,8 @@ impl BridgeRow {
         }
     }
 
-    /// A bridge that forms between grains with these radii [m] and films [m³]; none where both are dry.
+    /// A bridge that forms between grains with these radii [m] and films [m³]; none where both are
+    /// dry.
     fn new(liquid: &Liquid, radii: (f64, f64), films: (f64, f64)) -> Self {
         let (first, second) = contributions(liquid, radii, films);
         let volume = first + second;
@@ -210,7 +218,8 @@ fn store<N: Lanes, const COUNT: usize>(
 }
 
 impl BridgeGroup<'_> {
-    /// Lets bridges form where grains with these radii [m] touch, that is, overlap [m], and have none.
+    /// Lets bridges form where grains with these radii [m] touch, that is, overlap [m], and have
+    /// none.
     #[cold]
     fn form(&mut self, depths: [f64; WIDEST], radii: [[f64; WIDEST]; 2]) {
         let films = self.wetting.films;
@@ -236,13 +245,8 @@ impl BridgeGroup<'_> {
         encounter: &Encounter<N>,
     ) -> LiquidForce<N> {
         let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
-        let Encounter {
-            depth,
-            touching,
-            approach,
-            slip,
-            compliance,
-        } = *encounter;
+        let (depth, touching) = (encounter.depth, encounter.touching);
+        let (approach, slip) = (encounter.approach, encounter.slip);
         let mut states = load::<N, 4>(processor, &self.columns.state, self.first);
         let wanting = N::choose(states[0].exceeds(zero), zero, depth);
         if N::count(wanting.exceeds(zero)) > 0 {
@@ -259,13 +263,14 @@ impl BridgeGroup<'_> {
         let [in_contact, smallest, largest, _] = film.1;
         let pull = attraction(processor, constants, within(gap, in_contact, largest));
         let pull = N::choose(held, pull, zero);
-        let mobility = compliance * film.0[3];
+        let mobility = encounter.compliance * film.0[3];
         let [normal, across] = drag(processor, film.0, within(gap, smallest, largest), mobility);
         let viscous = N::choose(held, normal * approach, zero);
         let across = N::choose(held, across, zero);
         let drag = times(slip, -across);
 
-        // Mean of the old and the new force, times the way between: losses close to second order in the step.
+        // Mean of the old and the new force, times the way between: losses close to second order in
+        // the step.
         let half = N::splat(processor, 0.5) * dt;
         let resisted = (old_viscous + viscous) * approach;
         let dragged = dot(plus(old_drag, drag), slip);
@@ -277,9 +282,9 @@ impl BridgeGroup<'_> {
         let states = [kept, transfer - shared, pull, viscous];
         store(states, &mut self.columns.state, self.first);
         store(drag, &mut self.columns.drag, self.first);
-        let actions = N::rows([viscous_loss, capillary_loss, open, shared]);
-        for (action, new) in self.actions.iter_mut().zip(actions) {
-            *action = new.row();
+        let effects = N::rows([viscous_loss, capillary_loss, open, shared]);
+        for (effect, new) in self.effects.iter_mut().zip(effects) {
+            *effect = new.row();
         }
         LiquidForce {
             repulsion: viscous - pull,

@@ -1,14 +1,16 @@
 //! Velocity Verlet: sums the forces on each grain, finishes the step and starts the next one.
 //!
-//! In: actions per pair, the bodies half a step behind in velocity. Out: the bodies half a step ahead, at their next
-//! positions; or, at the last step of a call, with velocities at the time of the positions.
+//! In: forces per pair, the bodies half a step behind in velocity. Out: the bodies half a step
+//! ahead, at their next positions; or, at the last step of a call, with velocities at the time of
+//! the positions.
 
-use super::bridges::LiquidAction;
-use super::contacts::{Action, Body};
-use super::lanes::{Lanes, Quad, Row, Work};
+use super::super::step::Outcome;
+use super::bridges::BridgeEffect;
 use super::neighbours::Parts;
+use super::rows::{Body, ContactForce};
+use crate::lanes::{Lanes, Quad, Row, Work};
 
-/// Sum over the actions on one grain.
+/// Sum over the contact forces on one grain.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Total<Q> {
     /// Contact forces [N].
@@ -19,7 +21,8 @@ pub struct Total<Q> {
     pub rolling: Q,
     /// Energy exchanged at the grain's own pairs [J].
     pub exchanged: Q,
-    /// Energy that the grain's own bridges lose [J], bridges to grains that it does not touch, volume its film gains [m³].
+    /// Energy that the grain's own bridges lose [J], bridges to grains that it does not touch,
+    /// volume its film gains [m³].
     pub liquid: Q,
 }
 
@@ -38,32 +41,34 @@ impl<Q: Quad> Total<Q> {
 
     /// Adds a pair of which this grain is the first partner: the energy is booked on it.
     #[inline(always)]
-    fn add_first(&mut self, processor: Q::Processor, action: &Action) {
-        let arm = Q::repeat(processor, action.force[3]);
-        self.force = self.force + Q::load(processor, &action.force);
-        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
-        self.rolling = self.rolling + Q::load(processor, &action.rolling);
-        self.exchanged = self.exchanged + Q::load(processor, &action.exchanged);
+    fn add_first(&mut self, processor: Q::Processor, contact: &ContactForce) {
+        let arm = Q::repeat(processor, contact.arm());
+        self.force = self.force + Q::load(processor, &contact.force);
+        self.torque = self.torque + Q::load(processor, &contact.moment) * arm;
+        self.rolling = self.rolling + Q::load(processor, &contact.rolling);
+        self.exchanged = self.exchanged + Q::load(processor, &contact.exchanged);
     }
 
-    /// Adds a pair of which this grain is the second partner: forces turn round, the count of partners does not.
+    /// Adds a pair of which this grain is the second partner: forces turn round, the count of
+    /// partners does not.
     #[inline(always)]
-    fn add_second(&mut self, processor: Q::Processor, action: &Action) {
+    fn add_second(&mut self, processor: Q::Processor, contact: &ContactForce) {
         const TURNED: Row = [-1.0, -1.0, -1.0, 1.0];
-        let arm = Q::repeat(processor, action.twist[3]);
-        self.force = self.force - Q::load(processor, &action.force);
-        self.torque = self.torque + Q::load(processor, &action.twist) * arm;
+        let arm = Q::repeat(processor, contact.partner_arm());
+        self.force = self.force - Q::load(processor, &contact.force);
+        self.torque = self.torque + Q::load(processor, &contact.moment) * arm;
         let turned = Q::load(processor, &TURNED);
-        self.rolling = self.rolling + Q::load(processor, &action.rolling) * turned;
+        self.rolling = self.rolling + Q::load(processor, &contact.rolling) * turned;
     }
 
     /// Adds the bridge of such a pair.
     #[inline(always)]
-    fn add_bridge(&mut self, processor: Q::Processor, action: &LiquidAction, side: usize) {
-        // Losses are booked on the first side, both count the bridge, and what one film gains the other loses.
+    fn add_bridge(&mut self, processor: Q::Processor, effect: &BridgeEffect, side: usize) {
+        // Losses are booked on the first side, both count the bridge, and what one film gains the
+        // other loses.
         const SIGNS: [Row; 2] = [[1.0; 4], [0.0, 0.0, 1.0, -1.0]];
         let sign = Q::load(processor, &SIGNS[side]);
-        self.liquid = self.liquid + Q::load(processor, action) * sign;
+        self.liquid = self.liquid + Q::load(processor, effect) * sign;
     }
 
     /// Partners that hold the grain: those it touches and those on bridges.
@@ -102,8 +107,15 @@ pub struct Load {
     pub speed_limit_squared: f64,
 }
 
-/// What the bridges of a grain have done: energy lost to viscosity and to capillary forces since the start [J]; bridges to
-/// grains that it does not touch.
+impl Load {
+    /// Number of touching partners.
+    pub fn contact_count(&self) -> f64 {
+        self.rolling[3]
+    }
+}
+
+/// What the bridges of a grain have done: energy lost to viscosity and to capillary forces since
+/// the start [J]; bridges to grains that it does not touch.
 pub type BridgeLoad = [f64; 3];
 
 /// Constants of the integration.
@@ -113,7 +125,7 @@ pub struct Motion {
     pub dt: f64,
     /// Gravity [m/s²].
     pub gravity: Row,
-    /// Square of the distance from the reference at which the active list must be refreshed [m²].
+    /// Square of the distance from the reference at which the inner list must be refreshed [m²].
     pub slack_squared: f64,
 }
 
@@ -121,20 +133,11 @@ pub struct Motion {
 #[derive(Clone, Copy)]
 pub struct Incidence<'a> {
     /// What every pair does.
-    pub actions: &'a [Action],
+    pub forces: &'a [ContactForce],
     /// What every bridge does; empty where nothing is wet.
-    pub liquid_actions: &'a [LiquidAction],
+    pub bridge_effects: &'a [BridgeEffect],
     /// Each grain's parts in them.
     pub parts: &'a Parts,
-}
-
-/// What a range of grains asks for after a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Outcome {
-    /// Some grain has used up the slack of the active list.
-    pub refresh: bool,
-    /// Some grain's state is absurd.
-    pub fault: bool,
 }
 
 impl Incidence<'_> {
@@ -144,15 +147,15 @@ impl Incidence<'_> {
         let mut total = Total::zero(processor);
         let [as_second, as_first] = self.parts.by_side(i);
         for part in as_second {
-            total.add_second(processor, &self.actions[part.action()]);
+            total.add_second(processor, &self.forces[part.pair()]);
             if WET {
-                total.add_bridge(processor, &self.liquid_actions[part.action()], 1);
+                total.add_bridge(processor, &self.bridge_effects[part.pair()], 1);
             }
         }
         for part in as_first {
-            total.add_first(processor, &self.actions[part.action()]);
-            if WET && let Some(action) = self.liquid_actions.get(part.action()) {
-                total.add_bridge(processor, action, 0);
+            total.add_first(processor, &self.forces[part.pair()]);
+            if WET && let Some(effect) = self.bridge_effects.get(part.pair()) {
+                total.add_bridge(processor, effect, 0);
             }
         }
         total
@@ -165,7 +168,7 @@ fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, mot
     let half = 0.5 * motion.dt;
     // The fourth number of a row is no velocity: it gets nothing added.
     let half = Q::load(processor, &[half, half, half, 0.0]);
-    let (inverse_mass, inverse_inertia) = (body.position[3], body.velocity[3]);
+    let (inverse_mass, inverse_inertia) = (body.inverse_mass(), body.inverse_inertia());
     let gravity = Q::load(processor, &motion.gravity);
     let acceleration = total.force * Q::repeat(processor, inverse_mass) + gravity;
     let turning = (total.torque + total.rolling) * Q::repeat(processor, inverse_inertia);
@@ -173,8 +176,8 @@ fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, mot
     body.spin = (Q::load(processor, &body.spin) + turning * half).row();
 }
 
-/// A full step of position, and the spin that rolling friction works against. True when the slack of the active list is
-/// used up.
+/// A full step of position, and the spin that rolling friction works against. True when the slack
+/// of the inner list is used up.
 #[inline(always)]
 fn drift<Q: Quad>(
     processor: Q::Processor,
@@ -189,8 +192,8 @@ fn drift<Q: Quad>(
     let position = Q::load(processor, &body.position) + Q::load(processor, &body.velocity) * step;
     let partners = total.partners();
     let partners = if partners > 1.0 { partners } else { 1.0 };
-    let free =
-        Q::load(processor, &body.spin) + total.torque * Q::repeat(processor, dt * body.velocity[3]);
+    let free = Q::load(processor, &body.spin)
+        + total.torque * Q::repeat(processor, dt * body.inverse_inertia());
     let free = free.row();
     body.free_spin = [free[0], free[1], free[2], load.compliance * partners];
     body.position = position.row();
@@ -207,7 +210,7 @@ pub struct Start<'a> {
     pub loads: &'a [Load],
     /// What their bridges have done; empty where nothing is wet.
     pub bridge_loads: &'a [BridgeLoad],
-    /// Where it was when the active list was filtered.
+    /// Where it was when the inner list was filtered.
     pub references: &'a [Row],
 }
 
@@ -251,7 +254,7 @@ pub struct Finish<'a, const WET: bool> {
     pub films: &'a mut [f64],
     /// What the bridges of each have done; empty where nothing is wet.
     pub bridge_loads: &'a mut [BridgeLoad],
-    /// Where it was when the active list was filtered.
+    /// Where it was when the inner list was filtered.
     pub references: &'a [Row],
     /// Whether this is the last step of a call.
     pub last: bool,

@@ -1,0 +1,356 @@
+//! The contact forces of polyhedra, block by block.
+//!
+//! In: bodies and where their features are, pairs with their histories. Out: force and torques of
+//! every pair, its histories one step on. Every two features that overlap press each other with a
+//! spring and a dashpot and drag each other by a tangential spring (Man et al. 2023, Eqs. 3.1–3.6).
+//! The contacts of a pair are summed in the order of their features: neither lists nor threads nor
+//! lanes show in a sum.
+
+use super::super::row::{sub, vector};
+use super::super::step::Tally;
+use super::super::tangential::{UNLOADED, update};
+use super::motion::{Surroundings, crossed};
+use super::nearest::{Nearest, group};
+use super::pairs::{BLOCK, Block, ContactPoint, Pair, PairForce, Terms};
+use super::workspace::{ActivePair, Effect, Workspace};
+use crate::lanes::{Lanes, Quad, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times};
+use crate::physics::FeatureRule;
+use crate::physics::law::{Hooke, Law};
+
+/// Two cores that come nearer than the rest of this share of the touching distance could pass
+/// through each other.
+pub const DEEPEST: f64 = 0.8;
+
+/// The forces of a range of pairs: whole blocks, but for the last.
+pub struct Forces<'a> {
+    /// What they depend on.
+    pub surroundings: Surroundings<'a>,
+    /// The pairs.
+    pub pairs: &'a mut [Pair],
+    /// What their contacts depend on.
+    pub terms: &'a mut [Terms],
+    /// What the active features of each block remember.
+    pub points: &'a mut [Vec<ContactPoint>],
+    /// What the pairs do; of those that do nothing, whatever they did before.
+    pub forces: &'a mut [PairForce],
+    /// Whether they do anything.
+    pub acting: &'a mut [bool],
+    /// Room to work in.
+    pub workspace: &'a mut Workspace,
+}
+
+impl Work for Forces<'_> {
+    type Output = Tally;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) -> Tally {
+        let Self {
+            surroundings: all,
+            pairs,
+            terms,
+            points,
+            forces,
+            acting,
+            workspace,
+        } = self;
+        let mut tally = Tally::default();
+        acting.fill(false);
+        let blocks = pairs.chunks_mut(BLOCK).zip(terms.chunks_mut(BLOCK));
+        let effects = forces.chunks_mut(BLOCK).zip(acting.chunks_mut(BLOCK));
+        for (((pairs, terms), points), (forces, acting)) in blocks.zip(points).zip(effects) {
+            let mut block = Block {
+                pairs,
+                terms,
+                points,
+            };
+            tally.relisted += workspace.gather::<N>(processor, &all, &mut block);
+            workspace.choose::<N>(processor, &all, &mut block);
+            workspace.measure::<N>(processor, &all, &block);
+            tally.fault |= workspace.evaluate_overlaps(&all, &mut block);
+            workspace.compute_forces::<N>(processor, all.dt, &mut block);
+            workspace.sum(&all, &block, forces, acting);
+        }
+        tally
+    }
+}
+
+impl Workspace {
+    /// Finds the overlaps, how they share the stiffness, and how far nothing touches yet. True
+    /// where two cores are so near each other that they might pass through.
+    #[inline(always)]
+    fn evaluate_overlaps(&mut self, all: &Surroundings<'_>, block: &mut Block<'_>) -> bool {
+        let mut fault = false;
+        for number in 0..self.active.len() {
+            let range = self.results_of(number);
+            let (active, results) = (&mut self.active[number], &mut self.results[range]);
+            let own = active.pair as usize;
+            let (pair, terms) = (&mut block.pairs[own], &block.terms[own]);
+            let (mut deepest, mut hidden) = (f64::NEG_INFINITY, false);
+            for result in results.iter_mut() {
+                let overlap = terms.touch - result.normal[3];
+                result.middle[3] = overlap;
+                deepest = if overlap > deepest { overlap } else { deepest };
+                hidden |= overlap == f64::NEG_INFINITY;
+            }
+            active.touches = deepest > 0.0;
+            // A vertex behind a face may come round its edge at any time.
+            pair.clearance = if active.touches || hidden {
+                0.0
+            } else {
+                -deepest - f64::from(terms.margin)
+            };
+            fault |= deepest > DEEPEST * terms.touch && !all.has_sides(pair);
+            if all.rule == FeatureRule::Shared {
+                let points = &block.points[pair.points.range()];
+                let before = Sums::of(points.iter().map(|point| point.overlap));
+                let now = Sums::of(results.iter().map(|result| result.middle[3]));
+                (active.spin[3], active.velocity[3]) = (before.part(), now.part());
+                active.stored = 0.5 * terms.law[0] * (now.shared() - before.shared());
+            }
+        }
+        fault
+    }
+
+    /// The contact law of every active feature of the block.
+    #[inline(always)]
+    fn compute_forces<N: Lanes>(
+        &mut self,
+        processor: N::Processor,
+        dt: f64,
+        block: &mut Block<'_>,
+    ) {
+        let (terms, points) = (&*block.terms, &mut *block.points);
+        self.effects.resize(self.results.len(), Effect::default());
+        let outputs = self.effects.chunks_mut(N::COUNT);
+        let results = self.results.chunks(N::COUNT);
+        let numbers = self.result_of.chunks(N::COUNT);
+        for ((numbers, results), effects) in numbers.zip(results).zip(outputs) {
+            let all = group::<N, _>(numbers);
+            let pair = side_by_side::<N, _>(|k| &self.active[all[k].pair as usize]);
+            let law = side_by_side::<N, _>(|k| &terms[pair[k].pair as usize].law);
+            let point = side_by_side::<N, _>(|k| &points[all[k].point as usize]);
+            let contacts =
+                Contacts::<N>::gather(processor, pair, law, group::<N, _>(results), point);
+            let springs = side_by_side::<N, _>(|k| &point[k].spring);
+            let found = contacts.forces(processor, dt, springs);
+            for (k, (effect, number)) in effects.iter_mut().zip(numbers).enumerate() {
+                effect.force = found.forces[k].row();
+                effect.moment = found.moments[k].row();
+                effect.energy = found.energies[k].row();
+                let point = &mut points[number.point as usize];
+                point.overlap = effect.force[3];
+                // A spring that is let go leaves zeros without a sign, which would tell where it has been.
+                let touches = point.overlap > 0.0;
+                point.spring = if touches {
+                    found.springs[k].row()
+                } else {
+                    UNLOADED
+                };
+                point.dashpot = effect.moment[3];
+            }
+        }
+    }
+
+    /// Sums what the contacts of each collected pair do.
+    #[inline(always)]
+    fn sum(
+        &self,
+        all: &Surroundings<'_>,
+        block: &Block<'_>,
+        forces: &mut [PairForce],
+        acting: &mut [bool],
+    ) {
+        for (number, active) in self.active.iter().enumerate() {
+            let pair = active.pair as usize;
+            let effects = &self.effects[self.results_of(number)];
+            let force = all.force_of(&block.pairs[pair], active, effects);
+            let exchanges = force.exchanged != [0.0; 4];
+            if active.touches || exchanges {
+                forces[pair] = force;
+                acting[pair] = true;
+            }
+        }
+    }
+}
+
+/// As many contacts as there are lanes, side by side.
+struct Contacts<N> {
+    /// Unit vectors from the first sides to the second.
+    normal: [N; 3],
+    /// Overlaps, negative at a gap [m].
+    depth: N,
+    /// Arms from the centroids of the first sides to the contacts [m].
+    arm: [N; 3],
+    /// Velocities of the first sides relative to the second at the first's centroids [m/s].
+    velocity: [N; 3],
+    /// Relative spins [rad/s].
+    spin: [N; 3],
+    /// Parts of the pairs' stiffness that the contacts have, now and a step ago.
+    parts: [N; 2],
+    /// `K_n`, the normal dashpot, `K_t`, μ.
+    law: [N; 4],
+    /// Overlaps [m] and pushes of the dashpots [N] a step ago.
+    before: [N; 2],
+}
+
+/// What contacts do: rows, of which the first [`Lanes::COUNT`] count.
+struct ContactForces<N: Lanes> {
+    /// Force on the first [N]; overlap [m].
+    forces: [N::Quad; WIDEST],
+    /// Its torque [N m]; push of the dashpot [N].
+    moments: [N::Quad; WIDEST],
+    /// Energy lost in the dashpot, by the tangential spring, put into the normal spring [J].
+    energies: [N::Quad; WIDEST],
+    /// Tangential springs [m] and their stiffness [N/m].
+    springs: [N::Quad; WIDEST],
+}
+
+impl<N: Lanes> Contacts<N> {
+    /// Contacts of these pairs, with their laws' constants, nearest points and memories.
+    #[inline(always)]
+    fn gather(
+        processor: N::Processor,
+        pair: [&ActivePair; WIDEST],
+        law: Rows<'_>,
+        nearest: [&Nearest; WIDEST],
+        point: [&ContactPoint; WIDEST],
+    ) -> Self {
+        let before = side_by_side::<N, _>(|k| [point[k].overlap, point[k].dashpot, 0.0, 0.0]);
+        let [nx, ny, nz, _] = N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].normal));
+        let normal = [nx, ny, nz];
+        let [mx, my, mz, depth] =
+            N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].middle));
+        let [cx, cy, cz, offset] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].centre));
+        let [vx, vy, vz, part] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].velocity));
+        let [wx, wy, wz, part_before] =
+            N::gather(processor, side_by_side::<N, _>(|k| &pair[k].spin));
+        let law = N::gather(processor, law);
+        let [overlap, dashpot, ..] = N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
+        Self {
+            normal,
+            depth,
+            arm: plus(minus([mx, my, mz], [cx, cy, cz]), times(normal, offset)),
+            velocity: [vx, vy, vz],
+            spin: [wx, wy, wz],
+            parts: [part, part_before],
+            law,
+            before: [overlap, dashpot],
+        }
+    }
+
+    /// Their forces: Hooke's spring and a dashpot along the normal, never pulling, and across it a
+    /// spring capped by Coulomb's law.
+    #[inline(always)]
+    fn forces(&self, processor: N::Processor, dt: f64, springs: Rows<'_>) -> ContactForces<N> {
+        let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
+        let (step, half_step) = (N::splat(processor, dt), N::splat(processor, 0.5 * dt));
+        let Self {
+            normal,
+            depth,
+            arm,
+            parts: [part, part_before],
+            law: [normal_stiffness, damping, tangential_stiffness, friction],
+            before: [overlap_before, dashpot_before],
+            ..
+        } = *self;
+        let touching = depth.exceeds(zero);
+        let overlap = N::choose(touching, depth, zero);
+        let velocity = plus(self.velocity, cross(self.spin, arm));
+        let approach = dot(velocity, normal);
+        let elastic = normal_stiffness * part * overlap;
+        let damped = N::choose(touching, damping * part * approach, zero);
+        let repulsion = Hooke::default().normal_force(elastic, damped, zero);
+        let slip = minus(velocity, times(normal, approach));
+        let stiffness = N::choose(touching, tangential_stiffness * part, zero);
+        let updated = update::<N>(
+            processor,
+            springs,
+            times(slip, step),
+            normal,
+            touching,
+            stiffness,
+            friction * Hooke::default().coulomb_force(elastic, repulsion, zero),
+        );
+        let pull = times(updated.spring, -stiffness);
+        let force = minus(pull, times(normal, repulsion));
+        let moment = cross(arm, force);
+        // The mean of the old and the new push, along the way from one to the other.
+        let dashpot = repulsion - elastic;
+        let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
+        let elastic_before = normal_stiffness * part_before * overlap_before;
+        let pressed = half * ((elastic_before + elastic) * (overlap - overlap_before));
+        ContactForces {
+            forces: N::rows([force[0], force[1], force[2], overlap]),
+            moments: N::rows([moment[0], moment[1], moment[2], dashpot]),
+            energies: N::rows([in_dashpot, updated.lost, pressed, zero]),
+            springs: updated.rows,
+        }
+    }
+}
+
+/// Sums over the overlaps of a pair's contacts.
+#[derive(Default)]
+struct Sums {
+    /// Of the overlaps, `Σδ` [m].
+    overlaps: f64,
+    /// Of their squares, `Σδ²` [m²].
+    squares: f64,
+}
+
+impl Sums {
+    /// Those of `overlaps`, of which negative ones do not count.
+    fn of(overlaps: impl Iterator<Item = f64>) -> Self {
+        let touching = overlaps.filter(|overlap| *overlap > 0.0);
+        touching.fold(Self::default(), |sums, overlap| Self {
+            overlaps: sums.overlaps + overlap,
+            squares: sums.squares + overlap * overlap,
+        })
+    }
+
+    /// The part of the pair's stiffness that each contact has where they share it, `Σδ²/(Σδ)²`: so
+    /// `n` contacts of one overlap are as stiff together as one.
+    fn part(&self) -> f64 {
+        FeatureRule::Shared.part(self.overlaps, self.squares)
+    }
+
+    /// The sum of the squares, each with its part of the stiffness.
+    fn shared(&self) -> f64 {
+        self.part() * self.squares
+    }
+}
+
+impl Surroundings<'_> {
+    /// The contact force of `pair`, from the `effects` of its active features: nothing where they
+    /// do not touch.
+    #[inline(always)]
+    fn force_of(&self, pair: &Pair, active: &ActivePair, effects: &[Effect]) -> PairForce {
+        let mut force = PairForce::default();
+        let mut pressed = 0.0;
+        for effect in effects {
+            for axis in 0..3 {
+                force.force[axis] += effect.force[axis];
+                force.first[axis] += effect.moment[axis];
+            }
+            force.exchanged[0] += effect.energy[0];
+            force.exchanged[1] += effect.energy[1];
+            pressed += effect.energy[2];
+        }
+        if self.rule == FeatureRule::Shared {
+            // Stiffness that is shared anew is no potential's: what it takes or gives is booked
+            // with the springs.
+            force.exchanged[1] += pressed - active.stored;
+        }
+        let [second, ..] = self.motion(pair.second);
+        let across = crossed(sub(active.centre, *second), force.force);
+        for axis in 0..3 {
+            force.second[axis] = -force.first[axis] - across[axis];
+        }
+        if let Some(wall) = self.wall(pair) {
+            let by_force = vector(force.force).dot(wall.motion.velocity);
+            let by_torque = -vector(force.second).dot(wall.motion.spin);
+            force.exchanged[3] = self.dt * (by_force + by_torque);
+        }
+        force.force[3] = if active.touches { 1.0 } else { 0.0 };
+        force
+    }
+}

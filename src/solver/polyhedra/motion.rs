@@ -1,0 +1,171 @@
+//! How two bodies move relative to each other, and how far at most.
+//!
+//! In: bodies and walls after a drift. Out: relative velocity and spin of a pair, and a bound on
+//! the way that any point of the first has come in the step, seen from the second. The bound holds
+//! to the last bit: it counts what bodies that turn do beyond their velocities, and rounding.
+
+use super::super::row::{Row, length_squared, sub};
+use super::super::walls::WallBody;
+use super::bodies::{Body, Geometry};
+use super::nearest::PARALLEL;
+use super::pairs::Pair;
+use crate::lanes::prefetch;
+use crate::physics::FeatureRule;
+use crate::world::Surface;
+
+/// What the speed of two bodies makes in a step is taken this much larger: more than its rounding.
+const CAUTION: f64 = 1.01;
+
+/// What every pair's force depends on.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// Length of the step [s].
+    pub dt: f64,
+    /// Whether the features of a pair share its stiffness.
+    pub rule: FeatureRule,
+    /// Every grain.
+    pub bodies: &'a [Body],
+    /// Where their features are.
+    pub geometry: Geometry<'a>,
+    /// Every wall.
+    pub walls: &'a [WallBody],
+    /// The origin, and the velocity and the spin of every wall.
+    pub wall_motions: &'a [[Row; 3]],
+    /// Sizes that bound how far two bodies move in a step.
+    pub extents: Extents,
+}
+
+/// Sizes that bound how far two bodies move relative to each other in a step, to the last bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extents {
+    /// Distance of any point of a body from the centroid of another that is near it, at most [m].
+    pub between_grains: f64,
+    /// Distance of any point of a body from the origin, about which walls move, at most [m].
+    pub to_origin: f64,
+    /// What rounding adds to the relative motion of two bodies in a step, at most [m].
+    pub rounding: f64,
+}
+
+/// Roundings that a coordinate meets in a step and in the computation of a distance, generously
+/// counted, each of half the distance of two neighbouring numbers of its size.
+const ROUNDINGS: f64 = 32.0;
+
+impl Extents {
+    /// For bodies whose coordinates and those of the walls' points are at most `coordinate`, and
+    /// whose points are at most `reach` from their centroids; pairs are nearer than their reaches
+    /// and `skin` [m].
+    pub fn new(coordinate: f64, reach: f64, skin: f64) -> Self {
+        let to_origin = 2.0 * coordinate + reach + skin;
+        Self {
+            between_grains: 3.0 * reach + 2.0 * skin,
+            to_origin,
+            rounding: ROUNDINGS * f64::EPSILON * to_origin,
+        }
+    }
+
+    /// How much a computed distance of features of two bodies may jump, the first of which reaches
+    /// to `reach`, that touch at `touch` and whose faces are as `uneven` [m]. Edges change from
+    /// crossing to parallel where their sine is that of [`PARALLEL`]; a vertex leaves a face across
+    /// an edge that is not quite in its plane.
+    pub fn margin(&self, reach: f64, touch: f64, uneven: f64) -> f32 {
+        let parallel = 2.0 * PARALLEL * reach * reach / touch;
+        let margin = 4.0 * (parallel + uneven + self.rounding);
+        margin as f32
+    }
+}
+
+/// How the bodies of a pair move relative to each other.
+pub struct Relative {
+    /// Velocity of the first relative to the second at the first's centroid [m/s].
+    pub velocity: Row,
+    /// Relative spin [rad/s].
+    pub spin: Row,
+    /// How far a point of the first has come in this step, seen from the second, at most [m].
+    pub moved: f64,
+}
+
+/// `a × b`, of the vector parts.
+#[inline(always)]
+pub fn crossed(a: Row, b: Row) -> Row {
+    let [x, y, z] = cross_product([a[0], a[1], a[2]], [b[0], b[1], b[2]]);
+    [x, y, z, 0.0]
+}
+
+#[inline(always)]
+fn cross_product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+impl Surroundings<'_> {
+    /// The wall that is the second side of `pair`, if it is one.
+    #[inline(always)]
+    pub fn wall(&self, pair: &Pair) -> Option<&WallBody> {
+        let wall = (pair.second as usize).checked_sub(self.bodies.len())?;
+        Some(&self.walls[wall])
+    }
+
+    /// Position, velocity and spin of a side of a pair; a wall moves about the origin.
+    #[inline(always)]
+    pub fn motion(&self, side: u32) -> [&Row; 3] {
+        match (side as usize).checked_sub(self.bodies.len()) {
+            None => {
+                let body = &self.bodies[side as usize];
+                [&body.position, &body.velocity, &body.spin]
+            }
+            Some(wall) => self.wall_motions[wall].each_ref(),
+        }
+    }
+
+    /// Asks for the second side of `pair`.
+    #[inline(always)]
+    pub fn fetch(&self, pair: &Pair) {
+        if let Some(body) = self.bodies.get(pair.second as usize) {
+            prefetch::<_, 3>(std::slice::from_ref(body));
+        }
+    }
+
+    /// How the two move relative to each other.
+    ///
+    /// With velocities `v`, spins `ω` and centroids `x` at the end of the step, a point of the
+    /// first at `y` from its centroid has moved by `Δt (v₁ − v₂ − ω₂ × (x₁ − x₂) + (ω₁ − ω₂) × y)`
+    /// seen from the second, but for terms of second order: each body turns on a circle (`½ (ω
+    /// Δt)²` of the distance from its centroid), its spin changes by `ω² Δt` at most where its
+    /// momentum stays, and `x₁ − x₂` changes during the step. Together they are less than `3 Δt²
+    /// (ω₁² + ω₂²) a + Δt² v²/a`, `a` being no smaller than any of these distances.
+    #[inline(always)]
+    pub fn relative(&self, pair: &Pair) -> Relative {
+        let first = &self.bodies[pair.first as usize];
+        let [position, velocity, other_spin] = self.motion(pair.second);
+        let turning = crossed(*other_spin, sub(first.position, *position));
+        let velocity = sub(sub(first.velocity, *velocity), turning);
+        let (reach, spin) = (first.reach(), sub(first.spin, *other_spin));
+        let arm = if (pair.second as usize) < self.bodies.len() {
+            self.extents.between_grains
+        } else {
+            self.extents.to_origin
+        };
+        let speed_squared = length_squared(velocity);
+        let spins_squared = length_squared(first.spin) + length_squared(*other_spin);
+        let pace = speed_squared.sqrt() + length_squared(spin).sqrt() * reach;
+        let bend = 3.0 * spins_squared * arm + speed_squared / arm;
+        Relative {
+            velocity,
+            spin,
+            moved: self.dt * (CAUTION * pace + self.dt * bend) + self.extents.rounding,
+        }
+    }
+
+    /// Whether the second side of `pair` knows which side of it is which, however deep a body
+    /// sinks: a plane and the inside of a drum do.
+    #[inline(always)]
+    pub fn has_sides(&self, pair: &Pair) -> bool {
+        self.wall(pair).is_some_and(|wall| match wall.surface {
+            Surface::Plane { .. } | Surface::Cylinder { .. } => true,
+            Surface::Tube { .. } => false,
+        })
+    }
+}

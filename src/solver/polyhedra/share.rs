@@ -1,0 +1,303 @@
+//! What one worker works on during a batch of steps: its blocks of pairs and its bodies.
+//!
+//! In: the working copy and its pairs. Out: shares that take about equally long, and the two phases
+//! of a step on a share.
+
+use super::super::row::{Row, length_squared, row, sub};
+use super::super::step::{Outcome, Share, Tally};
+use super::super::walls::{WallBody, Walls};
+use super::super::workers::{
+    Batch, Column, ForcePhase, InPhase, MotionPhase, range_of, split_once,
+};
+use super::Polyhedra;
+use super::bodies::{Body, Geometry, Load, Place, Shapes};
+use super::forces::Forces;
+use super::motion::{Extents, Surroundings};
+use super::nearest::Places;
+use super::neighbours::Sides;
+use super::pairs::{BLOCK, ContactPoint, Pair, PairForce, Terms};
+use super::workspace::Workspace;
+use crate::lanes::{Lanes, Processor, Work, prefetch};
+use crate::physics::FeatureRule;
+use std::ops::Range;
+
+/// A worker's share of a world of polyhedra.
+pub struct PolyhedraShare<'a> {
+    common: Common<'a>,
+    /// The bodies that it moves.
+    own: Range<usize>,
+    /// Read by all in the force phase, as are vertices and planes.
+    bodies: Column<'a, Body, MotionPhase>,
+    vertices: Column<'a, Row, MotionPhase>,
+    planes: Column<'a, Row, MotionPhase>,
+    /// Read by all in the motion phase, as is which of them act.
+    forces: Column<'a, PairForce, ForcePhase>,
+    acting: Column<'a, bool, ForcePhase>,
+    /// What only this worker touches: loads of its bodies, all that is kept of its pairs.
+    loads: &'a mut [Load],
+    pairs: &'a mut [Pair],
+    terms: &'a mut [Terms],
+    points: &'a mut [Vec<ContactPoint>],
+    workspace: &'a mut Workspace,
+    /// The origin, and the velocity and the spin of every wall.
+    wall_motions: Vec<[Row; 3]>,
+}
+
+/// What all workers read and none writes.
+#[derive(Clone, Copy)]
+struct Common<'a> {
+    /// The shapes of all bodies.
+    shapes: &'a Shapes,
+    /// Which pairs are whose.
+    sides: &'a Sides,
+    /// Where every body was when the pairs were found [m].
+    reference: &'a [Row],
+    /// Square of the distance from there at which they must be found anew [m²].
+    slack_squared: f64,
+    /// Length of a step [s].
+    dt: f64,
+    /// Gravity [m/s²].
+    gravity: Row,
+    /// Whether the features of a pair share its stiffness.
+    rule: FeatureRule,
+    /// Sizes that bound how far two bodies move in a step.
+    extents: Extents,
+}
+
+impl<'a> PolyhedraShare<'a> {
+    /// The shares of a batch's workers.
+    pub fn all(world: &'a mut Polyhedra, batch: &'a Batch) -> Vec<Self> {
+        let (size, count) = (batch.size(), world.bodies.len());
+        let (slack, pair_count) = (world.slack(), world.pairs.list.len());
+        let needed = size.max(world.workspaces.len());
+        world.workspaces.resize_with(needed, Workspace::default);
+        let common = Common {
+            shapes: &world.shapes,
+            sides: &world.sides,
+            reference: &world.reference,
+            slack_squared: slack * slack,
+            dt: world.dt,
+            gravity: world.gravity,
+            rule: world.rule,
+            extents: world.extents,
+        };
+        let blocks = world.pairs.shares(size);
+        let first_of = |block: usize| (block * BLOCK).min(pair_count);
+        let own_pairs = || {
+            blocks
+                .iter()
+                .map(|own| first_of(own.start)..first_of(own.end))
+        };
+        let own_bodies = || (0..size).map(|worker| range_of(count, worker, size));
+        let features_of = |own: Range<usize>, first: fn(&Place) -> u32| {
+            let [from, to] = [own.start, own.end].map(|i| &common.shapes.places[i]);
+            first(from) as usize..first(to) as usize
+        };
+        let own_vertices = own_bodies().map(|own| features_of(own, |place| place.vertex));
+        let own_planes = own_bodies().map(|own| features_of(own, |place| place.face));
+
+        let mut bodies = batch.lend_ranges(&mut world.bodies, own_bodies());
+        let mut vertices = batch.lend_ranges(&mut world.vertices, own_vertices);
+        let mut planes = batch.lend_ranges(&mut world.planes, own_planes);
+        let mut forces = batch.lend_ranges(&mut world.forces, own_pairs());
+        let mut acting = batch.lend_ranges(&mut world.acting, own_pairs());
+        let mut loads = split_once(&mut world.loads, own_bodies());
+        let mut pairs = split_once(&mut world.pairs.list, own_pairs());
+        let mut terms = split_once(&mut world.pairs.terms, own_pairs());
+        let mut points = split_once(&mut world.pairs.points, blocks.iter().cloned());
+        let mut workspaces = world.workspaces.iter_mut();
+        let wall_motions = motions_of(&world.walls);
+        let share = |own: Range<usize>| {
+            Some(Self {
+                common,
+                own,
+                bodies: bodies.next()?,
+                vertices: vertices.next()?,
+                planes: planes.next()?,
+                forces: forces.next()?,
+                acting: acting.next()?,
+                loads: loads.next()?,
+                pairs: pairs.next()?,
+                terms: terms.next()?,
+                points: points.next()?,
+                workspace: workspaces.next()?,
+                wall_motions: wall_motions.clone(),
+            })
+        };
+        own_bodies().filter_map(share).collect()
+    }
+}
+
+/// The origin, and the velocity and the spin of every wall.
+fn motions_of(walls: &Walls) -> Vec<[Row; 3]> {
+    let motion = |wall: &WallBody| {
+        let motion = &wall.motion;
+        [[0.0; 4], row(motion.velocity, 0.0), row(motion.spin, 0.0)]
+    };
+    walls.iter().map(motion).collect()
+}
+
+impl Share for PolyhedraShare<'_> {
+    fn compute_forces(
+        &mut self,
+        processor: Processor,
+        walls: &Walls,
+        phase: &InPhase<'_, ForcePhase>,
+    ) -> Tally {
+        let common = &self.common;
+        processor.run(Forces {
+            surroundings: Surroundings {
+                dt: common.dt,
+                rule: common.rule,
+                bodies: self.bodies.read(phase),
+                geometry: Geometry {
+                    shapes: common.shapes,
+                    places: Places {
+                        vertices: self.vertices.read(phase),
+                        planes: self.planes.read(phase),
+                        corners: &common.shapes.loops,
+                    },
+                },
+                walls,
+                wall_motions: &self.wall_motions,
+                extents: common.extents,
+            },
+            pairs: &mut *self.pairs,
+            terms: &mut *self.terms,
+            points: &mut *self.points,
+            forces: self.forces.write_first(phase),
+            acting: self.acting.write_first(phase),
+            workspace: &mut *self.workspace,
+        })
+    }
+
+    fn move_grains(
+        &mut self,
+        processor: Processor,
+        last: bool,
+        phase: &InPhase<'_, MotionPhase>,
+    ) -> Outcome {
+        processor.run(Finish {
+            own: self.own.clone(),
+            bodies: self.bodies.write_first(phase),
+            loads: &mut *self.loads,
+            vertices: self.vertices.write_first(phase),
+            planes: self.planes.write_first(phase),
+            incidence: Incidence {
+                forces: self.forces.read(phase),
+                acting: self.acting.read(phase),
+                sides: self.common.sides,
+            },
+            common: self.common,
+            last,
+        })
+    }
+}
+
+/// What every pair does, and which are whose.
+#[derive(Clone, Copy)]
+struct Incidence<'a> {
+    /// The contact force of every pair.
+    forces: &'a [PairForce],
+    /// Which of them act.
+    acting: &'a [bool],
+    /// Which pairs are whose.
+    sides: &'a Sides,
+}
+
+/// Finishes a step for a range of bodies and, unless it is the last of a call, starts the next.
+struct Finish<'a> {
+    /// Numbers of the bodies.
+    own: Range<usize>,
+    /// The bodies, what acts on them, their vertices and faces.
+    bodies: &'a mut [Body],
+    loads: &'a mut [Load],
+    vertices: &'a mut [Row],
+    planes: &'a mut [Row],
+    /// Where to find the forces.
+    incidence: Incidence<'a>,
+    common: Common<'a>,
+    /// Whether this is the last step of a call.
+    last: bool,
+}
+
+impl Work for Finish<'_> {
+    type Output = Outcome;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self, processor: N::Processor) -> Outcome {
+        let (shapes, common) = (self.common.shapes, &self.common);
+        let half = 0.5 * common.dt;
+        let mut outcome = Outcome::default();
+        let from = shapes.places[self.own.start];
+        for (i, (body, load)) in self.own.zip(self.bodies.iter_mut().zip(self.loads)) {
+            self.incidence.sum(i, load);
+            body.kick(load, half, common.gravity);
+            if self.last {
+                body.update_spin();
+                outcome.fault |= !body.is_sane();
+                continue;
+            }
+            body.kick(load, half, common.gravity);
+            body.drift(common.dt);
+            outcome.fault |= !body.is_sane();
+            let (begin, end) = (shapes.places[i], shapes.places[i + 1]);
+            let span = |a: u32, b: u32, start: u32| (a - start) as usize..(b - start) as usize;
+            shapes.place::<N::Quad>(
+                processor,
+                i,
+                body,
+                &mut self.vertices[span(begin.vertex, end.vertex, from.vertex)],
+                &mut self.planes[span(begin.face, end.face, from.face)],
+            );
+            let moved = length_squared(sub(body.position, common.reference[i]));
+            outcome.refresh |= moved > common.slack_squared;
+        }
+        outcome
+    }
+}
+
+impl Incidence<'_> {
+    /// Asks for what the pairs do of which body `i` is the second: it lies scattered.
+    #[inline(always)]
+    fn fetch(&self, i: usize) {
+        if i < self.sides.count() {
+            for &pair in self.sides.of_body(i).0 {
+                if self.acting[pair as usize] {
+                    prefetch::<_, 2>(&self.forces[pair as usize..=pair as usize]);
+                }
+            }
+        }
+    }
+
+    /// Sums what the pairs of body `i` do to it, in the pairs' order.
+    #[inline(always)]
+    fn sum(&self, i: usize, load: &mut Load) {
+        let (as_second, as_first) = self.sides.of_body(i);
+        self.fetch(i + 2);
+        load.force = [0.0; 4];
+        load.torque = [0.0; 4];
+        for pair in as_second.iter().map(|&pair| pair as usize) {
+            if !self.acting[pair] {
+                continue;
+            }
+            let force = &self.forces[pair];
+            for axis in 0..3 {
+                load.force[axis] -= force.force[axis];
+                load.torque[axis] += force.second[axis];
+            }
+            load.force[3] += force.force[3];
+        }
+        for pair in as_first {
+            if !self.acting[pair] {
+                continue;
+            }
+            let force = &self.forces[pair];
+            for axis in 0..4 {
+                load.force[axis] += force.force[axis];
+                load.torque[axis] += force.first[axis];
+                load.exchanged[axis] += force.exchanged[axis];
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Rows: what the pair loop reads and writes of grains and pairs, packed for lanes.
+//!
+//! Each row is four numbers, as a rule a vector and a companion, which an accessor names.
+
+use crate::lanes::{Row, WIDEST};
+
+/// Listed pairs come in groups of this many, filled up with padding lanes, whatever lanes the
+/// processor has.
+pub const GROUP: usize = WIDEST;
+
+/// What the pair loop reads of a grain: two cache lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(128))]
+pub struct Body {
+    /// Centre [m]; inverse mass [1/kg].
+    pub position: Row,
+    /// Velocity half a step ago [m/s]; inverse moment of inertia [1/(kg m²)].
+    pub velocity: Row,
+    /// Spin half a step ago [rad/s]; radius [m].
+    pub spin: Row,
+    /// Spin after the step if nothing resisted rolling [rad/s]; time step and contact count over
+    /// inertia [1/(N m s)].
+    pub free_spin: Row,
+}
+
+/// A pair on the list: a grain, its partner (a grain or a wall) and the index of its constants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pair {
+    /// The grain on which the computed force acts.
+    pub grain: u32,
+    /// The other grain's index, or the wall's.
+    pub partner: u32,
+    /// Index into the pair constants.
+    pub kind: u32,
+}
+
+impl Body {
+    /// Inverse mass [1/kg].
+    #[inline(always)]
+    pub fn inverse_mass(&self) -> f64 {
+        self.position[3]
+    }
+
+    /// Inverse moment of inertia [1/(kg m²)].
+    #[inline(always)]
+    pub fn inverse_inertia(&self) -> f64 {
+        self.velocity[3]
+    }
+
+    /// Radius [m].
+    #[inline(always)]
+    pub fn radius(&self) -> f64 {
+        self.spin[3]
+    }
+}
+
+/// The contact force of a pair and its torques, in rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(128))]
+pub struct ContactForce {
+    /// Force on the grain [N]; arm from the grain's centre to the contact [m].
+    pub force: Row,
+    /// Normal × force [N]; arm from the partner's centre to the contact [m]. Times the arm, the
+    /// torque on either side.
+    pub moment: Row,
+    /// Torque of rolling friction on the grain [N m]; 1 while touching, else 0.
+    pub rolling: Row,
+    /// Energy lost in dashpots, by the tangential spring (in sliding and as its stiffness changes),
+    /// in rolling and done by a wall during the step [J].
+    pub exchanged: Row,
+}
+
+impl ContactForce {
+    /// Arm from the grain's centre to the contact [m].
+    #[inline(always)]
+    pub fn arm(&self) -> f64 {
+        self.force[3]
+    }
+
+    /// Arm from the partner's centre to the contact [m].
+    #[inline(always)]
+    pub fn partner_arm(&self) -> f64 {
+        self.moment[3]
+    }
+
+    /// Whether the two touch.
+    #[inline(always)]
+    pub fn touches(&self) -> bool {
+        self.rolling[3] > 0.0
+    }
+}

@@ -1,0 +1,335 @@
+//! One step, from top to bottom, for grains of every shape.
+//!
+//! In: a world, and a [`Kernel`] that knows how grains of its shape are listed, pressed and moved.
+//! Out: the world some steps later, or a [`Fault`] and the world as it was. This file is the order
+//! of work; what each stage does is in [`super::spheres`] and [`super::polyhedra`], how workers
+//! share it in [`super::workers`].
+//!
+//! A call of `n` steps is
+//!
+//! | stage | what happens | timed as |
+//! |---|---|---|
+//! | load | the world's columns become the kernel's rows | exchange |
+//! | start | first half kick and drift | integration |
+//! | lists | neighbour lists are brought up to date, if a grain or wall has moved far | neighbours |
+//! | forces | every worker computes the forces of its pairs | contacts |
+//! | motion | every worker sums the forces on its grains, kicks twice, drifts | integration |
+//! | store | rows become columns again, clock, walls and angle follow | exchange |
+//!
+//! where forces and motion alternate in batches of steps, between which only the lists are touched. The
+//! motion of the last step is one kick, without a drift.
+//! Velocity Verlet's second half kick of one step and the first of the next are one pass over the
+//! grains.
+//!
+//! Not here: any formula.
+
+use super::profile::{Profile, Stage};
+use super::walls::Walls;
+use super::workers::{Batch, ForcePhase, InPhase, MotionPhase, WorkerPool};
+use super::{Fault, FaultKind};
+use crate::lanes::Processor;
+use crate::world::World;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// The profile reads the clock in one step out of this many: reading it costs as much as a hundred
+/// grains.
+const STEPS_PER_TIMING: u64 = 16;
+
+/// The working copy of a world of grains of one shape.
+pub trait Kernel {
+    /// What one worker works on during a batch.
+    type Share<'a>: Share
+    where
+        Self: 'a;
+
+    /// Takes `world` in; what is known of it from the last call is kept.
+    fn load(&mut self, processor: Processor, world: &World);
+
+    /// Kicks and drifts the grains from the forces of the world; true when the lists must be
+    /// brought up to date. The walls have moved already.
+    fn start(&mut self, processor: Processor) -> bool;
+
+    /// Brings the lists up to date with the positions; returns how often neighbours were searched
+    /// for.
+    fn refresh_lists(&mut self, world: &World) -> u64;
+
+    /// Makes the lists suit batches of so many steps.
+    fn adapt_lists(&mut self, steps: u64);
+
+    /// Steps in which no wall uses up what the lists allow it, at least one.
+    fn steps_within_slack(&self) -> u64;
+
+    /// A share for each of the batch's workers.
+    fn lend<'a>(&'a mut self, batch: &'a Batch) -> Vec<Self::Share<'a>>;
+
+    /// Takes note of what a batch came to.
+    fn note(&mut self, tally: &Tally);
+
+    /// Puts all but clock and walls back into `world`.
+    fn store(&self, world: &mut World);
+
+    /// The grain whose state is absurd, and what is wrong with it.
+    fn find_fault(&self) -> (usize, FaultKind);
+
+    /// Number of listed pairs.
+    fn listed(&self) -> usize;
+
+    /// The walls at the time of the positions.
+    fn walls(&mut self) -> &mut Walls;
+
+    /// Length of a step [s].
+    fn time_step(&self) -> f64;
+}
+
+/// What one worker works on during a batch of steps.
+pub trait Share: Send {
+    /// Computes the forces of the worker's pairs. `walls` are the walls at the time of the
+    /// positions.
+    fn compute_forces(
+        &mut self,
+        processor: Processor,
+        walls: &Walls,
+        phase: &InPhase<'_, ForcePhase>,
+    ) -> Tally;
+
+    /// Sums the forces on the worker's grains and moves them; at the `last` step of a call they
+    /// stay where they are and their velocities become those of that time.
+    fn move_grains(
+        &mut self,
+        processor: Processor,
+        last: bool,
+        phase: &InPhase<'_, MotionPhase>,
+    ) -> Outcome;
+}
+
+/// What a worker's grains ask for after a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// Some grain has used up the slack of the lists.
+    pub refresh: bool,
+    /// Some grain's state is absurd.
+    pub fault: bool,
+}
+
+/// What came of computing forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Liquid bridges that broke.
+    pub ruptures: u64,
+    /// Lists of the features of two polyhedra made.
+    pub relisted: u64,
+    /// Some pair's state is absurd.
+    pub fault: bool,
+}
+
+impl Tally {
+    fn add(&mut self, other: &Self) {
+        self.ruptures += other.ruptures;
+        self.relisted += other.relisted;
+        self.fault |= other.fault;
+    }
+}
+
+/// What a solver works with.
+pub struct Resources<'a> {
+    /// The worker pool.
+    pub pool: &'a mut WorkerPool,
+    /// What the processor can.
+    pub processor: Processor,
+    /// Where the time goes.
+    pub profile: &'a mut Profile,
+}
+
+impl Resources<'_> {
+    /// Takes `steps` steps of `world`.
+    ///
+    /// # Errors
+    /// A [`Fault`] when a grain's state becomes absurd; `world` is then as it was.
+    pub fn advance(
+        mut self,
+        kernel: &mut impl Kernel,
+        world: &mut World,
+        steps: u64,
+    ) -> Result<(), Fault> {
+        let processor = self.processor;
+        self.profile
+            .time_stage(Stage::Exchange, || kernel.load(processor, world));
+        self.take_steps(kernel, world, steps)
+            .map_err(|done| diagnose(kernel, world, done))?;
+        self.profile
+            .time_stage(Stage::Exchange, || store(kernel, world, steps));
+        self.profile.listed = kernel.listed();
+        Ok(())
+    }
+
+    /// Takes `steps` steps of the working copy, batch by batch; on a fault, says after how many.
+    fn take_steps(
+        &mut self,
+        kernel: &mut impl Kernel,
+        world: &World,
+        steps: u64,
+    ) -> Result<(), u64> {
+        let processor = self.processor;
+        let mut refresh = self.profile.time_stage(Stage::Integration, || {
+            let dt = kernel.time_step();
+            kernel.walls().advance(dt);
+            kernel.start(processor)
+        });
+        let mut done = 0;
+        while done < steps {
+            if refresh {
+                let searches = self
+                    .profile
+                    .time_stage(Stage::Neighbours, || kernel.refresh_lists(world));
+                self.profile.rebuilds += searches;
+            }
+            let batch = self.take_batch(kernel, steps - done);
+            batch.book(self.profile);
+            kernel.note(&batch.tally);
+            done += batch.steps;
+            if batch.fault {
+                return Err(done);
+            }
+            // The end of a call cuts a list's life short: it says nothing of how long the list
+            // would have lived.
+            if done < steps {
+                kernel.adapt_lists(batch.steps);
+                refresh = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes up to `remaining` steps on the lists as they are; the workers stay in step from
+    /// beginning to end.
+    fn take_batch(&mut self, kernel: &mut impl Kernel, remaining: u64) -> Report {
+        let dt = kernel.time_step();
+        let course = Course {
+            processor: self.processor,
+            remaining,
+            limit: remaining.min(kernel.steps_within_slack()),
+            dt,
+            walls: kernel.walls().clone(),
+            refresh: AtomicBool::new(false),
+            fault: AtomicBool::new(false),
+        };
+        let batch = Batch::new(self.pool.size());
+        let shares = kernel.lend(&batch);
+        let reports = self
+            .pool
+            .run(&batch, shares, |share, phase| course.follow(share, phase));
+        let mut whole = Report::default();
+        for (worker, report) in reports.iter().enumerate() {
+            if worker == 0 {
+                (whole.steps, whole.times) = (report.steps, report.times);
+            }
+            whole.tally.add(&report.tally);
+        }
+        whole.fault = course.fault.into_inner();
+        // At the last step of a call nothing moves any more.
+        let moves = whole.steps - u64::from(whole.steps == remaining);
+        (0..moves).for_each(|_| kernel.walls().advance(dt));
+        whole
+    }
+}
+
+/// What a batch of steps came to, for one worker or for all.
+#[derive(Default)]
+struct Report {
+    steps: u64,
+    fault: bool,
+    tally: Tally,
+    /// Time spent on forces and on motion in the steps that were timed.
+    times: [Duration; 2],
+}
+
+impl Report {
+    /// Books the times, scaled up to all steps, and what was counted.
+    fn book(&self, profile: &mut Profile) {
+        let scale = STEPS_PER_TIMING.min(self.steps.max(1)) as u32;
+        profile.add(Stage::Contacts, self.times[0] * scale);
+        profile.add(Stage::Integration, self.times[1] * scale);
+        profile.relisted += self.tally.relisted;
+    }
+}
+
+/// What all workers of a batch go by.
+struct Course {
+    processor: Processor,
+    /// Steps to the end of the call.
+    remaining: u64,
+    /// Steps of this batch at most.
+    limit: u64,
+    dt: f64,
+    walls: Walls,
+    /// Some worker asks for lists, or has found a fault: the batch ends after the step. Both are
+    /// read at the beginning of a step only, and written between the two meetings of one.
+    refresh: AtomicBool,
+    fault: AtomicBool,
+}
+
+impl Course {
+    /// One worker's way through the batch.
+    fn follow<'a>(&self, mut share: impl Share, mut forces: InPhase<'a, ForcePhase>) -> Report {
+        let mut report = Report::default();
+        // A copy of its own, which moves as all others do.
+        let mut walls = self.walls.clone();
+        while report.steps < self.limit && !self.is_over() {
+            let timed = forces.worker() == 0 && report.steps.is_multiple_of(STEPS_PER_TIMING);
+            let begin = timed.then(Instant::now);
+
+            let tally = share.compute_forces(self.processor, &walls, &forces);
+            let motion: InPhase<'a, MotionPhase> = forces.meet();
+            let middle = begin.map(|_| Instant::now());
+
+            report.steps += 1;
+            let last = report.steps == self.remaining;
+            let outcome = share.move_grains(self.processor, last, &motion);
+            raise(&self.refresh, outcome.refresh);
+            raise(&self.fault, outcome.fault || tally.fault);
+            if !last {
+                walls.advance(self.dt);
+            }
+            forces = motion.meet();
+
+            report.tally.add(&tally);
+            if let (Some(begin), Some(middle)) = (begin, middle) {
+                report.times[0] += middle - begin;
+                report.times[1] += middle.elapsed();
+            }
+        }
+        report
+    }
+
+    fn is_over(&self) -> bool {
+        self.refresh.load(Ordering::Relaxed) || self.fault.load(Ordering::Relaxed)
+    }
+}
+
+/// Sets `flag` where `raised`; writing it at every step would take its cache line from the other
+/// workers.
+fn raise(flag: &AtomicBool, raised: bool) {
+    if raised {
+        flag.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Puts the working copy, `steps` steps on, back into `world`.
+fn store(kernel: &mut impl Kernel, world: &mut World, steps: u64) {
+    kernel.store(world);
+    world.clock.step += steps;
+    let dt = kernel.time_step();
+    kernel.walls().store(&mut world.container, steps, dt);
+}
+
+/// What went wrong with which grain, `steps` steps after `world`.
+fn diagnose(kernel: &impl Kernel, world: &World, steps: u64) -> Fault {
+    let (grain, kind) = kernel.find_fault();
+    Fault {
+        grain,
+        kind,
+        time: world.clock.time_at(world.clock.step + steps),
+        good_time: world.time(),
+    }
+}

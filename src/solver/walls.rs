@@ -1,0 +1,118 @@
+//! Walls in the solver: where they are during a call, how they move, how far they have come.
+//!
+//! In: a world's container. Out: the walls at each step, and the container's surfaces and angle
+//! after the last one. Not here: the distance of a point from a wall, which is
+//! [`Surface::distance`] and, in lanes, the pair loop's.
+
+use crate::world::{Container, Motion, Surface};
+
+/// What a step reads of a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallBody {
+    /// Where it is.
+    pub surface: Surface,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// The walls of a container, in its order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Walls(Vec<WallBody>);
+
+impl std::ops::Deref for Walls {
+    type Target = [WallBody];
+
+    fn deref(&self) -> &[WallBody] {
+        &self.0
+    }
+}
+
+impl Walls {
+    /// Takes the walls of `container` in.
+    pub fn load(&mut self, container: &Container) {
+        self.0.clear();
+        self.0.extend(container.walls.iter().map(|wall| WallBody {
+            surface: wall.surface,
+            motion: wall.motion,
+        }));
+    }
+
+    /// Puts them back after `steps` steps of `dt` [s]; the angle of a drum follows. It is added up
+    /// step by step, so that it does not depend on how many steps a call takes.
+    pub fn store(&self, container: &mut Container, steps: u64, dt: f64) {
+        let turn = container.drum_speed() * dt;
+        (0..steps).for_each(|_| container.angle += turn);
+        for (wall, body) in container.walls.iter_mut().zip(&self.0) {
+            wall.surface = body.surface;
+        }
+    }
+
+    /// Moves those that have a velocity by one step of `dt` [s].
+    pub fn advance(&mut self, dt: f64) {
+        for wall in &mut self.0 {
+            match &mut wall.surface {
+                Surface::Plane { point, .. } => *point += wall.motion.velocity * dt,
+                Surface::Tube { rim, .. } => *rim += wall.motion.velocity.y * dt,
+                Surface::Cylinder { .. } => {}
+            }
+        }
+    }
+
+    /// Their surfaces.
+    pub fn surfaces(&self) -> impl Iterator<Item = Surface> + '_ {
+        self.0.iter().map(|wall| wall.surface)
+    }
+
+    /// How far any of them is from where it was in `old`; without bound where it is another surface
+    /// [m].
+    pub fn moved_from(&self, old: &[Surface]) -> f64 {
+        if old.len() != self.0.len() {
+            return f64::INFINITY;
+        }
+        let moved = self
+            .0
+            .iter()
+            .zip(old)
+            .map(|(wall, old)| wall.moved_from(old));
+        moved.fold(0.0, f64::max)
+    }
+
+    /// Steps of `dt` [s] in which no wall moves by more than `slack` [m], at least one.
+    pub fn steps_within(&self, slack: f64, dt: f64) -> u64 {
+        let speed = self.0.iter().map(WallBody::speed).fold(0.0, f64::max);
+        if speed > 0.0 {
+            (slack / (speed * dt)).max(1.0) as u64
+        } else {
+            u64::MAX
+        }
+    }
+}
+
+impl WallBody {
+    /// Speed at which the surface moves along its normal [m/s].
+    fn speed(&self) -> f64 {
+        match self.surface {
+            Surface::Plane { normal, .. } => self.motion.velocity.dot(normal).abs(),
+            Surface::Tube { .. } => self.motion.velocity.y.abs(),
+            Surface::Cylinder { .. } => 0.0,
+        }
+    }
+
+    /// How far the surface is from where it was [m]; without bound where it is another surface.
+    fn moved_from(&self, old: &Surface) -> f64 {
+        match (self.surface, *old) {
+            (
+                Surface::Plane { point, normal },
+                Surface::Plane {
+                    point: p,
+                    normal: n,
+                },
+            ) if normal == n => (point - p).dot(normal).abs(),
+            (Surface::Tube { radius, rim }, Surface::Tube { radius: r, rim: y }) if radius == r => {
+                (rim - y).abs()
+            }
+            (Surface::Cylinder { radius }, Surface::Cylinder { radius: r }) if radius == r => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+}

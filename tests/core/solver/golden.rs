@@ -1,0 +1,113 @@
+//! Golden hashes: runs that have the bits they always had, on any machine and for any number of threads, as a step knows
+//! nothing but + − × ÷ √. A commit that changes one says why.
+
+use super::*;
+use grainfall::scene::SceneContainer;
+use grainfall::solver::advise;
+
+/// A scene after it has been given some values, a quickly turning drum where it has one.
+fn scene(name: &str, values: &[(&str, &str)]) -> Scene {
+    let mut scene = Scene::open(name).unwrap();
+    for (key, value) in values {
+        scene.set(key, value).unwrap();
+    }
+    if let SceneContainer::Drum { speed, .. } = &mut scene.container {
+        *speed = 3.0;
+    }
+    scene
+}
+
+/// Asserts that `scene`, `before` steps after its start by one thread, has the hash `golden` after 300 more by any
+/// number of threads.
+#[track_caller]
+fn assert_golden(scene: &Scene, before: u64, golden: &str) {
+    let mut start = build(scene, advise(scene).time_step);
+    Solver::new(1).advance(&mut start, before).unwrap();
+    let held = start.contacts.iter().filter(|c| c.bridge.is_some());
+    println!(
+        "{}: {} grains, {} contacts, {} bridges",
+        scene.title,
+        start.grains.len(),
+        start.contacts.len(),
+        held.count()
+    );
+    assert!(start.contacts.len() > start.grains.len(), "grains touch");
+    for threads in [1, 2, 3, 8] {
+        let mut world = start.clone();
+        Solver::new(threads).advance(&mut world, 300).unwrap();
+        let found = world.hash().to_string();
+        assert_eq!(found, golden, "{}, {threads} threads", scene.title);
+    }
+}
+
+#[test]
+fn dry_drum_has_the_bits_it_always_had() {
+    assert_golden(
+        &scene("dry-r3", &[]),
+        10_000,
+        "b66b9b3180c97dabf2a94ba034ab24b0",
+    );
+}
+
+#[test]
+fn wet_drum_with_bridges_as_printed_has_the_bits_it_always_had() {
+    let values = [
+        ("radius", "3mm"),
+        ("liquid", "4"),
+        ("bridge-law", "as-printed"),
+    ];
+    assert_golden(
+        &scene("wet", &values),
+        10_000,
+        "f93764c46e94ca2a1ff8454250793177",
+    );
+}
+
+#[test]
+fn wet_drum_with_bridges_as_coded_has_the_bits_it_always_had() {
+    let values = [
+        ("radius", "3mm"),
+        ("liquid", "4"),
+        ("bridge-law", "as-coded"),
+    ];
+    assert_golden(
+        &scene("wet", &values),
+        10_000,
+        "f1e21e7c2f5735697dcbb6103efa733c",
+    );
+}
+
+#[test]
+fn wet_drum_of_two_sizes_has_the_bits_it_always_had() {
+    assert_golden(
+        &scene("two-sizes-wet-drum", &[]),
+        10_000,
+        "b2bc4e776a1524eba3a35f01d96a741c",
+    );
+}
+
+#[test]
+fn polyhedra_whose_features_are_full_contacts_have_the_bits_they_always_had() {
+    let scene = polyhedra("Full");
+    assert_golden(&scene, 2000, "749bf2ccf835e331e6025b8c725a06fb");
+}
+
+#[test]
+fn polyhedra_whose_features_share_their_stiffness_have_the_bits_they_always_had() {
+    let scene = polyhedra("Shared");
+    assert_golden(&scene, 2000, "fe70f3e02b92d54d59fc395b7847f582");
+}
+
+/// A drum of cells.
+fn polyhedra(rule: &str) -> Scene {
+    let text = r#"(
+        title: "A drum of cells",
+        materials: {"smooth": (friction: 0.1), "rough": (friction: 0.4)},
+        container: Drum(radius_mm: 15, width_mm: 15, speed_rpm: 30, material: "rough"),
+        grains: Voronoi(cell_mm: 4, rounding_mm: 0.3, solid_fraction: 0.7, bulk_fraction: 0.6, species: [
+            (material: "smooth", share: 0.5), (material: "rough", share: 0.5),
+        ]),
+        law: Hooke(normal_stiffness: 1000, tangential_stiffness: 500, features: RULE),
+    )"#;
+    Scene::parse("cells", &text.replace("RULE", rule)).unwrap_or_else(|error| panic!("{error}"))
+}
