@@ -30,11 +30,12 @@
 //! | [`files`] | files that appear whole or not at all |
 //! | [`geometry`] | convex solids: cutting, integrals, hulls |
 //! | [`lanes`] | numbers side by side: one vocabulary for every width of the processor, and its plain twin |
-//! | [`physics`] | force laws and their choices, materials and how two meet, liquids |
+//! | [`physics`] | force laws and their choices, materials and how two meet, liquids, units and hard limits |
 //! | [`scene`] | what was asked for: scene files, defaults, validation |
 //! | [`world`] | state at one instant, in columns; snapshot, restore, hash |
 //! | [`solver`] | how the state advances: time step, neighbours, integration, faults |
 //! | [`measure`] | read-only numbers from a world |
+//! | [`parameters`] | the registry of what people can change: keys, units, ranges, what it does, how it is written |
 //! | [`run`] | the trajectory (world, solver, commands, samples), its branches, beds, sessions, records |
 //! | [`output`] | the files that a run leaves behind |
 //! | [`runner`] | a scene run to its end: the one loop that advances, records, keeps checkpoints, stops |
@@ -60,6 +61,7 @@ pub mod lab;
 pub mod lanes;
 pub mod measure;
 pub mod output;
+pub mod parameters;
 pub mod physics;
 pub mod run;
 pub mod runner;

@@ -6,13 +6,14 @@
 use clap::{Args, Parser, Subcommand};
 use grainfall::headless::{self, Progress};
 use grainfall::output::write_file;
+use grainfall::parameters::Settings;
+#[cfg(feature = "desktop")]
+use grainfall::physics::units::seconds;
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
 use grainfall::runner::{
     Job, RunnerError, Verdict, apply_setting, available_threads, exit, read_commands,
 };
-#[cfg(feature = "desktop")]
-use grainfall::scene::seconds;
 use grainfall::scene::{Scene, StoredCells, built_in};
 use grainfall::simulation::{BedStore, Options, RunRecord, ScriptedCommand, Session, make_bed};
 use grainfall::sweep::{Sweep, Variation};
@@ -147,6 +148,14 @@ enum Task {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
         threads: Option<u16>,
     },
+    /// List what can be set in a scene: key, value, range, when it acts, what it does
+    Settings {
+        /// A scene file, or the name of a built-in scene
+        scene: String,
+        /// As JSON, in SI units
+        #[arg(long)]
+        json: bool,
+    },
     /// Cut a scene's Voronoi cells to grains and write them to a file, for `packing` in scenes
     Pack {
         /// A scene file, or the name of a built-in scene
@@ -187,6 +196,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     match arguments.task {
         Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
         Some(Task::Verify { file, threads }) => return verify(&file, threads),
+        Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
         Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
         Some(task @ Task::Sweep { .. }) => return run_sweep(task),
         None => {}
@@ -388,6 +398,19 @@ fn run_sweep(task: Task) -> Result<u8, RunnerError> {
     };
     let ending = headless::run_sweep(&sweep, &*interruption()?)?;
     Ok(ending.exit_code())
+}
+
+/// Prints what can be set in the scene called `name`. Returns the exit code.
+fn list_settings(name: &str, json: bool) -> Result<u8, RunnerError> {
+    let settings = Settings::of(&Scene::open(name)?);
+    let text = if json {
+        let list = serde_json::to_string_pretty(settings.list());
+        list.map_err(|error| RunnerError::Input(error.to_string()))?
+    } else {
+        settings.to_string()
+    };
+    println!("{}", text.trim_end());
+    Ok(0)
 }
 
 /// Computes the run of `file` again and says what came out. Returns the exit code.

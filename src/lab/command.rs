@@ -5,7 +5,7 @@
 //! by the engine, not here.
 
 use super::Half;
-use crate::run::{Command, Parameter};
+use crate::run::{Command, Parameter, Value};
 use std::path::PathBuf;
 
 /// Everything that can be asked of a lab.
@@ -20,15 +20,15 @@ pub enum LabCommand {
         half: Half,
         /// Which parameter.
         parameter: Parameter,
-        /// Its new value, in SI units.
-        value: f64,
+        /// Its new value.
+        value: Value,
     },
     /// Start two runs side by side at time zero, with the present values of all parameters but one.
     Compare {
         /// What the two differ in: it keeps its present value in the left run.
         parameter: Parameter,
-        /// Its value in the right run, in SI units.
-        value: f64,
+        /// Its value in the right run.
+        value: Value,
     },
     /// Go on with one of the two runs and keep the other as a branch of it.
     EndComparison {

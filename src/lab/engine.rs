@@ -11,7 +11,7 @@ use super::update::{SavedFile, Update};
 use super::{Half, Options, Status};
 use crate::run::{
     Command, CommandError, Parameter, Pieces, Preparation, Prepared, Run, Script, ScriptedCommand,
-    Session, Timeline,
+    Session, Timeline, Value,
 };
 use crate::scene::Scene;
 use std::path::PathBuf;
@@ -294,7 +294,7 @@ impl Engine {
     }
 
     /// Starts a second run beside the first, or says why not.
-    fn compare(&mut self, parameter: Parameter, value: f64) {
+    fn compare(&mut self, parameter: Parameter, value: Value) {
         if let Stage::Ready(runs) = &mut self.stage {
             match runs.compare(parameter, value, self.memory / 2) {
                 Ok(()) => self.begin_anew(),

@@ -12,7 +12,7 @@ use super::engine::{Engine, Message};
 use super::runs::ONE_STEP;
 use super::update::{RunsNews, SavedFile, Update};
 use super::{DriverKind, Half, Options, RunView, Status};
-use crate::run::{Changed, Command, Parameter, Provenance, Session, check};
+use crate::run::{Changed, Command, Parameter, Provenance, Session, Value, check};
 use crate::scene::Scene;
 use crate::solver::{TimeStepAdvice, advise};
 use std::ops::Deref;
@@ -246,7 +246,7 @@ impl Lab {
     ///
     /// # Errors
     /// Why it would be refused, in a sentence.
-    pub fn check_comparison(&self, parameter: &Parameter, value: f64) -> Result<(), String> {
+    pub fn check_comparison(&self, parameter: &Parameter, value: Value) -> Result<(), String> {
         if self.comparison.is_some() {
             return Err("Two runs are compared already: end that comparison first".into());
         }

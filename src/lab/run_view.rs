@@ -7,7 +7,7 @@
 use super::update::RunNews;
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
 use crate::run::{
-    Branch, Command, Parameter, ParameterInfo, Past, StampedCommand, StepTimes, time_step,
+    Branch, Command, Parameter, ParameterInfo, Past, StampedCommand, StepTimes, Value, time_step,
 };
 use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
@@ -36,7 +36,7 @@ pub struct RunView {
     avalanches: Avalanches,
     warnings: Vec<String>,
     /// Values asked for and not yet carried out.
-    asked: BTreeMap<Parameter, f64>,
+    asked: BTreeMap<Parameter, Value>,
     /// The step asked for and not yet reached.
     sought: Option<u64>,
     generation: u64,
@@ -154,12 +154,12 @@ impl RunView {
         self.news.as_ref().map_or(&[], |news| &news.parameters)
     }
 
-    /// Present value of `parameter` in SI units, or the value asked for where that is still to be
-    /// carried out; NaN where the scene has no such parameter.
-    pub fn value(&self, parameter: &Parameter) -> f64 {
+    /// Present value of `parameter`, or the value asked for where that is still to be carried out; NaN
+    /// where the scene has no such parameter.
+    pub fn value(&self, parameter: &Parameter) -> Value {
         let asked = self.asked.get(parameter).copied();
         let present = || parameter.read(self.world()?);
-        asked.or_else(present).unwrap_or(f64::NAN)
+        asked.or_else(present).unwrap_or(Value::Number(f64::NAN))
     }
 
     /// What stopped it, if something did.

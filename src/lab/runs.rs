@@ -12,7 +12,9 @@
 use super::Half;
 use super::clock::Clock;
 use super::update::{RunNews, RunsNews};
-use crate::run::{Branch, Command, CommandError, Parameter, Run, Session, Snapshot, Timeline};
+use crate::run::{
+    Branch, Command, CommandError, Parameter, Run, Session, Snapshot, Timeline, Value,
+};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::{self, World};
@@ -322,7 +324,7 @@ impl Runs {
     pub fn compare(
         &mut self,
         parameter: Parameter,
-        value: f64,
+        value: Value,
         memory: usize,
     ) -> Result<(), String> {
         if self.is_pair() {

@@ -1,5 +1,5 @@
 //! The physics that everything else speaks of: force laws and their choices, materials and how two
-//! of them meet, liquids.
+//! of them meet, liquids, units and limits.
 //!
 //! In: numbers. Out: constants, stiffnesses, forces. Nothing here knows of scene files, grains or
 //! time.
@@ -9,10 +9,14 @@
 //! | `law` | contact laws, rolling friction, liquid bridges: one file each |
 //! | `material` | what bodies are made of, how two materials meet |
 //! | `liquid` | a liquid, the cases of Kasper et al. 2021, the choices of the bridge law |
+//! | `limits` | which values of a quantity can be used at all |
+//! | `units` | what quantities are kept in and read in, and how text states them |
 
 pub mod law;
+pub mod limits;
 mod liquid;
 mod material;
+pub mod units;
 
 pub use law::{ContactLaw, FeatureRule};
 pub use liquid::{
@@ -20,3 +24,4 @@ pub use liquid::{
     PAPER_VOLUME, PairAngle, Rupture, SmallestGap,
 };
 pub use material::{Material, MaterialId, Materials, PairProperties};
+pub use units::{DisplayUnit, Unit};

@@ -3,8 +3,8 @@
 //! In: a command, the run's parameters, a state of it. Out: nothing, or a [`CommandError`] with the
 //! value, the range and the keys there are. Nothing is changed here.
 
-use super::parameter::{self, ParameterInfo};
-use super::{Command, Parameter};
+use super::Command;
+use crate::parameters::{Parameter, ParameterInfo, Unsuited, Values, time_step};
 use crate::world::World;
 
 /// Why a command was refused.
@@ -18,6 +18,9 @@ pub enum CommandError {
         /// The keys there are.
         known: Vec<String>,
     },
+    /// The parameter takes no such value at all.
+    #[error(transparent)]
+    Unsuited(#[from] Unsuited),
     /// The value lies outside the parameter's range.
     #[error("`{parameter}` cannot be {value} {unit}; expected {low} … {high} {unit}")]
     OutOfRange {
@@ -43,8 +46,8 @@ pub(crate) fn check(
     let Command::Set { parameter, value } = command else {
         return Ok(());
     };
-    let parameter = parameter::canonical(parameter, &world.materials);
-    let step = parameter::time_step(world.clock.time_step);
+    let parameter = parameter.canonical(&world.materials);
+    let step = time_step(world.clock.time_step);
     let known = || parameters.iter().chain([&step]);
     let Some(info) = known().find(|info| info.parameter == parameter) else {
         return Err(CommandError::Unknown {
@@ -52,14 +55,18 @@ pub(crate) fn check(
             known: known().map(|info| info.parameter.to_string()).collect(),
         });
     };
-    if info.range.contains(value) {
+    let value = parameter.typed(*value)?;
+    let Values::Range(range) = &info.values else {
+        return Ok(());
+    };
+    if range.contains(&value.number()) {
         return Ok(());
     }
     Err(CommandError::OutOfRange {
-        low: *info.range.start(),
-        high: *info.range.end(),
-        unit: info.unit,
-        value: *value,
+        low: *range.start(),
+        high: *range.end(),
+        unit: parameter.row().kind.unit().si,
+        value: value.number(),
         parameter,
     })
 }

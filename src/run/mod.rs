@@ -20,8 +20,6 @@
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `steps` | which step was when, where the time step changed |
-//! | `start` | the numbers that act from the next start on |
-//! | `parameter`, `relabel` | the numbers that change while a run goes on; how they change a world |
 //! | `command` | everything a person can ask for |
 //! | `shared` | what is shared in memory, in a file |
 
@@ -32,33 +30,32 @@ mod check;
 mod command;
 mod history;
 mod keyframes;
-mod parameter;
 mod past;
 mod pieces;
 mod preparation;
 mod provenance;
 mod record;
-mod relabel;
 mod sampling;
 mod script;
 mod session;
 mod settling;
 mod shared;
 mod snapshot;
-mod start;
 mod steps;
 mod timeline;
 mod trajectory;
 mod undo;
 
+pub use crate::parameters::{
+    Parameter, ParameterInfo, Value, Values, live_parameters, start_parameters, time_step,
+};
+pub use crate::physics::DisplayUnit;
 pub use bed::BedStore;
 pub use branch::Branch;
 pub use check::CommandError;
 pub(crate) use check::check;
-pub use command::{Command, Parameter, StampedCommand};
+pub use command::{Command, StampedCommand};
 pub use history::{History, Moment};
-pub(crate) use parameter::time_step;
-pub use parameter::{DisplayUnit, ParameterInfo};
 pub use past::Past;
 pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};
@@ -68,7 +65,6 @@ pub use sampling::SAMPLE_INTERVAL;
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use snapshot::{Checkpoint, Snapshot};
-pub use start::{StartInfo, StartParameter, start_parameters};
 pub use steps::StepTimes;
 pub use timeline::Timeline;
 pub use trajectory::Run;

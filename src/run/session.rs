@@ -9,6 +9,7 @@
 
 use super::archive::Archive;
 use super::record::{RunRecord, VERSION};
+use super::script::ScriptedCommand;
 use super::timeline::Timeline;
 use crate::files::write_whole;
 use crate::geometry::Rounded;
@@ -188,8 +189,9 @@ impl Session {
         }
         let foreign = "its contents are those of another build of this version";
         let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
-        let rest: Rest<Archive, Vec<Rounded>> =
-            postcard::from_bytes(rest).map_err(|_| Reason::Damaged(foreign))?;
+        // A value that no parameter takes stands in the list of changes too, where it has a name.
+        let rest: Rest<Archive, Vec<Rounded>> = postcard::from_bytes(rest)
+            .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
         let _held = rest.cells.and_then(HeldCells::hold);
         let record: RunRecord = of_json(second)?;
         let original = rest.original.as_deref().map(of_json::<Scene>).transpose()?;
@@ -206,6 +208,16 @@ impl Session {
             original,
         })
     }
+}
+
+/// Why the list of changes in the claim `text` cannot be used, where it cannot.
+fn unsuited(text: &str) -> Option<Reason> {
+    #[derive(Deserialize)]
+    struct Changes {
+        #[serde(rename = "commands")]
+        _commands: Vec<ScriptedCommand>,
+    }
+    of_json::<Changes>(text).err()
 }
 
 /// What the JSON `text` holds. By way of a value: an error then speaks of what is wrong, not of a

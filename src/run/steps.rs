@@ -37,7 +37,7 @@ impl StepTimes {
             } => Some(Part {
                 step: stamped.step,
                 time: stamped.time,
-                time_step: value,
+                time_step: value.number(),
             }),
             _ => None,
         });

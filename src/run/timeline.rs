@@ -12,7 +12,7 @@ use super::history::{Moment, Position};
 use super::keyframes::Keyframes;
 use super::past::{Journey, News, Past};
 use super::undo::{Changed, Destination, UndoEntry, UndoList};
-use super::{Command, CommandError, Parameter, Run, Script, Snapshot};
+use super::{Command, CommandError, Parameter, Run, Script, Snapshot, Value};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use std::sync::Arc;
@@ -310,7 +310,7 @@ impl Timeline {
     }
 
     /// Starts afresh at time zero with these `values`, keeping the branch that is left.
-    pub(crate) fn restart(&mut self, values: &[(Parameter, f64)]) {
+    pub(crate) fn restart(&mut self, values: &[(Parameter, Value)]) {
         self.stop();
         self.keep_end();
         let step = self.step();

@@ -8,12 +8,12 @@
 use super::branch::Branch;
 use super::check::check;
 use super::history::Moment;
-use super::parameter::{self, ParameterInfo};
 use super::sampling::{next_sample, sample_step};
 use super::script::Script;
 use super::snapshot::{Checkpoint, Snapshot};
-use super::{Command, CommandError, Parameter, StampedCommand};
+use super::{Command, CommandError, StampedCommand};
 use crate::measure::{FlowHistory, Series, sample_and_surface};
+use crate::parameters::{Parameter, ParameterInfo, Value, live_parameters};
 use crate::scene::{Scene, TimeStep};
 use crate::solver::{Extremes, Fault, Profile, Solver, TimeStepAdvice};
 use crate::world::World;
@@ -46,7 +46,7 @@ impl Run {
     pub fn new(scene: Arc<Scene>, bed: impl Into<Arc<World>>, threads: usize) -> Self {
         let bed = bed.into();
         let mut run = Self {
-            parameters: parameter::live_parameters(&scene, &bed).into(),
+            parameters: live_parameters(&scene, &bed).into(),
             extremes: Extremes::of(&scene),
             scene,
             world: (*bed).clone(),
@@ -319,7 +319,7 @@ impl Run {
     /// Goes to time zero and begins a branch of this `number` there. Those of the `values` that
     /// differ from the bed's become commands at step zero, all of them one change. Returns the
     /// branch that is left.
-    pub(crate) fn start_afresh(&mut self, values: &[(Parameter, f64)], number: u32) -> Branch {
+    pub(crate) fn start_afresh(&mut self, values: &[(Parameter, Value)], number: u32) -> Branch {
         let left = self.replace_branch(Branch::begin(number));
         self.rewind();
         for (parameter, value) in values {
@@ -363,7 +363,7 @@ impl Run {
         let advice = self.advice();
         let largest = advice.largest();
         if largest != before && largest != advice.time_step {
-            self.set(&Parameter::TimeStep, largest, true);
+            self.set(&Parameter::TimeStep, largest.into(), true);
         }
     }
 
@@ -377,9 +377,11 @@ impl Run {
         }
     }
 
-    fn set(&mut self, parameter: &Parameter, value: f64, joins: bool) {
-        let parameter = parameter::canonical(parameter, &self.world.materials);
-        parameter::write(&parameter, value, &self.scene, &mut self.world);
+    /// Gives a `parameter` of this run the `value`, which was checked.
+    fn set(&mut self, parameter: &Parameter, value: Value, joins: bool) {
+        let parameter = parameter.canonical(&self.world.materials);
+        let value = parameter.typed(value).unwrap_or(value);
+        parameter.write(value, &self.scene, &mut self.world);
         // On the way to a later moment of the branch the command is in it already.
         if self.commands == self.branch.history.commands().len() {
             if parameter == Parameter::TimeStep {
@@ -396,7 +398,7 @@ impl Run {
     }
 
     /// Present values of the parameters and of the time step.
-    pub(crate) fn values(&self) -> Vec<(Parameter, f64)> {
+    pub(crate) fn values(&self) -> Vec<(Parameter, Value)> {
         let parameters = self.parameters.iter().map(|info| info.parameter.clone());
         let parameters = parameters.chain([Parameter::TimeStep]);
         let values = parameters.filter_map(|parameter| {

@@ -1,10 +1,12 @@
 //! `--set KEY=VALUE`: what is changed about a scene, before a run or at its first step.
 
 use super::RunnerError;
-use crate::run::{Command, Parameter, ScriptedCommand};
+use crate::parameters::{Parameter, Value};
+use crate::run::{Command, ScriptedCommand};
 use crate::scene::Scene;
 
-/// Carries out one `--set`: at once where it is the scene's, as a command at step zero where it is a live parameter's.
+/// Carries out one `--set`: at once where it is the scene's, as a command at step zero where it is
+/// a live parameter's.
 ///
 /// # Errors
 /// When the setting has no such form, there is no such key, or the value does not suit it.
@@ -16,13 +18,14 @@ pub fn apply_setting(
     let Some((key, text)) = setting.split_once('=') else {
         return Err(refuse("expected KEY=VALUE, such as drum-speed=1rpm".into()));
     };
-    if Scene::settings().any(|(known, _)| known == key) {
+    let mut known = Parameter::of_key(key).into_iter();
+    if known.any(|parameter| parameter.row().in_scene.is_some()) {
         scene.set(key, text)?;
         return Ok(None);
     }
     let (parameter, value) = parameter_value(key, text).map_err(|reason| match reason {
         Unfit::Key(reason) => {
-            let known: Vec<&str> = Scene::settings().map(|(known, _)| known).collect();
+            let known: Vec<String> = Scene::settings().map(|(known, _)| known).collect();
             refuse(format!("{reason}; or before a run: {}", known.join(", ")))
         }
         Unfit::Value(reason) => refuse(reason),
@@ -34,11 +37,11 @@ pub fn apply_setting(
     }))
 }
 
-/// The live parameter and the value [SI unit] of one `--compare`.
+/// The live parameter and the value of one `--compare`.
 ///
 /// # Errors
 /// When the setting has no such form, there is no such key, or its value is none.
-pub fn compared_value(setting: &str) -> Result<(Parameter, f64), RunnerError> {
+pub fn compared_value(setting: &str) -> Result<(Parameter, Value), RunnerError> {
     let refuse = |reason: String| RunnerError::Input(format!("--compare {setting}: {reason}"));
     let Some((key, text)) = setting.split_once('=') else {
         return Err(refuse("expected KEY=VALUE, such as viscosity=1.41".into()));
@@ -54,11 +57,12 @@ enum Unfit {
     Value(String),
 }
 
-fn parameter_value(key: &str, text: &str) -> Result<(Parameter, f64), Unfit> {
+fn parameter_value(key: &str, text: &str) -> Result<(Parameter, Value), Unfit> {
     let parameter = Parameter::try_from(key.to_owned()).map_err(Unfit::Key)?;
-    let value = parameter.parse_value(text).ok_or_else(|| {
-        let (unit, shown) = (parameter.unit(), parameter.display().name);
-        Unfit::Value(format!("`{text}` is no value; expected a number in SI units ({unit}), or one with its unit {shown}"))
+    let row = parameter.row();
+    let value = row.parse(text).ok_or_else(|| {
+        let expected = row.kind.expected();
+        Unfit::Value(format!("`{text}` is no value; expected {expected}"))
     })?;
     Ok((parameter, value))
 }

@@ -1,7 +1,8 @@
 //! Which values make sense, each alone and all together.
 //!
-//! In: a [`Scene`] as a file or a program states it. Out: nothing, or the first mistake with the path of its key. A scene
-//! that passes can be built: its grains fit, its names exist, its numbers are finite and within what the solver can bear.
+//! In: a [`Scene`] as a file or a program states it. Out: nothing, or the first mistake with the
+//! path of its key. A scene that passes can be built: its grains fit, its names exist, its numbers
+//! are finite and within what the solver can bear.
 
 use super::error::Problem;
 use super::lattice::Lattice;
@@ -10,6 +11,7 @@ use super::{
     PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain, SceneGrains,
     SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, StoredCells, TimeStep,
 };
+use crate::physics::limits::{self, Limits};
 use crate::physics::{ContactLaw, Liquid, SmallestGap};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -17,8 +19,6 @@ use std::f64::consts::PI;
 
 type Checked = Result<(), Problem>;
 
-/// Grains a scene may have: about 2 kB each in memory.
-const MOST_GRAINS: usize = 1_000_000;
 /// Polyhedra a scene may have: up to 20 kB each in memory.
 const MOST_POLYHEDRA: usize = 200_000;
 /// Voronoi cells that are made to choose the grains from, in numbers of [`MOST_POLYHEDRA`].
@@ -33,109 +33,26 @@ const MOST_KINDS: usize = 200;
 const MOST_OUTPUTS: f64 = 1e6;
 /// Overlap of a listed polyhedron with a wall that is still a contact, in rounding radii.
 const DEEPEST_ROUNDING: f64 = 0.5;
-/// Overlap of two listed grains, or of one with a wall, that is still a contact, in radii of the smaller grain.
+/// Overlap of two listed grains, or of one with a wall, that is still a contact, in radii of the
+/// smaller grain.
 const LARGEST_OVERLAP: f64 = 0.1;
 
-/// Which numbers a key accepts, and how to say so.
-struct Rule {
-    accepts: fn(f64) -> bool,
-    expected: &'static str,
-}
-
-const LENGTH: Rule = Rule {
-    accepts: |x| (1e-6..=1000.0).contains(&x),
-    expected: "a length between 1e-6 m and 1000 m",
-};
-const RADIUS: Rule = Rule {
-    accepts: |x| (1e-6..=10.0).contains(&x),
-    expected: "a grain's radius between 1e-6 m and 10 m",
-};
-const DRUM_SPEED: Rule = Rule {
-    accepts: |x| x.abs() <= 1000.0,
-    expected: "a speed between -1000 and 1000 rad/s",
-};
-const YOUNGS_MODULUS: Rule = Rule {
-    accepts: |x| (1e3..=1e13).contains(&x),
-    expected: "a modulus between 1e3 Pa and 1e13 Pa",
-};
-const POISSON_RATIO: Rule = Rule {
-    accepts: |x| (0.0..0.5).contains(&x),
-    expected: "a number of at least 0 and below 0.5",
-};
-const DENSITY: Rule = Rule {
-    accepts: |x| (0.1..=1e6).contains(&x),
-    expected: "a density between 0.1 and 1e6 kg/m³",
-};
-const RESTITUTION: Rule = Rule {
-    accepts: |x| x > 0.0 && x <= 1.0,
-    expected: "a number above 0 and at most 1",
-};
-const FRICTION: Rule = Rule {
-    accepts: |x| (0.0..=10.0).contains(&x),
-    expected: "a number between 0 and 10",
-};
-const TUBE_SPEED: Rule = Rule {
-    accepts: |x| (0.0..=100.0).contains(&x),
-    expected: "a speed upwards between 0 and 100 m/s",
-};
-const CELL: Rule = Rule {
-    accepts: |x| (1e-5..=10.0).contains(&x),
-    expected: "the size of a lattice cell between 1e-5 m and 10 m",
-};
-const ROUNDING: Rule = Rule {
-    accepts: |x| (1e-7..=1.0).contains(&x),
-    expected: "a rounding radius between 1e-7 m and 1 m",
-};
-const FRACTION: Rule = Rule {
-    accepts: |x| x > 0.0 && x <= 1.0,
-    expected: "a fraction above 0 and at most 1",
-};
-const SHARE: Rule = Rule {
-    accepts: |x| (0.0..=1.0).contains(&x),
-    expected: "a share between 0 and 1",
-};
-const SURFACE_TENSION: Rule = Rule {
-    accepts: |x| (0.0..=10.0).contains(&x),
-    expected: "a surface tension between 0 and 10 N/m",
-};
-const CONTACT_ANGLE: Rule = Rule {
-    accepts: |x| (0.0..=1.6).contains(&x),
-    expected: "an angle between 0 and 1.6 rad, about 90 degrees",
-};
-const VISCOSITY: Rule = Rule {
-    accepts: |x| (0.0..=1e4).contains(&x),
-    expected: "a viscosity between 0 and 1e4 Pa s",
-};
-const LIQUID_VOLUME: Rule = Rule {
-    accepts: |x| (0.0..=1e3).contains(&x),
-    expected: "a volume between 0 and 1e3 m³",
-};
-const SMALLEST_GAP: Rule = Rule {
-    accepts: |x| (1e-6..=10.0).contains(&x),
-    expected: "a gap between 1e-6 and 10 radii",
-};
-const DURATION: Rule = Rule {
-    accepts: |x| x > 0.0 && x <= 1e6,
-    expected: "a time above 0 s and at most 1e6 s",
-};
-const STEP: Rule = Rule {
-    accepts: |x| (1e-12..=1.0).contains(&x),
-    expected: "`Automatic`, or `Given(…)` with a step between 1e-12 s and 1 s",
-};
-
-impl Rule {
-    fn check(&self, value: f64, path: impl FnOnce() -> String) -> Checked {
-        if (self.accepts)(value) {
-            Ok(())
-        } else {
-            Err(Problem::value(path(), format!("{value:?}"), self.expected))
-        }
+/// Refuses a `value` of the key at `path` that is not within `limits`.
+fn within(limits: &Limits, value: f64, path: impl FnOnce() -> String) -> Checked {
+    if limits.accept(value) {
+        Ok(())
+    } else {
+        Err(Problem::value(
+            path(),
+            format!("{value:?}"),
+            limits.expected,
+        ))
     }
 }
 
 impl Scene {
     /// Whether every value is in range and all of them fit together.
-    pub(super) fn problem(&self) -> Checked {
+    pub(crate) fn problem(&self) -> Checked {
         check_title(&self.title)?;
         check_materials(&self.materials)?;
         check_pairs(&self.pairs, self)?;
@@ -150,7 +67,9 @@ impl Scene {
             self.check_suits_polyhedra()?;
         }
         self.liquid.as_ref().map_or(Ok(()), check_liquid)?;
-        vector(self.gravity, 1000.0, "m/s²", || "gravity".to_owned())?;
+        vector(self.gravity, limits::GRAVITY.most, "m/s²", || {
+            "gravity".to_owned()
+        })?;
         check_law(self.law)?;
         self.check_times()
     }
@@ -186,7 +105,9 @@ impl Scene {
     fn check_filling(&self, count: usize, species: &[SceneSpecies]) -> Checked {
         self.check_species()?;
         for (index, kind) in species.iter().enumerate() {
-            RADIUS.check(kind.radius, || format!("grains.species[{index}].radius"))?;
+            within(&limits::RADIUS, kind.radius, || {
+                format!("grains.species[{index}].radius")
+            })?;
         }
         check_count(count)?;
         self.check_room(count, species)
@@ -203,7 +124,7 @@ impl Scene {
                 return Err(twice(path("name"), "a species", name)
                     .advise("Species of one material need a `name` each"));
             }
-            SHARE.check(self.share(index), || path("share"))?;
+            within(&limits::SHARE, self.share(index), || path("share"))?;
             self.check_material(material, || path("material"))?;
         }
         let sum = (0..species.len()).map(|index| self.share(index)).sum();
@@ -215,8 +136,10 @@ impl Scene {
         if let Some(packing) = &cells.packing {
             return self.check_packing(packing);
         }
-        CELL.check(cells.cell, || "grains.cell".to_owned())?;
-        ROUNDING.check(cells.rounding, || "grains.rounding".to_owned())?;
+        within(&limits::CELL, cells.cell, || "grains.cell".to_owned())?;
+        within(&limits::ROUNDING, cells.rounding, || {
+            "grains.rounding".to_owned()
+        })?;
         if !(1e-3..=0.2).contains(&(cells.rounding / cells.cell)) {
             return Err(Problem::value(
                 "grains.rounding",
@@ -361,12 +284,12 @@ impl Scene {
         for (index, grain) in grains.iter().enumerate() {
             let path = |key: &str| format!("grains[{index}].{key}");
             check_shape(&grain.shape, path)?;
-            RADIUS.check(grain.radius, || path("radius"))?;
+            within(&limits::RADIUS, grain.radius, || path("radius"))?;
             vector(grain.position, 1e5, "m", || path("position"))?;
             vector(grain.velocity, 1e5, "m/s", || path("velocity"))?;
             vector(grain.spin, 1e7, "rad/s", || path("spin"))?;
             if let Some(film) = grain.film {
-                LIQUID_VOLUME.check(film, || path("film"))?;
+                within(&limits::LIQUID_VOLUME, film, || path("film"))?;
             }
             self.check_material(&grain.material, || path("material"))?;
             let body = grain.body().ok_or_else(|| too_thin(grain, path("shape")))?;
@@ -377,8 +300,10 @@ impl Scene {
     }
 
     fn check_times(&self) -> Checked {
-        DURATION.check(self.duration, || "duration".to_owned())?;
-        DURATION.check(self.output_interval, || "output_interval".to_owned())?;
+        within(&limits::DURATION, self.duration, || "duration".to_owned())?;
+        within(&limits::DURATION, self.output_interval, || {
+            "output_interval".to_owned()
+        })?;
         if self.duration / self.output_interval > MOST_OUTPUTS {
             return Err(Problem::value(
                 "output_interval",
@@ -392,7 +317,7 @@ impl Scene {
         let TimeStep::Given(step) = self.time_step else {
             return Ok(());
         };
-        STEP.check(step, || "time_step".to_owned())?;
+        within(&limits::TIME_STEP, step, || "time_step".to_owned())?;
         if step > self.output_interval {
             return Err(Problem::value(
                 "time_step",
@@ -420,7 +345,7 @@ pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
 }
 
 pub(super) fn fraction(path: &str, value: f64) -> Checked {
-    FRACTION.check(value, || path.to_owned())
+    within(&limits::FRACTION, value, || path.to_owned())
 }
 
 pub(super) fn check_container(container: &SceneContainer) -> Checked {
@@ -432,15 +357,15 @@ pub(super) fn check_container(container: &SceneContainer) -> Checked {
             speed,
             ..
         } => {
-            LENGTH.check(*radius, || "container.radius".to_owned())?;
-            LENGTH.check(*width, || "container.width".to_owned())?;
-            DRUM_SPEED.check(*speed, || "container.speed".to_owned())
+            within(&limits::LENGTH, *radius, || "container.radius".to_owned())?;
+            within(&limits::LENGTH, *width, || "container.width".to_owned())?;
+            within(&limits::DRUM_SPEED, *speed, || "container.speed".to_owned())
         }
         SceneContainer::Box { min, max, .. } => {
             vector(*min, 1e4, "m", || "container.min".to_owned())?;
             vector(*max, 1e4, "m", || "container.max".to_owned())?;
             let size = (*max - *min).to_array();
-            if size.iter().all(|&length| (LENGTH.accepts)(length)) {
+            if size.iter().all(|&length| limits::LENGTH.accept(length)) {
                 return Ok(());
             }
             Err(Problem::value(
@@ -458,8 +383,8 @@ pub(super) fn check_container(container: &SceneContainer) -> Checked {
             tube,
             ..
         } => {
-            LENGTH.check(*radius, || "container.radius".to_owned())?;
-            LENGTH.check(*height, || "container.height".to_owned())?;
+            within(&limits::LENGTH, *radius, || "container.radius".to_owned())?;
+            within(&limits::LENGTH, *height, || "container.height".to_owned())?;
             tube.as_ref().map_or(Ok(()), check_tube)
         }
         SceneContainer::Planes(planes) => check_planes(planes),
@@ -467,7 +392,9 @@ pub(super) fn check_container(container: &SceneContainer) -> Checked {
 }
 
 fn check_tube(tube: &SceneTube) -> Checked {
-    TUBE_SPEED.check(tube.speed, || "container.tube.speed".to_owned())
+    within(&limits::TUBE_SPEED, tube.speed, || {
+        "container.tube.speed".to_owned()
+    })
 }
 
 fn no_rolling(path: String, value: f64) -> Problem {
@@ -480,23 +407,25 @@ fn no_rolling(path: String, value: f64) -> Problem {
 
 fn check_shape(shape: &SceneShape, path: impl Fn(&str) -> String) -> Checked {
     if let Some(rounding) = shape.rounding() {
-        ROUNDING.check(rounding, || path("rounding"))?;
+        within(&limits::ROUNDING, rounding, || path("rounding"))?;
     }
     match shape {
         SceneShape::Sphere => Ok(()),
         SceneShape::Box { size, .. } => size
             .to_array()
             .into_iter()
-            .try_for_each(|edge| LENGTH.check(edge, || path("shape.size"))),
-        SceneShape::Tetrahedron { edge, .. } => LENGTH.check(*edge, || path("shape.edge")),
+            .try_for_each(|edge| within(&limits::LENGTH, edge, || path("shape.size"))),
+        SceneShape::Tetrahedron { edge, .. } => {
+            within(&limits::LENGTH, *edge, || path("shape.edge"))
+        }
         SceneShape::Prism {
             sides,
             edge,
             height,
             ..
         } => {
-            LENGTH.check(*edge, || path("shape.edge"))?;
-            LENGTH.check(*height, || path("shape.height"))?;
+            within(&limits::LENGTH, *edge, || path("shape.edge"))?;
+            within(&limits::LENGTH, *height, || path("shape.height"))?;
             if (3..=MOST_SIDES).contains(sides) {
                 return Ok(());
             }
@@ -596,15 +525,23 @@ fn check_materials(materials: &[SceneMaterial]) -> Checked {
         if materials[..index].iter().any(|other| other.name == *name) {
             return Err(twice(format!("materials.{name}"), "a material", name));
         }
-        YOUNGS_MODULUS.check(material.youngs_modulus, || path("youngs_modulus"))?;
-        POISSON_RATIO.check(material.poisson_ratio, || path("poisson_ratio"))?;
-        DENSITY.check(material.density, || path("density"))?;
-        RESTITUTION.check(material.restitution, || path("restitution"))?;
-        FRICTION.check(material.friction, || path("friction"))?;
+        within(&limits::YOUNGS_MODULUS, material.youngs_modulus, || {
+            path("youngs_modulus")
+        })?;
+        within(&limits::POISSON_RATIO, material.poisson_ratio, || {
+            path("poisson_ratio")
+        })?;
+        within(&limits::DENSITY, material.density, || path("density"))?;
+        within(&limits::RESTITUTION, material.restitution, || {
+            path("restitution")
+        })?;
+        within(&limits::FRICTION, material.friction, || path("friction"))?;
         if let Some(friction) = material.wet_friction {
-            FRICTION.check(friction, || path("wet_friction"))?;
+            within(&limits::FRICTION, friction, || path("wet_friction"))?;
         }
-        FRICTION.check(material.rolling_friction, || path("rolling_friction"))?;
+        within(&limits::FRICTION, material.rolling_friction, || {
+            path("rolling_friction")
+        })?;
     }
     Ok(())
 }
@@ -642,29 +579,39 @@ fn check_pairs(pairs: &[PairOverride], scene: &Scene) -> Checked {
 
 fn check_pair_values(pair: &PairOverride, path: impl Fn(&str) -> String) -> Checked {
     if let Some(restitution) = pair.restitution {
-        RESTITUTION.check(restitution, || path("restitution"))?;
+        within(&limits::RESTITUTION, restitution, || path("restitution"))?;
     }
     if let Some(friction) = pair.friction {
-        FRICTION.check(friction, || path("friction"))?;
+        within(&limits::FRICTION, friction, || path("friction"))?;
     }
     if let Some(friction) = pair.wet_friction {
-        FRICTION.check(friction, || path("wet_friction"))?;
+        within(&limits::FRICTION, friction, || path("wet_friction"))?;
     }
     if let Some(rolling_friction) = pair.rolling_friction {
-        FRICTION.check(rolling_friction, || path("rolling_friction"))?;
+        within(&limits::FRICTION, rolling_friction, || {
+            path("rolling_friction")
+        })?;
     }
     Ok(())
 }
 
 fn check_liquid(liquid: &Liquid) -> Checked {
-    SURFACE_TENSION.check(liquid.surface_tension, || {
+    within(&limits::SURFACE_TENSION, liquid.surface_tension, || {
         "liquid.surface_tension".to_owned()
     })?;
-    CONTACT_ANGLE.check(liquid.contact_angle, || "liquid.contact_angle".to_owned())?;
-    VISCOSITY.check(liquid.viscosity, || "liquid.viscosity".to_owned())?;
-    LIQUID_VOLUME.check(liquid.volume, || "liquid.volume".to_owned())?;
+    within(&limits::CONTACT_ANGLE, liquid.contact_angle, || {
+        "liquid.contact_angle".to_owned()
+    })?;
+    within(&limits::VISCOSITY, liquid.viscosity, || {
+        "liquid.viscosity".to_owned()
+    })?;
+    within(&limits::LIQUID_VOLUME, liquid.volume, || {
+        "liquid.volume".to_owned()
+    })?;
     let (SmallestGap::OfRadii(gap) | SmallestGap::OfEffectiveRadius(gap)) = liquid.law.viscous_gap;
-    SMALLEST_GAP.check(gap, || "liquid.law.viscous_gap".to_owned())
+    within(&limits::SMALLEST_GAP, gap, || {
+        "liquid.law.viscous_gap".to_owned()
+    })
 }
 
 fn check_law(law: ContactLaw) -> Checked {
@@ -689,13 +636,13 @@ fn check_shares(sum: f64) -> Checked {
 }
 
 fn check_count(count: usize) -> Checked {
-    if (1..=MOST_GRAINS).contains(&count) {
+    if limits::GRAINS.accept(count as f64) {
         return Ok(());
     }
     Err(Problem::new(
         "grains",
         format!("are {count} in number"),
-        format!("between 1 and {MOST_GRAINS} grains, which take about 2 kB of memory each"),
+        limits::GRAINS.expected,
     ))
 }
 
@@ -832,8 +779,8 @@ fn is_beside_column(container: &SceneContainer, x: DVec3) -> bool {
 
 /// No two listed grains overlap by more than a contact does.
 ///
-/// Grains lie in grids of cells, one grid for each power of two of the diameter, so that a few large grains among many
-/// small ones cost no more than equal ones.
+/// Grains lie in grids of cells, one grid for each power of two of the diameter, so that a few
+/// large grains among many small ones cost no more than equal ones.
 fn check_overlaps(grains: &[SceneGrain], bodies: &[SceneBody]) -> Checked {
     let mut grids: BTreeMap<i32, HashMap<[i64; 3], Vec<usize>>> = BTreeMap::new();
     for (index, grain) in grains.iter().enumerate() {

@@ -102,7 +102,7 @@ impl SceneError {
     }
 
     /// `problem` with a value that no file gave.
-    pub(super) fn outside_of_files(origin: &str, problem: Problem) -> Self {
+    pub(crate) fn outside_of_files(origin: &str, problem: Problem) -> Self {
         Self::unreadable(origin, problem.fault.to_string(), &problem.expected)
             .about(problem.path)
             .advise(problem.advice)
@@ -149,7 +149,7 @@ impl fmt::Display for Mistake {
 
 /// A mistake in a value, before it is known where the value stands.
 #[derive(Debug)]
-pub(super) struct Problem {
+pub(crate) struct Problem {
     /// Path of the key.
     pub path: String,
     /// What is wrong.
@@ -162,7 +162,7 @@ pub(super) struct Problem {
 
 /// What is wrong with a key.
 #[derive(Debug)]
-pub(super) enum Fault {
+pub(crate) enum Fault {
     /// It has this value, here in SI units.
     Value(String),
     /// Something else, a phrase of which the key is the subject.
@@ -228,7 +228,7 @@ impl Problem {
 }
 
 /// `a`, `a or b`, `one of a, b, c`, each in code quotes.
-pub(super) fn one_of(names: &[&str]) -> String {
+pub(crate) fn one_of(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.as_slice() {
         [] => "none".to_owned(),
@@ -239,7 +239,7 @@ pub(super) fn one_of(names: &[&str]) -> String {
 }
 
 /// `Did you mean …?` where one of the `known` names is near.
-pub(super) fn suggestion(name: &str, known: &[&str]) -> Option<String> {
+pub(crate) fn suggestion(name: &str, known: &[&str]) -> Option<String> {
     let longest = 1 + name.chars().count() / 3;
     known
         .iter()

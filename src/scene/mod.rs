@@ -15,18 +15,18 @@ mod lattice;
 mod mixture;
 mod outline;
 mod packing;
-mod set;
 mod shape;
 mod syntax;
 
 pub use built_in::{BuiltIn, built_in};
 pub use container::{SceneContainer, ScenePlane, SceneTube};
 pub use error::SceneError;
+pub(crate) use error::{Problem, one_of, suggestion};
+pub(crate) use file::count_of;
 pub use grains::{SceneCellSpecies, SceneCells, SceneGrain, SceneGrains, SceneSpecies};
 pub use lattice::Lattice;
 pub use mixture::{SizeClass, size_classes, species_counts};
 pub use packing::{HeldCells, PackingError, StoredCells};
-pub use set::seconds;
 pub use shape::{SceneBody, SceneShape};
 
 use crate::physics::{ContactLaw, Liquid};
@@ -264,6 +264,20 @@ impl Scene {
         match &self.grains {
             SceneGrains::List(list) => list.iter().any(|grain| grain.material == name),
             _ => self.species().iter().any(|species| species.1 == name),
+        }
+    }
+
+    /// Whether walls are made of the material called `name`.
+    pub fn has_walls_of(&self, name: &str) -> bool {
+        match &self.container {
+            SceneContainer::Nothing => false,
+            SceneContainer::Drum { material, .. } | SceneContainer::Box { material, .. } => {
+                material == name
+            }
+            SceneContainer::Column { material, tube, .. } => {
+                material == name || tube.as_ref().is_some_and(|tube| tube.material == name)
+            }
+            SceneContainer::Planes(planes) => planes.iter().any(|plane| plane.material == name),
         }
     }
 

@@ -1,5 +1,6 @@
 //! What a sweep varies, and the cases that it consists of.
 
+use crate::parameters::Parameter;
 use crate::run::{BedStore, ScriptedCommand};
 use crate::runner::{RunnerError, apply_setting};
 use crate::scene::Scene;
@@ -140,16 +141,10 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
     })
 }
 
-/// Whether a setting says nothing about a dry scene: a sweep from dry to wet sets it where it has a meaning.
+/// Whether a setting says nothing about a dry scene: a sweep from dry to wet sets it where it has a
+/// meaning.
 fn is_for_wet_cases(setting: &str) -> bool {
-    [
-        "bridge-law=",
-        "viscosity=",
-        "surface-tension=",
-        "contact-angle=",
-        "liquid-volume=",
-        "wet-friction.",
-    ]
-    .iter()
-    .any(|key| setting.starts_with(key))
+    let key = setting.split_once('=').map_or(setting, |(key, _)| key);
+    let mut known = Parameter::of_key(key).into_iter();
+    known.any(|parameter| parameter.row().is_of_liquid)
 }

@@ -4,9 +4,10 @@
 //! In: requests in the order in which they were made. Out: the simulation, the dock and the view
 //! changed; orders for the screenshot job. What would lose work is asked about first.
 
+use crate::parameters::{Parameter, Value};
 use crate::scene::Scene;
 use crate::simulation::{
-    Command, Half, LabCommand, Options, Parameter, RunRecord, SavedFile, ScriptedCommand, Session,
+    Command, Half, LabCommand, Options, RunRecord, SavedFile, ScriptedCommand, Session,
     SessionError, Simulation,
 };
 use crate::ui::dialogs::path_dialog::Purpose;
@@ -127,7 +128,7 @@ fn fulfil(
 }
 
 /// Sets a value in one of two runs side by side.
-fn set_in(simulation: &mut Simulation, half: Half, parameter: Parameter, value: f64) {
+fn set_in(simulation: &mut Simulation, half: Half, parameter: Parameter, value: Value) {
     simulation.send(LabCommand::SetIn {
         half,
         parameter,
@@ -147,7 +148,7 @@ fn save(simulation: Option<&mut Simulation>, dock: &mut Dock) {
 fn compare(
     simulation: &mut Simulation,
     parameter: Parameter,
-    value: f64,
+    value: Value,
     dock: &mut Dock,
     view: &mut ViewSettings,
 ) {

@@ -1,8 +1,9 @@
 //! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push
 //! requests, and one function ([`super::dispatch`]) fulfils them.
 
+use crate::parameters::{Parameter, Value};
 use crate::scene::Scene;
-use crate::simulation::{Command, Half, Parameter};
+use crate::simulation::{Command, Half};
 use crate::ui::plot_export::Export;
 use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::view::CameraRequest;
@@ -17,9 +18,9 @@ pub enum Request {
     /// Show the panel where two values are compared: of this parameter, where one is given.
     Compare(Option<Parameter>),
     /// Begin a run beside the present one, with another value of a parameter.
-    StartComparison(Parameter, f64),
+    StartComparison(Parameter, Value),
     /// Another value of a parameter in one of two runs.
-    SetIn(Half, Parameter, f64),
+    SetIn(Half, Parameter, Value),
     /// Go on with one of two runs, and keep the other as a branch of it.
     EndComparison(Half),
     /// Draw the trail of the selected grain, or no longer.

@@ -3,8 +3,9 @@
 //! In: what the command line asked for. Out: plain data for the app, and its errors with their exit
 //! codes.
 
+use crate::parameters::{Parameter, Value};
 use crate::scene::Scene;
-use crate::simulation::{Options, Parameter, Session, Simulation};
+use crate::simulation::{Options, Session, Simulation};
 use crate::window::environment::Missing;
 use bevy::math::UVec2;
 use std::path::PathBuf;
@@ -19,7 +20,7 @@ pub struct WindowJob {
     /// How it is run.
     pub options: Options,
     /// A live parameter and its value [SI unit] in a second run beside the first.
-    pub compared: Option<(Parameter, f64)>,
+    pub compared: Option<(Parameter, Value)>,
     /// A picture to take before the program ends by itself; without one a person ends it.
     pub picture: Option<PictureJob>,
 }

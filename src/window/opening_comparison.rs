@@ -3,7 +3,8 @@
 //! In: a live parameter and its value, from the command line. Out: both runs side by side as soon
 //! as the first one stands, or the reason why not.
 
-use crate::simulation::{LabCommand, Parameter, Simulation};
+use crate::parameters::{Parameter, Value};
+use crate::simulation::{LabCommand, Simulation};
 use crate::ui::Dock;
 use bevy::prelude::*;
 
@@ -11,7 +12,7 @@ use bevy::prelude::*;
 #[derive(Resource)]
 pub(super) struct OpeningComparison {
     /// What to begin with; none once it has begun.
-    pub(super) wanted: Option<(Parameter, f64)>,
+    pub(super) wanted: Option<(Parameter, Value)>,
     /// Why there is none.
     pub(super) refused: Option<String>,
 }

@@ -63,7 +63,7 @@ fn carry_out(simulation: &mut Lab, command: impl Into<LabCommand>) {
 fn compare(parameter: &Parameter, value: f64) -> LabCommand {
     LabCommand::Compare {
         parameter: parameter.clone(),
-        value,
+        value: value.into(),
     }
 }
 
@@ -72,12 +72,14 @@ fn set_right(parameter: &Parameter, value: f64) -> LabCommand {
     LabCommand::SetIn {
         half: Half::Right,
         parameter: parameter.clone(),
-        value,
+        value: value.into(),
     }
 }
 
 fn start(simulation: &mut Lab, parameter: &Parameter, value: f64) {
-    simulation.check_comparison(parameter, value).unwrap();
+    simulation
+        .check_comparison(parameter, value.into())
+        .unwrap();
     simulation.send(compare(parameter, value));
     until(simulation, |s| {
         s.comparison().is_some() && *s.status() == Status::Paused
@@ -413,14 +415,18 @@ fn what_a_pair_cannot_do_is_refused_in_words() {
     let lab = wet_lab();
     let mut simulation = opened(&lab, DriverKind::Inline);
     let viscosity = Parameter::Viscosity;
-    let refused = simulation.check_comparison(&viscosity, 1e9).unwrap_err();
+    let refused = simulation
+        .check_comparison(&viscosity, 1e9.into())
+        .unwrap_err();
     assert!(refused.contains("viscosity"), "{refused}");
     let before = simulation.warnings().len();
     carry_out(&mut simulation, compare(&viscosity, 1e9));
     assert_eq!(simulation.warnings()[before], refused);
     assert!(simulation.comparison().is_none());
     start(&mut simulation, &viscosity, 1.41);
-    let refused = simulation.check_comparison(&viscosity, 0.5).unwrap_err();
+    let refused = simulation
+        .check_comparison(&viscosity, 0.5.into())
+        .unwrap_err();
     carry_out(&mut simulation, compare(&viscosity, 0.5));
     assert_eq!(simulation.warnings()[before + 1], refused);
     carry_out(&mut simulation, Command::Return(0));
@@ -431,7 +437,7 @@ fn what_a_pair_cannot_do_is_refused_in_words() {
         ..Options::window()
     };
     let early = Lab::open(lab.scene.clone(), preparing);
-    assert!(early.check_comparison(&viscosity, 1.41).is_err());
+    assert!(early.check_comparison(&viscosity, 1.41.into()).is_err());
 }
 
 #[test]

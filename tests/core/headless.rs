@@ -492,7 +492,7 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
     };
     let job = |out: &str| Job {
         threads: 1,
-        script: vec![slower(0.0, 0.5), slower(0.3, 0.2)],
+        script: vec![slower(0.0, 0.5.into()), slower(0.3, 0.2.into())],
         beds: crate::run::shared_beds(),
         checkpoints: true,
         ..Job::new("drum", scene.clone(), place.path(out))

@@ -5,6 +5,7 @@ mod comparison;
 #[cfg(feature = "headless")]
 mod headless;
 mod measure;
+mod parameters;
 mod run;
 mod scene;
 mod session;

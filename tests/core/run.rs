@@ -6,7 +6,7 @@ use grainfall::physics::LIQUID_CASES;
 use grainfall::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, TimeStep};
 use grainfall::simulation::{
     BedStore, Command, CommandError, DriverKind, Lab, LabCommand, Options, Parameter, Preparation,
-    Prepared, Run, SAMPLE_INTERVAL, Script, ScriptError, ScriptedCommand, Status,
+    Prepared, Run, SAMPLE_INTERVAL, Script, ScriptError, ScriptedCommand, Status, Value,
 };
 use grainfall::solver::advise;
 use std::sync::Arc;
@@ -37,7 +37,8 @@ fn run_of(scene: &Scene) -> Run {
     prepared(scene, 1, shared_beds()).0
 }
 
-pub fn set(parameter: Parameter, value: f64) -> Command {
+pub fn set(parameter: Parameter, value: impl Into<Value>) -> Command {
+    let value = value.into();
     Command::Set { parameter, value }
 }
 
@@ -132,19 +133,21 @@ fn liquids_changed_while_it_runs_play_again_to_the_bit() {
     scene.liquid = Some(LIQUID_CASES[3].liquid());
     let mut played = run_of(&scene);
     let glycerol = &LIQUID_CASES[6];
+    let as_coded = Parameter::BridgeLaw.row().parse("as-coded").unwrap();
+    let wet_friction = Parameter::WetFriction("glass".into(), "glass".into());
     for (step, parameter, value) in [
-        (300, Parameter::Viscosity, glycerol.viscosity),
-        (400, Parameter::SurfaceTension, glycerol.surface_tension()),
-        (500, Parameter::ContactAngle, 0.2),
-        (600, Parameter::LiquidVolume, 2e-6),
-        (700, Parameter::BridgeLaw, 1.0),
-        (800, Parameter::LiquidVolume, 0.0),
-        (900, Parameter::LiquidVolume, 3e-6),
+        (300, Parameter::Viscosity, glycerol.viscosity.into()),
         (
-            1000,
-            Parameter::WetFriction("glass".into(), "glass".into()),
-            0.05,
+            400,
+            Parameter::SurfaceTension,
+            glycerol.surface_tension().into(),
         ),
+        (500, Parameter::ContactAngle, 0.2.into()),
+        (600, Parameter::LiquidVolume, 2e-6.into()),
+        (700, Parameter::BridgeLaw, as_coded),
+        (800, Parameter::LiquidVolume, 0.0.into()),
+        (900, Parameter::LiquidVolume, 3e-6.into()),
+        (1000, wet_friction, Value::Number(0.05)),
     ] {
         played.advance_to(step).unwrap();
         let mut unchanged = prepared(&scene, 1, shared_beds()).0;
@@ -239,7 +242,8 @@ fn every_parameter_reads_back_what_was_set_and_the_ledger_stays_closed() {
     let mut run = run_of(&scene("two-frictions-drum"));
     run.advance_to(500).unwrap();
     for info in run.parameters().clone().iter() {
-        let value = 0.25 * info.range.start() + 0.75 * info.range.end();
+        let range = info.range();
+        let value = 0.25 * range.start() + 0.75 * range.end();
         let before = EnergyLedger::of(run.world());
         run.apply(set(info.parameter.clone(), value)).unwrap();
         let after = EnergyLedger::of(run.world());
@@ -248,7 +252,7 @@ fn every_parameter_reads_back_what_was_set_and_the_ledger_stays_closed() {
             Parameter::Share(_) => 0.51 / run.world().grains.len() as f64,
             _ => 1e-12 * value.abs(),
         };
-        let found = info.parameter.read(run.world()).unwrap();
+        let found = info.parameter.read(run.world()).unwrap().number();
         assert!(
             (found - value).abs() <= tolerance,
             "{}: {found} for {value}",
@@ -479,6 +483,7 @@ fn value_asked_for_shows_before_it_is_carried_out() {
     assert_eq!(
         simulation
             .value(&Parameter::Share("nobody".into()))
+            .number()
             .to_bits(),
         f64::NAN.to_bits()
     );

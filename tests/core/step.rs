@@ -265,11 +265,11 @@ fn two_runs_side_by_side_keep_one_step_and_one_time() {
     };
     let mut pair = Lab::open(drum(1, TimeStep::Following), options);
     stand(&mut pair);
-    let refused = pair.check_comparison(&Parameter::TimeStep, 1e-6);
+    let refused = pair.check_comparison(&Parameter::TimeStep, 1e-6.into());
     assert!(refused.unwrap_err().contains("same time step"));
     pair.send(LabCommand::Compare {
         parameter: Parameter::Gravity,
-        value: 5.0,
+        value: 5.0.into(),
     });
     stand(&mut pair);
     assert!(pair.comparison().is_some());

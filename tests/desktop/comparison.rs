@@ -22,7 +22,7 @@ use std::time::Duration;
 fn compare(simulation: &mut Simulation) {
     simulation.send(LabCommand::Compare {
         parameter: friction(),
-        value: 0.9,
+        value: 0.9.into(),
     });
     while simulation.comparison().is_none() {
         simulation.tick(Duration::from_millis(16));
@@ -56,7 +56,7 @@ fn two_values_are_chosen_by_name_or_number_and_started() {
     harness.get_by_label("Start side by side").click();
     assert_eq!(
         asked(&mut harness),
-        [Request::StartComparison(friction(), 0.8)]
+        [Request::StartComparison(friction(), 0.8.into())]
     );
     type_number(&mut harness, "value on the right", "0.4");
     harness.get_by_label("Start side by side").click();
@@ -65,7 +65,7 @@ fn two_values_are_chosen_by_name_or_number_and_started() {
     harness.get_by_label("Start side by side").click();
     assert_eq!(
         asked(&mut harness),
-        [Request::StartComparison(friction(), 0.85)]
+        [Request::StartComparison(friction(), 0.85.into())]
     );
     harness
         .get_by_role_and_label(Role::ComboBox, "Parameter to compare")
@@ -92,12 +92,12 @@ fn each_half_has_its_own_row_and_the_comparison_its_ends() {
     type_number(&mut harness, "friction glass – glass, right", "0.7");
     assert_eq!(
         asked(&mut harness),
-        [Request::SetIn(Half::Right, friction(), 0.7)]
+        [Request::SetIn(Half::Right, friction(), 0.7.into())]
     );
     type_number(&mut harness, "friction glass – glass, left", "0.2");
     assert_eq!(
         asked(&mut harness),
-        [Request::SetIn(Half::Left, friction(), 0.2)]
+        [Request::SetIn(Half::Left, friction(), 0.2.into())]
     );
     open_panel(&mut harness);
     harness.get_by_label("Left: friction glass – glass 0.4");
@@ -132,7 +132,7 @@ fn changes_of_either_half_are_listed_and_taken_back_in_both() {
     simulation.send(LabCommand::SetIn {
         half: Half::Right,
         parameter: friction(),
-        value: 0.5,
+        value: 0.5.into(),
     });
     carried_out(&mut simulation, Command::Step(500));
     let mut harness = Window::of(simulation);
@@ -261,7 +261,7 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     let has_two = |s: &Simulation| s.comparison().is_some();
     ask(
         &mut app,
-        Request::StartComparison(Parameter::Gravity, 0.0),
+        Request::StartComparison(Parameter::Gravity, 0.0.into()),
         has_two,
     );
     let start = photographed(&mut app, "twin-start");

@@ -16,6 +16,7 @@ fn command(app: &mut App, command: Command, done: impl Fn(&Simulation) -> bool) 
 
 fn at_gravity(value: f64) -> Command {
     let parameter = Parameter::Gravity;
+    let value = value.into();
     Command::Set { parameter, value }
 }
 
@@ -91,7 +92,7 @@ fn a_lesson_from_play_to_verify() {
 /// Two side by side; a change of both is taken back in both.
 fn side_by_side(app: &mut App, early: u64) {
     let stands = |s: &Simulation| s.comparison().is_some();
-    let compare = Request::StartComparison(Parameter::Gravity, 0.0);
+    let compare = Request::StartComparison(Parameter::Gravity, 0.0.into());
     ask(app, compare, stands);
     command(app, Command::Step(early), |s| s.step() == early);
     look(app, "side by side");

@@ -7,11 +7,11 @@ use bevy_egui::egui::{self, Key, Modifiers, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use grainfall::measure::{Avalanche, GrainQuantity, Measure, Sample, Series};
+use grainfall::parameters::{Parameter, ParameterInfo, Value, Values};
 use grainfall::physics::{LIQUID_CASES, PAPER_VOLUME};
 use grainfall::scene::{Scene, built_in};
 use grainfall::simulation::{
-    BedStore, Command, DisplayUnit, DriverKind, LabCommand, Options, Parameter, ParameterInfo,
-    Simulation, Status,
+    BedStore, Command, DriverKind, LabCommand, Options, Simulation, Status,
 };
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{
@@ -130,7 +130,8 @@ pub fn friction() -> Parameter {
     Parameter::Friction("glass".into(), "glass".into())
 }
 
-pub fn set(parameter: Parameter, value: f64) -> Command {
+pub fn set(parameter: Parameter, value: impl Into<Value>) -> Command {
+    let value = value.into();
     Command::Set { parameter, value }
 }
 
@@ -248,7 +249,8 @@ fn bridge_laws_are_chosen_by_name() {
     harness.get_by_label("as coded").click();
     harness.run_steps(2);
     let asked = commands(&harness.state().asked);
-    assert_eq!(asked, [set(Parameter::BridgeLaw, 1.0)]);
+    let as_coded = Parameter::BridgeLaw.row().parse("as-coded").unwrap();
+    assert_eq!(asked, [set(Parameter::BridgeLaw, as_coded)]);
 }
 
 #[test]
@@ -298,7 +300,7 @@ fn a_drum_speed_typed_in_rpm_is_set_in_radians_per_second() {
     };
     // 3 rpm = π/10 rad/s; the two conversions round once each.
     assert!(
-        (value - std::f64::consts::PI / 10.0).abs() < 1e-15,
+        (value.number() - std::f64::consts::PI / 10.0).abs() < 1e-15,
         "{value}"
     );
 }
@@ -383,7 +385,7 @@ fn dragging_a_slider_sets_at_most_one_value_a_frame_and_none_while_it_rests() {
             harness.state().asked.is_empty(),
             "a resting pointer changes nothing"
         );
-        values.push(value);
+        values.push(value.number());
     }
     assert!(values.is_sorted() && values[0] < values[2], "{values:?}");
 }
@@ -452,20 +454,21 @@ fn a_parameter_is_shown_in_the_unit_people_think_in() {
     let info = ParameterInfo {
         parameter: Parameter::Share("red".into()),
         label: "share red".into(),
-        symbol: "P",
-        unit: "1",
-        range: 0.0..=1.0,
-        default: 0.3,
-        description: "Share of the grains by number.",
-        display: DisplayUnit {
-            name: "%",
-            factor: 100.0,
-        },
+        values: Values::Range(0.0..=1.0),
+        default: 0.3.into(),
+        acts: true,
     };
     let scene = Scene::open("two-frictions-drum").unwrap();
     let mut harness = Harness::new_ui_state(
         move |ui, asked: &mut Vec<Command>| {
-            asked.extend(parameter_ui(ui, &info, 0.3, Detail::Lab, &scene, |_| ()));
+            asked.extend(parameter_ui(
+                ui,
+                &info,
+                0.3.into(),
+                Detail::Lab,
+                &scene,
+                |_| (),
+            ));
         },
         Vec::new(),
     );
@@ -664,7 +667,7 @@ fn arrow_keys_step_the_control_that_has_the_focus() {
         panic!("{asked:?}");
     };
     assert!(
-        *parameter == friction() && (0.4..0.45).contains(value) && *value > 0.4,
+        *parameter == friction() && (0.4..0.45).contains(&value.number()) && value.number() > 0.4,
         "{value}"
     );
     harness.state_mut().asked.clear();

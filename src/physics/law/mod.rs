@@ -29,7 +29,7 @@ pub use spring_dashpot::SpringDashpot;
 pub use step_limit::{Circumstances, SmallestGrain, StepLimit};
 
 use crate::lanes::{Lanes, One, Row};
-use crate::physics::{MaterialId, Materials};
+use crate::physics::{MaterialId, Materials, limits};
 use serde::{Deserialize, Serialize};
 
 /// How two bodies push each other.
@@ -176,9 +176,6 @@ pub struct LawMistake {
     pub expected: &'static str,
 }
 
-/// Stiffnesses that a linear spring can have [N/m].
-const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e12;
-
 /// The stiffness [N/m] of linear springs that cannot be, if one cannot. Without a tangential spring
 /// there is no friction at rest, which may be wanted.
 fn mistaken_spring(normal: f64, tangential: f64) -> Option<LawMistake> {
@@ -186,12 +183,13 @@ fn mistaken_spring(normal: f64, tangential: f64) -> Option<LawMistake> {
         ("normal_stiffness", normal, false),
         ("tangential_stiffness", tangential, tangential == 0.0),
     ];
-    let is_one = |(_, value, absent): &(&str, f64, bool)| *absent || STIFFNESSES.contains(value);
+    let is_one =
+        |(_, value, absent): &(&str, f64, bool)| *absent || limits::STIFFNESS.accept(*value);
     let (key, value, _) = springs.into_iter().find(|spring| !is_one(spring))?;
     Some(LawMistake {
         key,
         value,
-        expected: "a stiffness between 1e-3 N/m and 1e12 N/m",
+        expected: limits::STIFFNESS.expected,
     })
 }
 

@@ -389,7 +389,7 @@ fn solid_volume(
 }
 
 /// Number of grains of these species that fill `solid_volume` [m³].
-pub(in crate::scene) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
+pub(crate) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
     let grain_volume: f64 = species
         .iter()
         .map(|s| s.share * 4.0 / 3.0 * PI * s.radius.powi(3))

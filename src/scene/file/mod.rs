@@ -10,7 +10,7 @@ mod grains;
 mod keys;
 mod liquid;
 
-pub(super) use grains::count_of;
+pub(crate) use grains::count_of;
 
 use super::error::Problem;
 use super::{PairOverride, Scene, SceneMaterial, TimeStep};

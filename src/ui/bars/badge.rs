@@ -172,7 +172,7 @@ fn stable_step_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Requ
     let Command::Set { value, .. } = command else {
         return;
     };
-    let text = format!("Go on with steps of {}", number::short_time(value));
+    let text = format!("Go on with steps of {}", number::short_time(value.number()));
     let enabled = allows(simulation.status(), &command);
     let button = ui.add_enabled(enabled, egui::Button::new(text));
     let hint = "From this moment on; recorded as any other change, and taken back by an undo";
@@ -189,7 +189,7 @@ pub fn stable_step(simulation: &Simulation) -> Option<Command> {
     let largest = advices.map(TimeStepAdvice::largest);
     exceeded.then_some(Command::Set {
         parameter: Parameter::TimeStep,
-        value: largest.into_iter().fold(f64::INFINITY, f64::min),
+        value: largest.into_iter().fold(f64::INFINITY, f64::min).into(),
     })
 }
 

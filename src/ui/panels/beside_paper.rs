@@ -66,7 +66,7 @@ impl Panel for BesidePaper {
         _out: &mut Vec<Request>,
     ) {
         let run = simulation.half(view.focus);
-        let viscosity = run.value(&Parameter::Viscosity);
+        let viscosity = run.value(&Parameter::Viscosity).number();
         let Some(world) = run.world() else {
             ui.weak("The laws appear when the bed stands.");
             return;

@@ -3,7 +3,8 @@
 //! In: the simulation. Out: requests to show a moment, to take up or to forget a run, to save the
 //! list.
 
-use crate::simulation::{Branch, Command, Half, Parameter, RunView, Simulation};
+use crate::parameters::{Parameter, Value};
+use crate::simulation::{Branch, Command, Half, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::plots::run_curves::line_sample_ui;
 use crate::ui::request::Request;
@@ -119,13 +120,13 @@ fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<Cha
     let commands = simulation.commands();
     let changes = simulation.changes();
     let ends = changes.iter().skip(1).copied().chain([commands.len()]);
-    let mut values: BTreeMap<&Parameter, f64> = BTreeMap::new();
+    let mut values: BTreeMap<&Parameter, Value> = BTreeMap::new();
     let mut rows = Vec::new();
     for (first, end) in changes.iter().copied().zip(ends) {
         let Some(change) = commands.get(first..end) else {
             break;
         };
-        let mut set: BTreeMap<&Parameter, (Option<f64>, f64)> = BTreeMap::new();
+        let mut set: BTreeMap<&Parameter, (Option<Value>, Value)> = BTreeMap::new();
         for stamped in change {
             if let Command::Set { parameter, value } = &stamped.command
                 && listed(parameter)
@@ -150,7 +151,7 @@ fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<Cha
 }
 
 /// `friction glass – glass 0.4 → 0.2`; from the scene's value where it had not been changed before.
-fn in_words(parameter: &Parameter, from: Option<f64>, to: f64, simulation: &RunView) -> String {
+fn in_words(parameter: &Parameter, from: Option<Value>, to: Value, simulation: &RunView) -> String {
     let info = simulation.info_of(parameter);
     let from = from.or(info.map(|info| info.default));
     let from = from.map_or(String::new(), |from| bare_value(parameter, from));

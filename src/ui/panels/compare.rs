@@ -3,13 +3,13 @@
 //!
 //! In: the simulation, with one run or two. Out: requests to begin a comparison and to end it.
 
-use crate::physics::LIQUID_CASES;
-use crate::simulation::{Half, Parameter, ParameterInfo, Simulation};
-use crate::ui::detail::{is_basic, landmarks};
+use crate::parameters::{Kind, Parameter, ParameterInfo, Preset, Value};
+use crate::simulation::{Half, Simulation};
+use crate::ui::detail::is_basic;
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
 use crate::ui::widgets::button::button_unless_ui;
-use crate::ui::widgets::value_row::{Landmark, Value, value_ui};
+use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::number;
 use crate::ui::words::run_names::{half_title, value_in_words};
 use crate::view::ViewSettings;
@@ -18,8 +18,8 @@ use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 /// The panel.
 #[derive(Debug, Default, PartialEq)]
 pub struct Compare {
-    /// The parameter that was chosen, and its other value [SI unit].
-    chosen: Option<(Parameter, f64)>,
+    /// The parameter that was chosen, and its other value.
+    chosen: Option<(Parameter, Value)>,
     /// The parameter that is to be chosen next.
     wanted: Option<Parameter>,
 }
@@ -104,14 +104,9 @@ fn why_not(simulation: &Simulation, is_same: bool) -> Option<&'static str> {
 /// The parameters, those with the most visible effect first.
 fn ordered(simulation: &Simulation) -> Vec<&ParameterInfo> {
     let scene = simulation.scene();
-    let mut list: Vec<_> = simulation.parameters().iter().collect();
-    list.sort_by_key(|info| match &info.parameter {
-        Parameter::Viscosity => 0,
-        Parameter::Share(_) if is_basic(info, scene) => 1,
-        Parameter::Friction(..) | Parameter::WetFriction(..) if is_basic(info, scene) => 2,
-        _ if is_basic(info, scene) => 3,
-        _ => 4,
-    });
+    let offered = simulation.parameters().iter().filter(|info| info.acts);
+    let mut list: Vec<_> = offered.collect();
+    list.sort_by_key(|info| (!is_basic(info, scene), info.row().rank));
     list
 }
 
@@ -127,7 +122,7 @@ fn choice_ui(ui: &mut egui::Ui, list: &[&ParameterInfo], chosen: &mut Parameter)
         .show_ui(ui, |ui| {
             for info in list {
                 ui.selectable_value(chosen, info.parameter.clone(), label(info))
-                    .on_hover_text(info.description);
+                    .on_hover_text(info.row().description);
             }
         })
         .response;
@@ -136,52 +131,55 @@ fn choice_ui(ui: &mut egui::Ui, list: &[&ParameterInfo], chosen: &mut Parameter)
     *chosen != before
 }
 
-/// The row of the value on the right; the new value, if the person gave one.
-fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: f64) -> Option<f64> {
-    let row = Value {
+/// The row of the other value; what is wanted instead of it, if anything.
+fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: Value) -> Option<Value> {
+    let (own, range) = (info.row(), info.range());
+    let row = ValueRow {
         label: "value on the right",
         name: "Right",
-        symbol: info.symbol,
-        range: info.range.clone(),
-        default: info.default,
-        display: info.display,
-        is_logarithmic: info.parameter == Parameter::Viscosity,
-        is_whole: info.parameter == Parameter::BridgeLaw,
-        landmarks: &named_values(&info.parameter),
+        symbol: own.symbol,
+        default: info.default.number(),
+        display: own.kind.unit().shown,
+        is_logarithmic: own.is_logarithmic(&range),
+        is_whole: !matches!(own.kind, Kind::Number(_)),
+        presets: &named_values(info),
         caption: None,
+        range,
     };
-    let explain = |ui: &mut egui::Ui| drop(ui.label(info.description));
-    value_ui(ui, &row, other, |_| (), explain)
+    let explain = |ui: &mut egui::Ui| drop(ui.label(own.description));
+    let wanted = value_ui(ui, &row, other.number(), |_| (), explain);
+    wanted.map(|wanted| own.value(wanted))
 }
 
-/// Values of `parameter` that have a name.
-fn named_values(parameter: &Parameter) -> Vec<Landmark> {
-    let named = |name, value| Landmark { name, value };
-    match parameter {
-        Parameter::Viscosity => LIQUID_CASES
-            .iter()
-            .map(|case| named(case.name, case.viscosity))
-            .collect(),
-        Parameter::BridgeLaw => vec![named("as printed", 0.0), named("as coded", 1.0)],
-        _ => landmarks(parameter).to_vec(),
-    }
+/// Values of the parameter of `info` that have a name.
+fn named_values(info: &ParameterInfo) -> Vec<Preset> {
+    let choices = info.row().kind.choices().iter().map(|choice| Preset {
+        name: choice.name,
+        value: choice.number,
+    });
+    choices.chain(info.row().presets.iter().copied()).collect()
 }
 
 /// A value far from the present one, so that the two runs look unlike: the farthest named one, else
 /// the farther end.
-fn telling(info: &ParameterInfo, simulation: &Simulation) -> f64 {
-    let present = simulation.value(&info.parameter);
-    let ends = [*info.range.start(), *info.range.end()];
-    let far = |value: &f64| match info.parameter {
-        Parameter::Viscosity => (value / present).ln().abs(),
-        _ => (value - present).abs(),
+fn telling(info: &ParameterInfo, simulation: &Simulation) -> Value {
+    let present = simulation.value(&info.parameter).number();
+    let range = info.range();
+    let is_logarithmic = info.row().is_logarithmic(&range);
+    let far = |value: &f64| {
+        if is_logarithmic {
+            (value / present).ln().abs()
+        } else {
+            (value - present).abs()
+        }
     };
-    let named = named_values(&info.parameter);
-    let values = named.iter().map(|landmark| landmark.value);
-    let inside = values.filter(|value| info.range.contains(value));
+    let named = named_values(info);
+    let values = named.iter().map(|preset| preset.value);
+    let inside = values.filter(|value| range.contains(value));
     let farthest = inside.max_by(|a, b| far(a).total_cmp(&far(b)));
-    let farther = ends.into_iter().max_by(|a, b| far(a).total_cmp(&far(b)));
-    farthest.or(farther).unwrap_or(present)
+    let ends = [*range.start(), *range.end()].into_iter();
+    let farther = ends.max_by(|a, b| far(a).total_cmp(&far(b)));
+    info.row().value(farthest.or(farther).unwrap_or(present))
 }
 
 /// What is compared, and its end.

@@ -1,14 +1,15 @@
-//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out as one command. In the
-//! laboratory also what acts from the next start on.
+//! Live parameters: a slider and a number for each, in the unit people think in; a change goes out
+//! as one command. In the laboratory also what acts from the next start on.
 
+use crate::parameters::{Choice, Kind, Parameter, ParameterInfo, Place, Value, Values};
 use crate::physics::{LIQUID_CASES, PAPER_VOLUME};
-use crate::scene::{Scene, SceneContainer};
-use crate::simulation::{Command, Half, Parameter, ParameterInfo, Simulation};
-use crate::ui::detail::{Detail, is_basic, landmarks};
+use crate::scene::Scene;
+use crate::simulation::{Command, Half, Simulation};
+use crate::ui::detail::{Detail, is_basic};
 use crate::ui::panel::Panel;
 use crate::ui::panels::start_values::StartValues;
 use crate::ui::request::Request;
-use crate::ui::widgets::value_row::{Value, value_ui};
+use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::{number, symbol};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
@@ -51,44 +52,20 @@ impl Group {
         }
     }
 
-    fn of(parameter: &Parameter, scene: &Scene) -> Self {
-        match parameter {
-            Parameter::DrumSpeed => Self::Drum,
-            // The step has no row here: it is no physics.
-            Parameter::Gravity | Parameter::TimeStep => Self::Gravity,
-            Parameter::Share(_) => Self::Mixture,
-            Parameter::Viscosity
-            | Parameter::SurfaceTension
-            | Parameter::ContactAngle
-            | Parameter::LiquidVolume
-            | Parameter::BridgeLaw => Self::Liquid,
-            Parameter::Friction(a, b)
-            | Parameter::WetFriction(a, b)
-            | Parameter::Restitution(a, b)
-            | Parameter::RollingFriction(a, b) => {
-                if scene.has_grains_of(a) && scene.has_grains_of(b) {
-                    Self::GrainGrain
-                } else {
-                    Self::GrainWall
-                }
+    /// That of a live parameter.
+    fn of(parameter: &Parameter, scene: &Scene) -> Option<Self> {
+        let [a, b] = parameter.names();
+        match parameter.row().place {
+            Place::Drum => Some(Self::Drum),
+            Place::Gravity => Some(Self::Gravity),
+            Place::Mixture => Some(Self::Mixture),
+            Place::Liquid => Some(Self::Liquid),
+            Place::Contact if scene.has_grains_of(a) && scene.has_grains_of(b) => {
+                Some(Self::GrainGrain)
             }
+            Place::Contact => Some(Self::GrainWall),
+            Place::Start | Place::Nowhere => None,
         }
-    }
-}
-
-/// Whether walls of `scene` are made of `material`.
-fn is_of_walls(scene: &Scene, material: &str) -> bool {
-    match &scene.container {
-        SceneContainer::Nothing => false,
-        SceneContainer::Drum { material: own, .. } | SceneContainer::Box { material: own, .. } => {
-            own == material
-        }
-        SceneContainer::Column {
-            material: floor,
-            tube,
-            ..
-        } => floor == material || tube.as_ref().is_some_and(|tube| tube.material == material),
-        SceneContainer::Planes(planes) => planes.iter().any(|plane| plane.material == material),
     }
 }
 
@@ -170,11 +147,11 @@ fn group_ui(
     let scene = simulation.scene();
     let shown = |info: &&ParameterInfo| {
         let wanted = detail == Detail::Lab || is_basic(info, scene);
-        wanted && Group::of(&info.parameter, scene) == group
+        wanted && info.acts && Group::of(&info.parameter, scene) == Some(group)
     };
     let mut pair = None;
     for info in simulation.parameters().iter().filter(shown) {
-        let own = pair_of(&info.parameter);
+        let own = info.parameter.pair();
         if pair != Some(own) {
             heading_ui(ui, group, own, scene);
             if group == Group::Liquid {
@@ -220,18 +197,19 @@ fn compare_ui(ui: &mut egui::Ui, info: &ParameterInfo, simulation: &Simulation) 
     button.clicked()
 }
 
-/// The row of one parameter, with what is drawn `beside` its field: what is wanted instead of `value`, if anything.
+/// The row of one parameter, with what is drawn `beside` its field: what is wanted instead of
+/// `value`, if anything.
 fn row_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
-    value: f64,
+    value: Value,
     detail: Detail,
     scene: &Scene,
     beside: impl FnOnce(&mut egui::Ui),
-) -> Option<f64> {
-    let wanted = match info.parameter {
-        Parameter::BridgeLaw => bridge_law_ui(ui, info, value, beside),
-        _ => parameter_ui(ui, info, value, detail, scene, beside),
+) -> Option<Value> {
+    let wanted = match &info.values {
+        Values::Choices(choices) => choice_ui(ui, info, choices, value, scene, beside),
+        Values::Range(_) => parameter_ui(ui, info, value, detail, scene, beside),
     };
     match wanted? {
         Command::Set { value, .. } => Some(value),
@@ -239,26 +217,15 @@ fn row_ui(
     }
 }
 
-/// The two materials that a parameter is about.
-fn pair_of(parameter: &Parameter) -> Option<(&str, &str)> {
-    match parameter {
-        Parameter::Friction(a, b)
-        | Parameter::WetFriction(a, b)
-        | Parameter::Restitution(a, b)
-        | Parameter::RollingFriction(a, b) => Some((a, b)),
-        _ => None,
-    }
-}
-
 /// What stands beside a slider, under a heading that says the rest.
-fn short_name(info: &ParameterInfo) -> String {
-    match &info.parameter {
-        Parameter::Friction(..) if info.label.starts_with("dry") => "Dry friction".into(),
-        Parameter::Friction(..) => "Friction".into(),
-        Parameter::WetFriction(..) => "Wet friction".into(),
-        Parameter::Restitution(..) => "Restitution".into(),
-        Parameter::RollingFriction(..) => "Rolling friction".into(),
-        _ => number::capitalised(&info.label),
+fn short_name(info: &ParameterInfo, scene: &Scene) -> String {
+    let row = info.row();
+    if !row.short_name.is_empty() {
+        row.short_name.to_owned()
+    } else if info.parameter.pair().is_some() {
+        number::capitalised((row.name)(scene))
+    } else {
+        number::capitalised(&info.label)
     }
 }
 
@@ -270,7 +237,7 @@ fn heading_ui(ui: &mut egui::Ui, group: Group, pair: Option<(&str, &str)>, scene
             return;
         };
         let names = ui.weak(format!("{a} – {b}"));
-        if group == Group::GrainGrain && (is_of_walls(scene, a) || is_of_walls(scene, b)) {
+        if group == Group::GrainGrain && (scene.has_walls_of(a) || scene.has_walls_of(b)) {
             names.on_hover_text("Walls are made of it too: these values hold for them as well.");
         }
     });
@@ -278,8 +245,11 @@ fn heading_ui(ui: &mut egui::Ui, group: Group, pair: Option<(&str, &str)>, scene
 
 /// The paper's liquids, water to glycerol, and none: each sets what makes it that liquid.
 fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
-    let set = |parameter, value| Request::Command(Command::Set { parameter, value });
-    let volume = simulation.value(&Parameter::LiquidVolume);
+    let set = |parameter, value: f64| {
+        let value = value.into();
+        Request::Command(Command::Set { parameter, value })
+    };
+    let volume = simulation.value(&Parameter::LiquidVolume).number();
     let mut wanted = Vec::new();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -311,64 +281,69 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
     wanted
 }
 
-/// The choice between the two bridge laws; the command that a change asks for.
-fn bridge_law_ui(
+/// The choice between the values of `info`; the command that a change asks for.
+fn choice_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
-    value: f64,
+    choices: &'static [Choice],
+    value: Value,
+    scene: &Scene,
     beside: impl FnOnce(&mut egui::Ui),
 ) -> Option<Command> {
-    let mut chosen = value;
+    let (mut chosen, description) = (value, info.row().description);
     ui.horizontal(|ui| {
-        ui.label("Bridges").on_hover_text(info.description);
-        for (law, name) in [(0.0, "as printed"), (1.0, "as coded")] {
-            ui.selectable_value(&mut chosen, law, name)
-                .on_hover_text(info.description);
+        ui.label(short_name(info, scene)).on_hover_text(description);
+        for choice in choices {
+            ui.selectable_value(&mut chosen, choice.into(), choice.name)
+                .on_hover_text(description);
         }
         beside(ui);
     });
     (chosen != value).then(|| set(info, chosen))
 }
 
-/// The row of one parameter of `scene` whose present value is `value` (SI), with what is drawn `beside` its field; the
-/// command that a change asks for.
+/// The row of one parameter of `scene` whose present value is `value`, with what is drawn `beside`
+/// its field; the command that a change asks for.
 pub fn parameter_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
-    value: f64,
+    value: Value,
     detail: Detail,
     scene: &Scene,
     beside: impl FnOnce(&mut egui::Ui),
 ) -> Option<Command> {
-    let name = short_name(info);
-    let mut row = Value {
+    let own = info.row();
+    let (name, range) = (short_name(info, scene), info.range());
+    let mut row = ValueRow {
         label: &info.label,
         name: &name,
-        symbol: info.symbol,
-        range: info.range.clone(),
-        default: info.default,
-        display: info.display,
-        is_logarithmic: info.parameter == Parameter::Viscosity,
-        is_whole: false,
-        landmarks: &[],
+        symbol: own.symbol,
+        default: info.default.number(),
+        display: own.kind.unit().shown,
+        is_logarithmic: own.is_logarithmic(&range),
+        is_whole: own.kind == Kind::Count,
+        presets: &[],
         caption: None,
+        range,
     };
     let extent = row.extent();
     match detail {
-        Detail::Basics => row.landmarks = landmarks(&info.parameter),
+        // Liquids have buttons of their own.
+        Detail::Basics if info.parameter != Parameter::Viscosity => row.presets = own.presets,
+        Detail::Basics => {}
         Detail::Lab => row.caption = Some(format!("{extent} · acts at once")),
     }
-    let wanted = value_ui(ui, &row, value, beside, |ui| {
-        ui.label(info.description);
-        ui.label(symbol::text(ui, info.parameter.equation(scene)));
+    let wanted = value_ui(ui, &row, value.number(), beside, |ui| {
+        ui.label(own.description);
+        ui.label(symbol::text(ui, (own.equation)(scene)));
         ui.weak(&extent);
         ui.weak("It acts from the next step on.");
         ui.weak(format!("--set {}=… on the command line", info.parameter));
     });
-    wanted.map(|wanted| set(info, wanted))
+    wanted.map(|wanted| set(info, own.value(wanted)))
 }
 
-fn set(info: &ParameterInfo, value: f64) -> Command {
+fn set(info: &ParameterInfo, value: Value) -> Command {
     Command::Set {
         parameter: info.parameter.clone(),
         value,

@@ -1,12 +1,15 @@
-//! What acts from the next start on: sizes, materials, time step, seed; and the button that starts with it.
+//! What acts from the next start on: sizes, materials, time step, seed; and the button that starts
+//! with it.
 //!
-//! In: the simulation's scene, and that scene as it was opened. Out: a request to start afresh with a changed scene.
+//! In: the simulation's scene, and that scene as it was opened. Out: a request to start afresh with
+//! a changed scene.
 
+use crate::parameters::{Kind, ParameterInfo, start_parameters};
 use crate::scene::Scene;
-use crate::simulation::{Simulation, StartInfo, start_parameters};
+use crate::simulation::Simulation;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
-use crate::ui::widgets::value_row::{Value, value_ui};
+use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::number;
 use bevy_egui::egui::{self, RichText};
 
@@ -14,7 +17,7 @@ use bevy_egui::egui::{self, RichText};
 #[derive(Default)]
 pub struct StartValues {
     /// The values there are, once they were asked for.
-    list: Vec<StartInfo>,
+    list: Vec<ParameterInfo>,
     /// The scene with what was changed.
     draft: Option<Scene>,
     /// Why the last change was refused.
@@ -28,11 +31,12 @@ impl StartValues {
             self.list = start_parameters(simulation.original());
         }
         let scene = self.draft.as_ref().unwrap_or(simulation.scene());
-        let changed = |info: &&StartInfo| info.parameter.differs(scene, simulation.original());
+        let changed = |info: &&ParameterInfo| differs(info, scene, simulation.original());
         self.list.iter().filter(changed).count()
     }
 
-    /// Brings back all that the scene had as it was opened; in the run they are from the next start on.
+    /// Brings back all that the scene had as it was opened; in the run they are from the next start
+    /// on.
     pub fn reset(&mut self, simulation: &Simulation) {
         let original = Some((**simulation.original()).clone());
         self.draft = original.filter(|original| original != simulation.scene());
@@ -46,17 +50,17 @@ impl StartValues {
         ui.label(RichText::new("From the next start on").strong());
         for info in &self.list {
             let draft = self.draft.as_ref().unwrap_or(scene);
-            let Some(value) = info.parameter.read(draft) else {
+            let Some(value) = info.parameter.in_effect(draft) else {
                 continue;
             };
-            let is_given = info.parameter.differs(draft, simulation.original());
+            let value = value.number();
+            let is_given = differs(info, draft, simulation.original());
             if let Some(wanted) = row_ui(ui, info, value, is_given) {
                 let mut changed = draft.clone();
-                let outcome = if wanted == info.value {
-                    (info.parameter).restore(simulation.original(), &mut changed)
-                } else {
-                    info.parameter.write(wanted, &mut changed)
-                };
+                let stated = info.parameter.stated(simulation.original());
+                let original = stated.filter(|_| wanted == info.default.number());
+                let wanted = original.unwrap_or(info.row().value(wanted));
+                let outcome = info.parameter.state(wanted, &mut changed);
                 self.refusal = outcome.err().map(|error| error.to_string());
                 if self.refusal.is_none() {
                     self.draft = Some(changed).filter(|changed| changed != scene);
@@ -95,20 +99,29 @@ impl StartValues {
     }
 }
 
-/// The row of a start value, which somebody gave the scene or which it had; what is wanted instead, if anything.
-fn row_ui(ui: &mut egui::Ui, info: &StartInfo, value: f64, is_given: bool) -> Option<f64> {
+/// Whether somebody gave `scene` another value than the `original` has; a time step that follows
+/// from the rest is nobody's.
+fn differs(info: &ParameterInfo, scene: &Scene, original: &Scene) -> bool {
+    info.parameter.stated(scene) != info.parameter.stated(original)
+}
+
+/// The row of a start value, which somebody gave the scene or which it had; what is wanted instead,
+/// if anything.
+fn row_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64, is_given: bool) -> Option<f64> {
     let name = number::capitalised(&info.label);
-    let mut row = Value {
+    let (own, default) = (info.row(), info.default.number());
+    let range = info.range();
+    let mut row = ValueRow {
         label: &info.label,
         name: &name,
-        symbol: info.symbol,
-        range: info.range.clone(),
-        default: if is_given { info.value } else { value },
-        display: info.display,
-        is_logarithmic: *info.range.start() > 0.0 && info.range.end() / info.range.start() > 20.0,
-        is_whole: info.is_whole,
-        landmarks: &[],
+        symbol: own.symbol,
+        default: if is_given { default } else { value },
+        display: own.kind.unit().shown,
+        is_logarithmic: own.is_logarithmic(&range),
+        is_whole: own.kind == Kind::Count,
+        presets: &[],
         caption: None,
+        range,
     };
     let extent = row.extent();
     row.caption = Some(format!("{extent} · acts at the next start"));
@@ -118,7 +131,7 @@ fn row_ui(ui: &mut egui::Ui, info: &StartInfo, value: f64, is_given: bool) -> Op
         value,
         |_| (),
         |ui| {
-            ui.label(info.description);
+            ui.label(own.description);
             ui.weak(&extent);
             ui.weak("It acts when the run is started with it.");
         },

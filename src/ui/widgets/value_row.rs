@@ -1,6 +1,8 @@
-//! A number to type, to drag, to step with the arrow keys, to set to a named value and to take back: one row of a panel.
+//! A number to type, to drag, to step with the arrow keys, to set to a named value and to take
+//! back: one row of a panel.
 
-use crate::simulation::DisplayUnit;
+use crate::parameters::Preset;
+use crate::physics::DisplayUnit;
 use crate::ui::widgets::field;
 use crate::ui::widgets::field::Field;
 use crate::ui::words::{number, symbol};
@@ -13,7 +15,7 @@ const NUMBER_WIDTH: f32 = 96.0;
 const HOLD: f64 = 0.012;
 
 /// What a row needs to know of its number. Values are in SI units.
-pub struct Value<'a> {
+pub struct ValueRow<'a> {
     /// What screen readers call it, unlike any other.
     pub label: &'a str,
     /// What stands beside it.
@@ -31,25 +33,16 @@ pub struct Value<'a> {
     /// Whether it counts something.
     pub is_whole: bool,
     /// Named values.
-    pub landmarks: &'a [Landmark],
+    pub presets: &'a [Preset],
     /// A line below it, if any.
     pub caption: Option<String>,
 }
 
-/// A value with a name.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Landmark {
-    /// What people call it.
-    pub name: &'static str,
-    /// The value in SI units.
-    pub value: f64,
-}
-
-/// Draws the row of a number whose present value is `value`, with what is drawn `beside` its field; what is wanted
-/// instead, if anything. `explain` says under the pointer what it is.
+/// Draws the row of a number whose present value is `value`, with what is drawn `beside` its field;
+/// what is wanted instead, if anything. `explain` says under the pointer what it is.
 pub fn value_ui(
     ui: &mut egui::Ui,
-    row: &Value,
+    row: &ValueRow,
     value: f64,
     beside: impl FnOnce(&mut egui::Ui),
     explain: impl Fn(&mut egui::Ui),
@@ -82,8 +75,8 @@ pub fn value_ui(
         let is_slid = explained(slider).changed();
         let edited = is_slid | explained(field.clone()).changed();
         explained(name);
-        if let Some(landmark) = landmarks_ui(ui, row, value) {
-            wanted = Some(landmark);
+        if let Some(preset) = presets_ui(ui, row, value) {
+            wanted = Some(preset);
         }
         if is_slid || wanted.is_some() {
             field::forget(ui, &field);
@@ -100,7 +93,7 @@ pub fn value_ui(
         .filter(|wanted| *wanted != value && wanted.is_finite())
 }
 
-fn field_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response {
+fn field_ui(ui: &mut egui::Ui, row: &ValueRow, shown: &mut f64) -> egui::Response {
     let range = row.shown_range();
     let width = range.end() - range.start();
     let decimals = if row.is_whole {
@@ -120,7 +113,7 @@ fn field_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response {
     field.ui(ui, shown)
 }
 
-fn slider_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response {
+fn slider_ui(ui: &mut egui::Ui, row: &ValueRow, shown: &mut f64) -> egui::Response {
     ui.spacing_mut().slider_width = ui.available_width();
     ui.spacing_mut().interact_size.y = 18.0;
     let mut slider = egui::Slider::new(shown, row.shown_range())
@@ -136,7 +129,7 @@ fn slider_ui(ui: &mut egui::Ui, row: &Value, shown: &mut f64) -> egui::Response 
     response
 }
 
-fn reset_ui(ui: &mut egui::Ui, row: &Value, away: bool) -> bool {
+fn reset_ui(ui: &mut egui::Ui, row: &ValueRow, away: bool) -> bool {
     let default = number::trimmed(row.default * row.display.factor);
     let button = ui
         .add_enabled(away, egui::Button::new("↺").frame(false))
@@ -148,35 +141,35 @@ fn reset_ui(ui: &mut egui::Ui, row: &Value, away: bool) -> bool {
 }
 
 /// The named values within reach as buttons; the one that was chosen.
-fn landmarks_ui(ui: &mut egui::Ui, row: &Value, value: f64) -> Option<f64> {
-    if row.landmarks.is_empty() {
+fn presets_ui(ui: &mut egui::Ui, row: &ValueRow, value: f64) -> Option<f64> {
+    if row.presets.is_empty() {
         return None;
     }
     let mut chosen = None;
     let within = row
-        .landmarks
+        .presets
         .iter()
-        .filter(|landmark| row.range.contains(&landmark.value));
+        .filter(|preset| row.range.contains(&preset.value));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        for landmark in within {
-            let here = (landmark.value - value).abs() <= 1e-9 * row.span();
-            let text = RichText::new(landmark.name).small();
+        for preset in within {
+            let here = (preset.value - value).abs() <= 1e-9 * row.span();
+            let text = RichText::new(preset.name).small();
             let button = ui.selectable_label(here, text);
-            let shown = number::trimmed(landmark.value * row.display.factor);
+            let shown = number::trimmed(preset.value * row.display.factor);
             let button = button.on_hover_text(format!("{shown}{}", row.suffix()));
-            let label = format!("{}: {}", row.label, landmark.name);
+            let label = format!("{}: {}", row.label, preset.name);
             button
                 .widget_info(|| WidgetInfo::selected(WidgetType::RadioButton, true, here, &label));
             if button.clicked() {
-                chosen = Some(landmark.value);
+                chosen = Some(preset.value);
             }
         }
     });
     chosen
 }
 
-impl Value<'_> {
+impl ValueRow<'_> {
     /// Its range and its default in words: `0 to 1, 0.4 in the scene`.
     pub fn extent(&self) -> String {
         let default = number::trimmed(self.default * self.display.factor);
@@ -205,17 +198,18 @@ impl Value<'_> {
         if self.is_logarithmic {
             return shown;
         }
-        let distance = |landmark: &&Landmark| (landmark.value - self.in_si(shown)).abs();
+        let distance = |preset: &&Preset| (preset.value - self.in_si(shown)).abs();
         let near = self
-            .landmarks
+            .presets
             .iter()
-            .filter(|landmark| distance(landmark) < HOLD * self.span());
+            .filter(|preset| distance(preset) < HOLD * self.span());
         let nearest = near.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or(shown, |landmark| landmark.value * self.display.factor)
+        nearest.map_or(shown, |preset| preset.value * self.display.factor)
     }
 }
 
-/// Digits after the point that show three of `value` in all: a range of powers of ten has small values too.
+/// Digits after the point that show three of `value` in all: a range of powers of ten has small
+/// values too.
 fn significant(value: f64) -> usize {
     match value.abs() {
         0.0 => 0,

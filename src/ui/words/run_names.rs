@@ -2,7 +2,8 @@
 //!
 //! In: the simulation. Out: text for panels, plots and the picture.
 
-use crate::simulation::{Half, Parameter, RunView, Simulation};
+use crate::parameters::{Parameter, Value};
+use crate::simulation::{Half, RunView, Simulation};
 use crate::ui::words::number;
 
 /// What people call `parameter`.
@@ -12,18 +13,19 @@ pub fn parameter_name(parameter: &Parameter, simulation: &RunView) -> String {
 }
 
 /// A value of `parameter` with the unit that people think in.
-pub fn value_in_words(parameter: &Parameter, value: f64) -> String {
-    let unit = parameter.display().name;
+pub fn value_in_words(parameter: &Parameter, value: Value) -> String {
+    let unit = parameter.row().kind.unit().shown.name;
     let space = if unit.is_empty() { "" } else { " " };
     format!("{}{space}{unit}", bare_value(parameter, value))
 }
 
 /// A value of `parameter` in the unit that people think in, without that unit.
-pub fn bare_value(parameter: &Parameter, value: f64) -> String {
-    match (parameter, value) {
-        (Parameter::BridgeLaw, 0.0) => "as printed".into(),
-        (Parameter::BridgeLaw, _) => "as coded".into(),
-        _ => number::trimmed(value * parameter.display().factor),
+pub fn bare_value(parameter: &Parameter, value: Value) -> String {
+    match value {
+        Value::Choice(choice) => choice.name.to_owned(),
+        Value::Number(_) | Value::Count(_) => {
+            number::trimmed(value.number() * parameter.row().kind.unit().shown.factor)
+        }
     }
 }
 

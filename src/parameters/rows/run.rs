@@ -1,0 +1,120 @@
+//! How a run goes: its steps, its length, its chances.
+
+use crate::parameters::Value;
+use crate::parameters::row::{InScene, InWorld, Kind, Place, Row};
+use crate::parameters::value::Choice;
+use crate::physics::{limits, units};
+use crate::scene::TimeStep;
+use crate::solver::advise;
+
+/// How far below the step in effect its slider goes, as a factor.
+const REACH: f64 = 10.0;
+/// Largest seed a field offers.
+const LARGEST_SEED: f64 = 1e6;
+
+/// Leaves the step to the program: at any time, or at the start.
+static AUTOMATIC: [Choice; 2] = [
+    Choice {
+        key: "automatic",
+        name: "automatic",
+        number: 0.0,
+    },
+    Choice {
+        key: "automatic-at-start",
+        name: "automatic at the start",
+        number: -1.0,
+    },
+];
+
+pub static TIME_STEP: Row = Row {
+    key: "time-step",
+    name: |_| "time step",
+    symbol: "Δt",
+    kind: Kind::NumberOr(&units::SHORT_TIME, &AUTOMATIC),
+    expected: "`automatic`, or a time such as `1e-5s` or `10us`",
+    limits: Some(&limits::TIME_STEP),
+    slider: |step, _, _| step / REACH..=step * 2.0,
+    equation: |_| "x(t + Δt) from x(t): velocity Verlet",
+    description: "Simulated time of one step. The scene's own is as long as the stiffest contact allows; a longer one is not \
+                  to be trusted.",
+    in_scene: Some(InScene {
+        read: |scene, _| match scene.time_step {
+            TimeStep::Following => Some(Value::Choice(&AUTOMATIC[0])),
+            TimeStep::Automatic => Some(Value::Choice(&AUTOMATIC[1])),
+            TimeStep::Given(step) => Some(Value::Number(step)),
+        },
+        write: |scene, _, value| {
+            scene.time_step = match value {
+                Value::Choice(choice) if *choice == AUTOMATIC[0] => TimeStep::Following,
+                Value::Choice(_) => TimeStep::Automatic,
+                Value::Number(step) => TimeStep::Given(step),
+                Value::Count(_) => return None,
+            };
+            Some(())
+        },
+    }),
+    in_effect: Some(|scene| advise(scene).time_step.into()),
+    in_world: Some(InWorld {
+        read: |world, _| Some(world.clock.time_step.into()),
+        write: |world, _, _, value| world.clock.set_time_step(value.number()),
+    }),
+    ..super::AT_START
+};
+
+pub static SEED: Row = Row {
+    key: "seed",
+    name: |_| "seed",
+    kind: Kind::Count,
+    slider: |seed, _, _| 0.0..=LARGEST_SEED.max(seed),
+    description: "Another number makes another arrangement of the same grains.",
+    in_scene: Some(InScene {
+        read: |scene, _| Some(scene.seed.into()),
+        write: |scene, _, value| match value {
+            Value::Count(seed) => {
+                scene.seed = seed;
+                Some(())
+            }
+            Value::Number(_) | Value::Choice(_) => None,
+        },
+    }),
+    ..super::AT_START
+};
+
+pub static DURATION: Row = Row {
+    key: "duration",
+    name: |_| "duration",
+    symbol: "t",
+    kind: Kind::Number(&units::TIME),
+    expected: "a time such as `10s`, `250ms` or `2min`",
+    limits: Some(&limits::DURATION),
+    description: "Simulated time of a run without a window.",
+    slider: |_, _, _| limits::DURATION.least..=limits::DURATION.most,
+    place: Place::Nowhere,
+    in_scene: Some(InScene {
+        read: |scene, _| Some(scene.duration.into()),
+        write: |scene, _, value| {
+            scene.duration = value.number();
+            Some(())
+        },
+    }),
+    ..super::AT_START
+};
+
+pub static OUTPUT_INTERVAL: Row = Row {
+    key: "output-interval",
+    name: |_| "output interval",
+    kind: Kind::Number(&units::TIME),
+    expected: "a time such as `0.1s` or `20ms`",
+    limits: Some(&limits::DURATION),
+    description: "Simulated time between two states that a run without a window writes.",
+    slider: |_, _, _| limits::DURATION.least..=limits::DURATION.most,
+    place: Place::Nowhere,
+    in_scene: Some(InScene {
+        read: |scene, _| Some(scene.output_interval.into()),
+        write: |scene, _, value| {
+            scene.output_interval = value.number();
+            Some(())
+        },
+    }),
+    ..super::AT_START
+};
