@@ -26,7 +26,7 @@ const SCALES: RangeInclusive<f32> = 0.2..=5.0;
 #[derive(Debug, Default)]
 pub struct UserMemory {
     file: Option<PathBuf>,
-    kept: Kept,
+    kept: Remembered,
     /// Whether nobody has asked yet how everything looked the last time.
     is_new: bool,
 }
@@ -52,7 +52,7 @@ impl Default for Look {
 
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-struct Kept {
+struct Remembered {
     recent: Vec<String>,
     lab: bool,
     look: Look,
@@ -71,7 +71,7 @@ impl UserMemory {
     pub fn at(path: PathBuf) -> Self {
         let kept = read(&path).unwrap_or_else(|reason| {
             warn!("{} is not read: {reason}", path.display());
-            Kept::default()
+            Remembered::default()
         });
         Self {
             kept,
@@ -168,10 +168,10 @@ impl UserMemory {
 ///
 /// # Errors
 /// Where it cannot be read or holds something else.
-fn read(path: &Path) -> io::Result<Kept> {
+fn read(path: &Path) -> io::Result<Remembered> {
     match fs::read_to_string(path) {
         Ok(text) => serde_json::from_str(&text).map_err(io::Error::other),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Kept::default()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Remembered::default()),
         Err(error) => Err(error),
     }
 }
@@ -210,6 +210,6 @@ mod tests {
         fs::write(&path, "{\"look\": {\"scale\": 0.0}}").unwrap();
         assert_eq!(UserMemory::at(path.clone()).look(), Look::default());
         fs::write(&path, "{\"recent\": 3").unwrap();
-        assert_eq!(UserMemory::at(path).kept, Kept::default());
+        assert_eq!(UserMemory::at(path).kept, Remembered::default());
     }
 }

@@ -184,13 +184,13 @@ fn spawn(
 }
 
 /// What decides the links beside the world.
-type Choice = (bool, bool, bool, Option<Cut>);
+type LinkChoice = (bool, bool, bool, Option<Cut>);
 
 /// Redraws the links when the worlds shown or what is to be seen of them have changed.
 fn update(
     shown: Res<ShownWorlds>,
     mut settings: ResMut<ViewSettings>,
-    mut last: Local<Option<Choice>>,
+    mut last: Local<Option<LinkChoice>>,
     mut halves: Query<(
         &Half,
         &mut Links,

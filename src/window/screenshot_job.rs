@@ -11,7 +11,7 @@
 //!
 //! In: orders of a person, or a [`PictureJob`] of the command line. Out: files; a notice for the
 //! person, the end of the app for the command line. Which states are due and what becomes of a
-//! picture is the [`Subject`]'s business.
+//! picture is the [`ScreenshotSubject`]'s business.
 
 use crate::simulation::{Simulation, Status};
 use crate::ui::{Dock, FilmState, ScreenshotOrder, ScreenshotOrders, said};
@@ -19,7 +19,7 @@ use crate::view::{GrainBuffer, Meshing, ViewSettings};
 use crate::window::canvas::{Canvas, screenshot};
 use crate::window::job::{PictureJob, WindowError};
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
-use crate::window::screenshot_subject::{FilmReel, Following, SinglePicture, Subject};
+use crate::window::screenshot_subject::{FilmReel, Following, ScreenshotSubject, SinglePicture};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
@@ -46,7 +46,7 @@ impl ScreenshotJobs {
     /// `failure`.
     pub(super) fn add_for_command_line(&mut self, picture: &PictureJob, failure: Failure) {
         let subject = SinglePicture::at(picture.path.clone(), picture.at);
-        let mut job = ScreenshotJob::of(Subject::Picture(subject));
+        let mut job = ScreenshotJob::of(ScreenshotSubject::Picture(subject));
         job.ends_app = Some(failure);
         self.0.push(job);
     }
@@ -54,8 +54,8 @@ impl ScreenshotJobs {
     /// The film that is being recorded or written.
     fn film(&mut self) -> Option<(&mut FilmReel, &mut JobStage)> {
         self.0.iter_mut().find_map(|job| match &mut job.subject {
-            Subject::Film(reel) => Some((reel, &mut job.stage)),
-            Subject::Picture(_) => None,
+            ScreenshotSubject::Film(reel) => Some((reel, &mut job.stage)),
+            ScreenshotSubject::Picture(_) => None,
         })
     }
 }
@@ -82,7 +82,7 @@ type Inbox = Arc<Mutex<Option<Image>>>;
 
 /// What is to be taken, and how far it has come.
 struct ScreenshotJob {
-    subject: Subject,
+    subject: ScreenshotSubject,
     stage: JobStage,
     inbox: Inbox,
     /// The app ends with it, for the command line.
@@ -201,14 +201,16 @@ impl ScreenshotJobs {
     fn obey(&mut self, order: ScreenshotOrder, simulation: &mut Simulation, studio: &mut Studio) {
         match order {
             ScreenshotOrder::Picture(path) => {
-                let subject = Subject::Picture(SinglePicture::now(path));
+                let subject = ScreenshotSubject::Picture(SinglePicture::now(path));
                 self.0.push(ScreenshotJob::of(subject));
             }
             ScreenshotOrder::Film(_) if self.film().is_some() => {
                 studio.say("A film is being recorded already".to_owned());
             }
             ScreenshotOrder::Film(path) => match FilmReel::begin(path, simulation) {
-                Ok(reel) => self.0.push(ScreenshotJob::of(Subject::Film(reel))),
+                Ok(reel) => self
+                    .0
+                    .push(ScreenshotJob::of(ScreenshotSubject::Film(reel))),
                 Err(reason) => studio.say(format!("No film is recorded: {reason}")),
             },
             ScreenshotOrder::EndFilm | ScreenshotOrder::CancelFilm => {
@@ -236,7 +238,7 @@ impl ScreenshotJobs {
 }
 
 impl ScreenshotJob {
-    fn of(subject: Subject) -> Self {
+    fn of(subject: ScreenshotSubject) -> Self {
         Self {
             subject,
             stage: JobStage::Waiting,
@@ -319,8 +321,8 @@ impl ScreenshotJob {
             }
             (None, outcome) => {
                 let what = match self.subject {
-                    Subject::Picture(_) => "The picture",
-                    Subject::Film(_) => "The film",
+                    ScreenshotSubject::Picture(_) => "The picture",
+                    ScreenshotSubject::Film(_) => "The film",
                 };
                 let text = said(what, path, outcome);
                 studio.say(text);

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 const UNTIL_DRAWN: u32 = 2;
 
 /// What screenshots are taken of.
-pub(super) enum Subject {
+pub(super) enum ScreenshotSubject {
     /// The whole window, once.
     Picture(SinglePicture),
     /// The part of it that panels leave free, at regular simulated times.
@@ -61,7 +61,7 @@ pub(super) enum Following {
     End,
 }
 
-impl Subject {
+impl ScreenshotSubject {
     /// Whether the state that is to be drawn has come. `awaits_pair`: a second run beside the first
     /// is still to begin.
     pub(super) fn has_come(&mut self, simulation: &mut Simulation, awaits_pair: bool) -> bool {

@@ -1,9 +1,9 @@
 //! Two runs side by side: the panel by its accessible labels, and both halves of the picture in the
 //! app as a whole.
 
-use crate::panels::{Window, friction, prepared, sample, set, standing, type_number};
 use crate::timeline::carried_out;
 use crate::view::{Photograph, SIZE, laboratory, photographed, studio};
+use crate::window_of_panels::{Window, friction, prepared, sample, set, standing, type_number};
 use bevy::math::{Vec2, Vec3};
 use bevy::prelude::*;
 use bevy_egui::egui::accesskit::Role;

@@ -9,3 +9,4 @@ mod session;
 mod timeline;
 mod view;
 mod window;
+mod window_of_panels;

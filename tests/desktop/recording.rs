@@ -1,8 +1,8 @@
 //! Claims about films: every picture of one stands at its simulated time, and a film is whole or
 //! not there.
 
-use crate::panels::standing;
 use crate::view::{laboratory, studio};
+use crate::window_of_panels::standing;
 use bevy::math::UVec2;
 use bevy::prelude::*;
 use grainfall::simulation::{Command, Simulation};

@@ -1,7 +1,7 @@
 //! Claims about saving, leaving and opening in the app as a whole: requests go in as panels make
 //! them, and nothing is drawn.
 
-use crate::panels::{friction, prepared, set, standing};
+use crate::window_of_panels::{friction, prepared, set, standing};
 use bevy::MinimalPlugins;
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};

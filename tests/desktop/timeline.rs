@@ -1,7 +1,7 @@
 //! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and
 //! without a GPU.
 
-use crate::panels::{Window, commands, friction, prepared, ready, sample, set, standing};
+use crate::window_of_panels::{Window, commands, friction, prepared, ready, sample, set, standing};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;

@@ -4,7 +4,7 @@
 //! They need a Vulkan driver, a software one will do. Where there is none they say that they did
 //! not run, or fail if `GRAINFALL_REQUIRE_VULKAN` is set.
 
-use crate::panels::standing;
+use crate::window_of_panels::standing;
 use bevy::app::Plugins;
 use bevy::ecs::message::Messages;
 use bevy::math::{UVec2, Vec2, Vec3};

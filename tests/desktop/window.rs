@@ -1,9 +1,9 @@
 //! Claims about the program as a whole: it draws itself without a display, and says why where it
 //! cannot.
 
-use crate::panels::ready;
 use crate::timeline::carried_out;
 use crate::view::studio;
+use crate::window_of_panels::ready;
 use bevy::math::UVec2;
 use grainfall::scene::Scene;
 use grainfall::simulation::{Command, DriverKind, Options, Simulation};

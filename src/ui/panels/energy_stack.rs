@@ -11,7 +11,7 @@ use crate::ui::plots::axes::{fitting_plot, tick};
 use crate::ui::plots::time_plot::moment_ui;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
-use crate::ui::widgets::value_table::{Row, table_ui};
+use crate::ui::widgets::value_table::{TableRow, table_ui};
 use crate::ui::words::number;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Color32, RichText, Stroke, WidgetInfo, WidgetType};
@@ -191,7 +191,7 @@ fn numbers_ui(ui: &mut egui::Ui, run: &RunView) {
         });
     }
     let residual = sample.value(Measure::EnergyResidual);
-    let row = |measure: Measure, value: f64| Row {
+    let row = |measure: Measure, value: f64| TableRow {
         name: number::title(measure),
         value: number::with_prefix(value, "J"),
         hint: measure.quantity().explanation(),

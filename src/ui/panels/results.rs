@@ -6,7 +6,7 @@ use crate::ui::panel::{Panel, is_column};
 use crate::ui::panels::averages::Averages;
 use crate::ui::request::Request;
 use crate::ui::widgets::field::{Field, slip_ui};
-use crate::ui::widgets::value_table::{Row, table_ui};
+use crate::ui::widgets::value_table::{TableRow, table_ui};
 use crate::ui::words::number;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
@@ -149,7 +149,7 @@ impl Results {
 fn summary_ui(ui: &mut egui::Ui, summary: &Summary, keys: &[ResultKey]) {
     table_ui(
         ui,
-        keys.iter().map(|&key| Row {
+        keys.iter().map(|&key| TableRow {
             name: key.label(),
             value: summary.text(key),
             hint: summary
@@ -166,7 +166,7 @@ fn latest_ui(ui: &mut egui::Ui, sample: &Sample, applies: impl Fn(Measure) -> bo
         LATEST
             .into_iter()
             .filter(|m| applies(*m))
-            .map(|measure| Row {
+            .map(|measure| TableRow {
                 name: number::title(measure),
                 value: measure.quantity().text(sample.value(measure)),
                 hint: measure.quantity().explanation(),
@@ -184,14 +184,14 @@ fn energy_ui(ui: &mut egui::Ui, sample: &Sample, applies: impl Fn(Measure) -> bo
     let (prefix, factor) = number::prefix_for(largest);
     ui.label(RichText::new(format!("Energy since the start [{prefix}J]")).strong());
     let in_prefix = |measure| number::fixed(sample.value(measure) * factor, 3);
-    let terms = energies.map(|&(measure, role)| Row {
+    let terms = energies.map(|&(measure, role)| TableRow {
         name: format!("{} ({role})", number::title(measure)),
         value: in_prefix(measure),
         hint: measure.quantity().explanation(),
     });
     let residual = sample.value(Measure::EnergyResidual);
     let share = number::fixed(100.0 * residual.abs() / largest, 3);
-    let balance = Row {
+    let balance = TableRow {
         name: number::title(Measure::EnergyResidual),
         value: format!("{} · {share} %", in_prefix(Measure::EnergyResidual)),
         hint: format!(

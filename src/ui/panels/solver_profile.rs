@@ -5,7 +5,7 @@ use crate::solver::{Profile, Stage, TimeStepAdvice};
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
-use crate::ui::widgets::value_table::{Row, table_ui};
+use crate::ui::widgets::value_table::{TableRow, table_ui};
 use crate::ui::words::number;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, Sense, WidgetInfo, WidgetType, vec2};
@@ -73,7 +73,7 @@ pub fn profile_ui(ui: &mut egui::Ui, profile: &Profile) {
     ];
     table_ui(
         ui,
-        rows.into_iter().map(|(name, value)| Row {
+        rows.into_iter().map(|(name, value)| TableRow {
             name: name.into(),
             value,
             hint: String::new(),
@@ -113,7 +113,7 @@ pub fn advice_ui(ui: &mut egui::Ui, advice: &TimeStepAdvice) {
     }
     table_ui(
         ui,
-        advice.limits.iter().map(|limit| Row {
+        advice.limits.iter().map(|limit| TableRow {
             name: number::capitalised(limit.name),
             value: format!("≤ {}", number::short_time(limit.time_step)),
             hint: limit.reason.clone(),

@@ -6,7 +6,7 @@ use crate::ui::words::symbol;
 use bevy_egui::egui::{self, Color32, Frame, Margin, RichText, Sides};
 
 /// A line of a table.
-pub struct Row {
+pub struct TableRow {
     /// What it is.
     pub name: String,
     /// Its value with its unit.
@@ -15,7 +15,7 @@ pub struct Row {
     pub hint: String,
 }
 
-impl Row {
+impl TableRow {
     /// The row of `name` with its `value`, and more about it in `hint`.
     pub fn of(name: &str, value: String, hint: &str) -> Self {
         Self {
@@ -27,7 +27,7 @@ impl Row {
 }
 
 /// Draws `rows` over the whole width, striped.
-pub fn table_ui(ui: &mut egui::Ui, rows: impl Iterator<Item = Row>) {
+pub fn table_ui(ui: &mut egui::Ui, rows: impl Iterator<Item = TableRow>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     for (index, row) in rows.enumerate() {
         let stripe = ui.visuals().faint_bg_color;

@@ -2,7 +2,7 @@
 //!
 //! In: a world and a grain's index. Out: rows of a table, in the units that people think in.
 
-use crate::ui::widgets::value_table::Row;
+use crate::ui::widgets::value_table::TableRow;
 use crate::ui::words::number;
 use crate::world::World;
 use glam::DVec3;
@@ -16,41 +16,41 @@ fn vector(v: DVec3, factor: f64, unit: &str) -> String {
 }
 
 /// The numbers of one grain.
-pub(super) fn numbers(world: &World, i: usize) -> Vec<Row> {
+pub(super) fn numbers(world: &World, i: usize) -> Vec<TableRow> {
     let grains = &world.grains;
     let species = &world.species[usize::from(grains.species[i].0)];
     let (x, v, spin) = (grains.position[i], grains.velocity[i], grains.spin[i]);
     let mass = grains.mass[i];
     let energy = |joules: f64| number::with_prefix(joules, "J");
     let mut rows = vec![
-        Row::of("Species", species.name.clone(), ""),
-        Row::of(
+        TableRow::of("Species", species.name.clone(), ""),
+        TableRow::of(
             "Position",
             vector(x, MILLIMETRES, "mm"),
             "Centre: x to the right, y up, z towards the viewer",
         ),
-        Row::of("Velocity", vector(v, MILLIMETRES, "mm/s"), "Of its centre"),
-        Row::of("Speed", number::with_prefix(v.length(), "m/s"), ""),
-        Row::of("Spin", vector(spin, 1.0, "rad/s"), "Angular velocity"),
-        Row::of(
+        TableRow::of("Velocity", vector(v, MILLIMETRES, "mm/s"), "Of its centre"),
+        TableRow::of("Speed", number::with_prefix(v.length(), "m/s"), ""),
+        TableRow::of("Spin", vector(spin, 1.0, "rad/s"), "Angular velocity"),
+        TableRow::of(
             "Radius",
             format!("{} mm", number::short(MILLIMETRES * grains.radius[i])),
             "Of a polyhedron: to its farthest point",
         ),
-        Row::of("Mass", number::with_prefix(1e3 * mass, "g"), ""),
-        Row::of(
+        TableRow::of("Mass", number::with_prefix(1e3 * mass, "g"), ""),
+        TableRow::of(
             "Coordination",
             grains.contact_count[i].to_string(),
             "Partners that it touches, walls too",
         ),
     ];
     if world.wetting().is_some() {
-        rows.push(Row::of(
+        rows.push(TableRow::of(
             "Bridges",
             grains.open_bridges[i].to_string(),
             "To grains that it does not touch",
         ));
-        rows.push(Row::of(
+        rows.push(TableRow::of(
             "Film",
             number::with_prefix(1e3 * grains.film[i], "L"),
             "Liquid on it, its part in bridges included",
@@ -58,13 +58,13 @@ pub(super) fn numbers(world: &World, i: usize) -> Vec<Row> {
     }
     let kinetic = 0.5 * mass * v.length_squared();
     rows.extend([
-        Row::of("Kinetic energy", energy(kinetic), "Of translation: ½ m v²"),
-        Row::of(
+        TableRow::of("Kinetic energy", energy(kinetic), "Of translation: ½ m v²"),
+        TableRow::of(
             "Rotational energy",
             energy(world.rotational_energy(i)),
             "½ I ω²",
         ),
-        Row::of(
+        TableRow::of(
             "Potential energy",
             energy(-mass * world.gravity.dot(x)),
             "−m g·x, from the origin",

@@ -3,24 +3,24 @@
 //! In: a contact and its terms from the solver. Out: rows of a table.
 
 use crate::solver::ForceTerms;
-use crate::ui::widgets::value_table::Row;
+use crate::ui::widgets::value_table::TableRow;
 use crate::ui::words::number;
 use crate::world::Contact;
 use glam::DVec3;
 
 /// How the two sides of `contact` stand and move, every term of its force, and the sum.
-pub(super) fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
+pub(super) fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<TableRow> {
     let mut rows = motion_rows(terms);
     rows.extend(normal_rows(contact, terms));
     rows.extend(tangential_rows(contact, terms));
     let sum: DVec3 = terms.iter().map(ForceTerms::force).sum();
     rows.extend([
-        Row::of(
+        TableRow::of(
             "Sum of the terms",
             newtons(sum.length()),
             "Of all forces above",
         ),
-        Row::of(
+        TableRow::of(
             "Applied",
             newtons(contact.force.length()),
             "What the solver applied in the last step",
@@ -37,7 +37,7 @@ fn deepest(terms: &[ForceTerms]) -> f64 {
     (terms.iter().map(|t| t.overlap)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn motion_rows(terms: &[ForceTerms]) -> Vec<Row> {
+fn motion_rows(terms: &[ForceTerms]) -> Vec<TableRow> {
     let (approach, slip) = (terms.first()).map_or((0.0, 0.0), |t| (t.approach, t.slip.length()));
     let (place, length) = match deepest(terms) {
         overlap if overlap > 0.0 => ("Overlap δ", overlap),
@@ -45,47 +45,51 @@ fn motion_rows(terms: &[ForceTerms]) -> Vec<Row> {
     };
     let speed = |v: f64| number::with_prefix(v, "m/s");
     let mut rows = vec![
-        Row::of(
+        TableRow::of(
             place,
             number::with_prefix(length, "m"),
             "At the deepest place where the two touch",
         ),
-        Row::of(
+        TableRow::of(
             "Approach",
             speed(approach),
             "Along the normal, half a step ago; negative while parting",
         ),
-        Row::of("Slip", speed(slip), "Of one surface over the other"),
+        TableRow::of("Slip", speed(slip), "Of one surface over the other"),
     ];
     if terms.iter().any(|t| t.feature.is_some()) {
         let places = terms.len().to_string();
-        rows.push(Row::of("Places", places, "Pairs of features that touch"));
+        rows.push(TableRow::of(
+            "Places",
+            places,
+            "Pairs of features that touch",
+        ));
     }
     rows
 }
 
-fn normal_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
+fn normal_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<TableRow> {
     let along =
         |of: fn(&ForceTerms) -> DVec3| newtons(terms.iter().map(|t| -of(t).dot(t.normal)).sum());
     let mut rows = vec![
-        Row::of(
+        TableRow::of(
             "Normal spring",
             along(|t| t.normal_spring),
             "k_n δ, positive where it pushes apart",
         ),
-        Row::of(
+        TableRow::of(
             "Normal dashpot",
             along(|t| t.normal_dashpot),
             "η_n times the speed of approach",
         ),
     ];
     if contact.bridge.is_some() {
-        rows.push(Row::of(
+        rows.push(TableRow::of(
             "Capillary",
             along(|t| t.capillary),
             "Eq. 13 of Kasper et al. 2021; negative where it pulls together",
         ));
-        rows.push(Row::of(
+        rows.push(TableRow::of(
             "Viscous, normal",
             along(|t| t.viscous_normal),
             "Eq. 16 of Kasper et al. 2021",
@@ -94,39 +98,39 @@ fn normal_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
     rows
 }
 
-fn tangential_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<Row> {
+fn tangential_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<TableRow> {
     let across = |of: fn(&ForceTerms) -> DVec3| {
         let sum: DVec3 = terms.iter().map(of).sum();
         newtons(sum.length())
     };
     let mut rows = vec![
-        Row::of(
+        TableRow::of(
             "Tangential spring",
             across(|t| t.tangential_spring),
             "k_t times the elastic slip ξ",
         ),
-        Row::of(
+        TableRow::of(
             "Tangential dashpot",
             across(|t| t.tangential_dashpot),
             "η_t times the slip velocity; none while it slides",
         ),
     ];
     if contact.bridge.is_some() {
-        rows.push(Row::of(
+        rows.push(TableRow::of(
             "Viscous, tangential",
             across(|t| t.viscous_tangential),
             "Eq. 17 of Kasper et al. 2021",
         ));
     }
     if deepest(terms) > 0.0 {
-        rows.push(Row::of(
+        rows.push(TableRow::of(
             "Coulomb bound",
             bound(terms),
             "μ times the normal force: what the tangential force cannot exceed",
         ));
     }
     let rolling: DVec3 = terms.iter().map(|t| t.rolling).sum();
-    rows.push(Row::of(
+    rows.push(TableRow::of(
         "Rolling torque",
         number::with_prefix(rolling.length(), "N m"),
         "Eq. 10 of Kasper et al. 2021, from the torque of now",

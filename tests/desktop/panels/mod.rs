@@ -1,0 +1,12 @@
+//! Panels by their accessible labels, without Bevy's app and without a GPU: what a click or a typed
+//! value asks for.
+
+mod bars;
+mod dialogs;
+mod keys;
+mod microscope;
+mod parameters;
+mod picture;
+mod plots;
+mod remembered;
+mod start_values;
