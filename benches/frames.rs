@@ -5,6 +5,11 @@
 //!
 //! `cargo bench --bench frames`, see `benches/README.md`.
 
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may be computed with the platform's own functions"
+)]
+
 use bevy::camera::ClearColorConfig;
 use bevy::camera::visibility::RenderLayers;
 use bevy::math::UVec2;

@@ -53,13 +53,33 @@
 //! drum speed turns anticlockwise as the viewer sees it. A contact's normal points from grain `i` to its partner `j`.
 //! State and forces are `f64`; `f32` only on the way to the screen.
 
+#![cfg_attr(
+    test,
+    allow(
+        clippy::disallowed_methods,
+        reason = "tests compare with the platform's own functions"
+    )
+)]
+
 pub mod files;
 pub mod geometry;
 #[cfg(feature = "headless")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod headless;
 pub mod lab;
 pub mod lanes;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod measure;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod output;
 pub mod parameters;
 pub mod physics;
@@ -68,11 +88,27 @@ pub mod runner;
 pub mod scene;
 pub mod simulation;
 pub mod solver;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod sweep;
 #[cfg(feature = "desktop")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod ui;
 #[cfg(feature = "desktop")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod view;
 #[cfg(feature = "desktop")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
 pub mod window;
 pub mod world;

@@ -418,7 +418,7 @@ fn verify(file: &Path, threads: Option<u16>) -> Result<u8, RunnerError> {
     let record = RunRecord::read(file)?;
     let interruption = interruption()?;
     let stop = || interruption.load(Ordering::Relaxed);
-    let mut progress = Progress::new();
+    let mut progress = Progress::on_stderr();
     let verdict = record.verify(
         self::threads(threads),
         BedStore::user(),

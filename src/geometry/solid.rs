@@ -298,7 +298,8 @@ impl Solid {
     /// The solid with corners that nearly coincide made one; faces that lose their area so vanish.
     #[must_use]
     pub fn merged(mut self) -> Self {
-        let same = (SAME_CORNER * self.size).powi(2);
+        let same = SAME_CORNER * self.size;
+        let same = same * same;
         let mut kept: Vec<u16> = Vec::new();
         let mut stands_for: Vec<u16> = Vec::new();
         for (v, x) in self.vertices.iter().enumerate() {

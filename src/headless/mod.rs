@@ -23,7 +23,7 @@ use std::sync::atomic::AtomicBool;
 /// # Errors
 /// A [`RunnerError`] when the input asks for something that cannot be, or a file cannot be written.
 pub fn run_sweep(sweep: &Sweep, interrupted: &AtomicBool) -> Result<SweepEnding, RunnerError> {
-    let mut progress = Progress::new();
+    let mut progress = Progress::on_stderr();
     let swept = sweep::run(sweep, interrupted, &mut progress);
     progress.finish();
     let swept = swept?;

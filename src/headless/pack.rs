@@ -17,7 +17,7 @@ pub fn pack(scene: &Scene) -> Result<Vec<Rounded>, RunnerError> {
             scene.title
         ))
     })?;
-    let mut progress = Progress::new();
+    let mut progress = Progress::on_stderr();
     while !packing.advance() {
         progress.tell(f64::from(packing.progress()), || {
             "cutting the grains".into()

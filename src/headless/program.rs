@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub fn run(job: &Job, interrupted: &AtomicBool) -> Result<Ending, RunnerError> {
     let mut runner = Runner::open(job)?;
     let mut run = RunInApp::of(job, runner.take_checkpoint());
-    let mut progress = Progress::new();
+    let mut progress = Progress::on_stderr();
     let stop = || interrupted.load(Ordering::Relaxed);
     let finished = runner.finish(&mut run, &mut progress, &stop);
     progress.finish();

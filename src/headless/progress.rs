@@ -23,8 +23,8 @@ pub enum Progress {
 }
 
 impl Progress {
-    /// For standard error as it is.
-    pub fn new() -> Self {
+    /// On standard error, as that is.
+    pub fn on_stderr() -> Self {
         if !std::io::stderr().is_terminal() {
             return Self::Lines {
                 told: Instant::now(),

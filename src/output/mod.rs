@@ -3,15 +3,19 @@
 //! In: a [`RunSoFar`] of a run on its way. Out: a folder of files, each whole, in SI units. Not here:
 //! when a run holds for its outputs and what is told meanwhile (see `runner`).
 //!
+//! Each row of the table uses only rows below it.
+//!
 //! | file | holds |
 //! |---|---|
-//! | `run_so_far` | what is seen of a run |
-//! | `folder` | where the files go; nobody else's are touched |
 //! | `recorder` | which file is written when |
+//! | `grains_file` | the grains at each output time, for `ParaView` |
+//! | `polyhedra_file` | polyhedra as cells |
+//! | `vtk` | VTK's XML files |
 //! | `summary_file` | `summary.json`: what was run, how it ended, what came out |
-//! | `series_file`, `profile_files`, `velocity_file` | tables: `series.csv`, `flow.csv`, `profile.csv`, `velocity.csv` |
-//! | `grains_file`, `polyhedra_file`, `vtk` | the grains at each output time, for `ParaView` |
-//! | `ending`, `error` | how a run ended; why files cannot be written |
+//! | `series_file`, `profile_files`, `velocity_file` | tables: `series.csv`, `flow.csv` … |
+//! | `folder` | where the files go; nobody else's are touched |
+//! | `run_so_far`, `ending` | what is seen of a run; how it ended |
+//! | `error` | why files cannot be written |
 
 mod ending;
 mod error;

@@ -1,12 +1,13 @@
 //! From grains placed in a container to a bed at rest.
 //!
-//! In: a scene whose container is to be filled, with its time step. Out: a world at time zero in which every grain rests
-//! on others under the scene's own gravity, contacts with their histories included. The walls stand still meanwhile.
+//! In: a scene whose container is to be filled, with its time step. Out: a world at time zero in which
+//! every grain rests on others under the scene's own gravity, contacts with their histories included.
+//! The walls stand still meanwhile.
 //!
-//! The grains fall freely, then lose a share of their velocity between slices of steps until they creep, then relax with
-//! nothing but the contact laws, so that the end is a true equilibrium; where they do not come to rest so (a grain may
-//! swing between two others with hardly a loss), they are calmed again. All stages are counted in steps: the same scene
-//! gives the same bits.
+//! The grains fall freely, then lose a share of their velocity between pieces of so many steps until
+//! they creep, then relax with nothing but the contact laws, so that the end is a true equilibrium;
+//! where they do not come to rest so (a grain may swing between two others with hardly a loss), they
+//! are calmed again. All stages are counted in steps: the same scene gives the same bits.
 
 use crate::measure::elastic_energy;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
@@ -122,6 +123,10 @@ impl Settling {
         }
     }
 
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "how far settling has come is told, not computed with"
+    )]
     fn estimate(&self, agitation: f64) -> f32 {
         let decades = |from: f64, to: f64| {
             ((from / agitation.max(1e-300)).ln() / (from / to).ln()).clamp(0.0, 1.0) as f32

@@ -1,5 +1,7 @@
 //! What the process ends with.
 
+use crate::output::Ending;
+
 /// All was done.
 pub const DONE: u8 = 0;
 /// Files could not be written.
@@ -12,3 +14,14 @@ pub const FAULT: u8 = 3;
 pub const OTHER_STATE: u8 = 4;
 /// Somebody stopped it.
 pub const INTERRUPTED: u8 = 130;
+
+impl Ending {
+    /// What the process ends with: 0, 130 or 3.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Done => DONE,
+            Self::Interrupted => INTERRUPTED,
+            Self::Faulted(_) => FAULT,
+        }
+    }
+}

@@ -5,16 +5,19 @@
 //! [`Finished`], or a [`Verdict`]. Runs without a window, cases of a sweep and `grainfall verify` all
 //! go through here. Not here: printing, and the app whose systems step a run (see `headless`).
 //!
+//! Each row of the table uses only rows below it.
+//!
 //! | file | holds |
 //! |---|---|
-//! | `job` | what to run and where its files go |
-//! | `drive` | the loop, and how a run ended |
-//! | `advance` | what the loop moves: a run in short pieces |
-//! | `watch` | hearing how far it has come |
-//! | `checkpoint` | going on after a stop |
 //! | `verify` | computing again what a file states |
+//! | `drive` | the loop, and how a run ended |
+//! | `checkpoint` | going on after a stop |
+//! | `advance` | what the loop moves: a run in short pieces |
+//! | `job` | what to run and where its files go |
 //! | `setting`, `commands_file` | `--set`, `--commands`: what is changed about a run |
-//! | `error`, `exit` | what can go wrong, and what the process ends with |
+//! | `error` | what can go wrong |
+//! | `exit` | what the process ends with |
+//! | `watch` | hearing how far a run has come |
 
 mod advance;
 mod checkpoint;
@@ -35,16 +38,3 @@ pub use job::{Job, available_threads};
 pub use setting::{apply_setting, compared_value};
 pub use verify::Verdict;
 pub use watch::{Watch, spoken};
-
-use crate::output::Ending;
-
-impl Ending {
-    /// What the process ends with: 0, 130 or 3.
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Done => exit::DONE,
-            Self::Interrupted => exit::INTERRUPTED,
-            Self::Faulted(_) => exit::FAULT,
-        }
-    }
-}

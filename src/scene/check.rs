@@ -255,7 +255,9 @@ impl Scene {
         }
         let solid: f64 = classes
             .iter()
-            .map(|class| class.count as f64 * 4.0 / 3.0 * PI * class.radius.powi(3))
+            .map(|class| {
+                class.count as f64 * 4.0 / 3.0 * PI * (class.radius * class.radius * class.radius)
+            })
             .sum();
         let part = solid / room;
         Err(Problem::new(
@@ -846,10 +848,18 @@ fn check_pair_overlap(
 }
 
 /// The power of two that is just not below the diameter.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "any size of cells that holds a grain finds the same overlaps"
+)]
 fn level_of(radius: f64) -> i32 {
     (2.0 * radius).log2().ceil() as i32
 }
 
+#[expect(
+    clippy::disallowed_methods,
+    reason = "a power of two to a whole exponent is exact"
+)]
 fn cell_of(position: DVec3, level: i32) -> [i64; 3] {
     let size = f64::from(level).exp2();
     position.to_array().map(|x| (x / size).floor() as i64)

@@ -92,9 +92,14 @@ pub struct SceneGrain {
 }
 
 impl SceneCells {
+    /// Volume of a cell of the lattice [m³].
+    fn cell_volume(&self) -> f64 {
+        self.cell * self.cell * self.cell
+    }
+
     /// Radius of the sphere of the volume of the smallest grains that it makes in `container` [m].
     pub fn smallest_radius(&self, container: &SceneContainer) -> f64 {
-        let whole = SMALLEST_CELL * self.cell.powi(3);
+        let whole = SMALLEST_CELL * self.cell_volume();
         shape::sphere_radius(if container.cuts_cells() {
             SMALLEST_PART * whole
         } else {
@@ -105,7 +110,7 @@ impl SceneCells {
     /// Lattice cells that the bed takes.
     pub fn cell_count(&self, container: &SceneContainer) -> usize {
         let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
-        (volume / self.cell.powi(3)).round() as usize
+        (volume / self.cell_volume()).round() as usize
     }
 
     /// Grains that the bed is made of: `π R_i² H_i` times cells per volume times `φ_i` for a column.
@@ -114,7 +119,7 @@ impl SceneCells {
             return packing.grains().len();
         }
         let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
-        (volume / self.cell.powi(3) * self.solid_fraction).round() as usize
+        (volume / self.cell_volume() * self.solid_fraction).round() as usize
     }
 }
 

@@ -1,5 +1,10 @@
 //! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
 
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may be computed with the platform's own functions"
+)]
+
 mod architecture;
 mod comparison;
 #[cfg(feature = "headless")]

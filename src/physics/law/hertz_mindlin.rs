@@ -90,10 +90,15 @@ fn rayleigh_limit(grain: &SmallestGrain) -> StepLimit {
 }
 
 /// `T_H = 2.87 (m*² / (r* E*² v))^(1/5)`: an elastic Hertz impact of two equal grains.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the fifth root is rounded to single precision, which takes a platform's own last bit away"
+)]
 fn impact_limit(grain: &SmallestGrain, speed: f64) -> StepLimit {
     let material = grain.material;
-    let mass = 4.0 / 3.0 * PI * grain.radius.powi(3) * material.density / 2.0;
-    let modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio.powi(2)));
+    let (radius, poisson) = (grain.radius, material.poisson_ratio);
+    let mass = 4.0 / 3.0 * PI * (radius * radius * radius) * material.density / 2.0;
+    let modulus = material.youngs_modulus / (2.0 * (1.0 - poisson * poisson));
     let fifth_power = mass * mass / (0.5 * grain.radius * modulus * modulus * speed);
     // Rounded, so that a platform's own last bit of the root does not show in a run.
     let time = f64::from((2.87 * fifth_power.powf(0.2)) as f32);

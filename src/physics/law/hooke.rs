@@ -43,7 +43,8 @@ impl LawFacts for Hooke {
             .pair(pairing.materials.0, pairing.materials.1)
             .restitution;
         let normal_stiffness = self.normal_stiffness;
-        let log_squared = natural_log(restitution).powi(2);
+        let log = natural_log(restitution);
+        let log_squared = log * log;
         let mass = pairing.effective_mass;
         let rate = 2.0 * (log_squared * (normal_stiffness / mass) / (PI * PI + log_squared)).sqrt();
         [
@@ -117,7 +118,8 @@ fn dashpot_limit(grain: &SmallestGrain, normal_stiffness: f64, rule: FeatureRule
         FeatureRule::Full => FEATURES_OF_GRAIN,
         FeatureRule::Shared => NEIGHBOURS_OF_GRAIN,
     };
-    let log_squared = natural_log(grain.restitution).powi(2);
+    let log = natural_log(grain.restitution);
+    let log_squared = log * log;
     let damped = log_squared / (PI * PI + log_squared);
     let dashpot = 2.0 * (damped * normal_stiffness * grain.mass()).sqrt();
     StepLimit {

@@ -32,7 +32,7 @@ pub struct SmallestGrain<'a> {
 impl SmallestGrain<'_> {
     /// [kg]
     pub(super) fn mass(&self) -> f64 {
-        4.0 / 3.0 * PI * self.radius.powi(3) * self.material.density
+        4.0 / 3.0 * PI * (self.radius * self.radius * self.radius) * self.material.density
     }
 }
 

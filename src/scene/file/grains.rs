@@ -392,7 +392,7 @@ fn solid_volume(
 pub(crate) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
     let grain_volume: f64 = species
         .iter()
-        .map(|s| s.share * 4.0 / 3.0 * PI * s.radius.powi(3))
+        .map(|s| s.share * 4.0 / 3.0 * PI * (s.radius * s.radius * s.radius))
         .sum();
     let count = solid_volume / grain_volume;
     // A nonsensical radius or share gives a nonsensical number here; their own checks say so.

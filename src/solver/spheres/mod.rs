@@ -287,7 +287,8 @@ impl Spheres {
             self.refresh();
         }
         self.kinds.compute(world);
-        self.motion.slack_squared = self.neighbours.slack().powi(2);
+        let slack = self.neighbours.slack();
+        self.motion.slack_squared = slack * slack;
     }
 
     /// Gives the listed pairs the tangential springs of the world's contacts; all others have none.
@@ -335,7 +336,8 @@ impl Spheres {
             .refresh(&self.bodies, &self.walls, grains, |grain, partner| {
                 kinds.of(grain, partner)
             });
-        self.motion.slack_squared = self.neighbours.slack().powi(2);
+        let slack = self.neighbours.slack();
+        self.motion.slack_squared = slack * slack;
         self.neighbours.searches - before
     }
 
