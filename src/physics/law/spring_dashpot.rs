@@ -2,12 +2,12 @@
 //! Schäfer, Dippel & Wolf, J. Phys. I France 6, 1996, Sect. 3).
 //!
 //! `F_n = K_n δ + c_n v_n`, `F_t = K_t ξ + c_t v_t`, sliding where `K_t ξ` reaches `μ K_n δ`, with
-//! `c = 2 ζ √(m K)` and `ζ = −ln e/√(π² + ln² e)`. Normal: `m = m*`. The attraction that the dashpot makes at the end of
-//! a contact is kept, so that the restitution is e at any speed and a contact lasts
-//! `π/(ω √(1 − ζ²))`, `ω = √(K_n/m*)`. Tangential: `m = 2/7 m*`, what the surfaces of solid spheres
-//! resist a force with, so that both motions have one damping ratio; with `K_t = 2/7 K_n` also one
-//! period, and the surfaces of a contact that sticks part with `−e` times the velocity they met
-//! with.
+//! `c = 2 ζ √(m K)` and `ζ = −ln e/√(π² + ln² e)`. Normal: `m = m*`. The attraction that the
+//! dashpot makes at the end of a contact is kept, so that the restitution is e at any speed and a
+//! contact lasts `π/(ω √(1 − ζ²))`, `ω = √(K_n/m*)`. Tangential: `m = 2/7 m*`, what the surfaces of
+//! solid spheres resist a force with, so that both motions have one damping ratio; with
+//! `K_t = 2/7 K_n` also one period, and the surfaces of a contact that sticks part with `−e` times
+//! the velocity they met with.
 //!
 //! Not here: polyhedra, whose surfaces resist with another mass.
 
@@ -105,7 +105,8 @@ impl Law for SpringDashpot {
         elastic + damping
     }
 
-    /// The spring's part alone: where dashpot and spring cancel, a contact that sticks goes on doing so.
+    /// The spring's part alone: where dashpot and spring cancel, a contact that sticks goes on
+    /// doing so.
     #[inline(always)]
     fn coulomb_force<N: Lanes>(self, elastic: N, _normal: N, _zero: N) -> N {
         elastic
