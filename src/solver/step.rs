@@ -124,6 +124,7 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Adds what another worker, or another step, came to.
     fn add(&mut self, other: &Self) {
         self.ruptures += other.ruptures;
         self.relisted += other.relisted;
@@ -302,6 +303,7 @@ impl Course {
         report
     }
 
+    /// Whether some worker has asked for the batch to end.
     fn is_over(&self) -> bool {
         self.refresh.load(Ordering::Relaxed) || self.fault.load(Ordering::Relaxed)
     }

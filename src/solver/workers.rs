@@ -415,6 +415,7 @@ pub struct InPhase<'a, P> {
 }
 
 impl<'a, P: Phase> InPhase<'a, P> {
+    /// Only the start of a batch and [`InPhase::meet`] make proofs.
     fn begin(batch: &'a Batch, worker: usize) -> Self {
         Self {
             batch,

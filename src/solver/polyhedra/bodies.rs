@@ -274,7 +274,7 @@ fn outward_normal(shape: &Polyhedron, face: &[u16]) -> DVec3 {
     sum.normalize_or_zero()
 }
 
-/// The body axes in the world's frame.
+/// The body axes in the world's frame: the columns of the rotation that the quaternion is.
 #[inline(always)]
 fn axes(orientation: Row) -> [[f64; 3]; 3] {
     let [x, y, z, w] = orientation;
@@ -314,7 +314,7 @@ impl Body {
         }
     }
 
-    /// Half a step of velocity and angular momentum.
+    /// Half a step of velocity and angular momentum: `v ← v + ½ Δt (F/m + g)`, `L ← L + ½ Δt T`.
     #[inline(always)]
     pub fn kick(&mut self, load: &Load, half: f64, gravity: Row) {
         let inverse_mass = self.inverse_mass();
@@ -334,7 +334,8 @@ impl Body {
         self.update_spin();
     }
 
-    /// The spin that the angular momentum is at the present orientation.
+    /// The spin that the angular momentum is at the present orientation, `ω = R I⁻¹ Rᵀ L` with the
+    /// rotation `R` from body axes to the world's and the principal moments `I`.
     #[inline(always)]
     pub fn update_spin(&mut self) {
         let axes = axes(self.orientation);

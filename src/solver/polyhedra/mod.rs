@@ -140,6 +140,7 @@ impl Kernel for Polyhedra {
         self.compute_constants(world);
     }
 
+    /// Vertices and planes follow their bodies.
     fn start(&mut self, processor: Processor) -> bool {
         let half = 0.5 * self.dt;
         for (body, load) in self.bodies.iter_mut().zip(&self.loads) {
@@ -155,13 +156,16 @@ impl Kernel for Polyhedra {
             || self.walls.moved_from(&self.reference_surfaces) > slack
     }
 
+    /// Finds the pairs anew. Their lists of features have slacks of their own and are left alone.
     fn refresh_lists(&mut self, world: &World) -> u64 {
         self.find_pairs(world);
         1
     }
 
+    /// Lists of features suit the pace of each pair by themselves.
     fn adapt_lists(&mut self, _steps: u64) {}
 
+    /// What walls have moved since the pairs were found, in calls before, is gone already.
     fn steps_within_slack(&self) -> u64 {
         let gone = self.walls.moved_from(&self.reference_surfaces);
         self.walls.steps_within(self.slack() - gone, self.dt)
@@ -171,8 +175,10 @@ impl Kernel for Polyhedra {
         PolyhedraShare::all(self, batch)
     }
 
+    /// Nothing of a batch outlasts it but what the profile counts.
     fn note(&mut self, _tally: &Tally) {}
 
+    /// The histories of the features that touch, and the contact force of each pair that does.
     fn store(&self, world: &mut World) {
         let grains = &mut world.grains;
         if let Some(polyhedra) = &mut world.polyhedra {
@@ -231,6 +237,7 @@ impl Kernel for Polyhedra {
         deep.unwrap_or((0, FaultKind::NotFinite("state")))
     }
 
+    /// Pairs of features on all outer lists.
     fn listed(&self) -> usize {
         self.pairs.list.iter().map(|pair| pair.outer.len()).sum()
     }

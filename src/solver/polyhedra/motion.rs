@@ -91,6 +91,7 @@ pub fn crossed(a: Row, b: Row) -> Row {
     [x, y, z, 0.0]
 }
 
+/// `a × b`.
 #[inline(always)]
 fn cross_product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [

@@ -65,7 +65,8 @@ struct Common<'a> {
 }
 
 impl<'a> PolyhedraShare<'a> {
-    /// The shares of a batch's workers.
+    /// The shares of a batch's workers: whole blocks of pairs, and bodies in equal numbers with
+    /// their vertices and faces.
     pub fn all(world: &'a mut Polyhedra, batch: &'a Batch) -> Vec<Self> {
         let (size, count) = (batch.size(), world.bodies.len());
         let (slack, pair_count) = (world.slack(), world.pairs.list.len());

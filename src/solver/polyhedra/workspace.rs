@@ -138,7 +138,9 @@ impl Workspace {
         listed
     }
 
-    /// Makes the list of `pair`, which has `moved` by so much in this step, anew.
+    /// Makes the list of `pair`, which has `moved` by so much in this step, anew. The skin is what
+    /// lets it last for [`OUTER_LIFE`] steps at that pace, within bounds: a wide one lists features
+    /// that never touch, a narrow one has to be made again soon.
     #[inline(always)]
     fn list<N: Lanes>(
         &mut self,
@@ -172,7 +174,8 @@ impl Workspace {
         pair.inner_slack = -1.0;
     }
 
-    /// Measures features of a pair with a wall, or has them measured.
+    /// Measures features of a pair with a wall, or has them measured: features of two bodies are
+    /// queued by kind, so that all pairs of the block fill the lanes together.
     #[inline(always)]
     fn queue(
         &mut self,

@@ -171,6 +171,7 @@ impl Bridges {
 }
 
 impl BridgeColumns {
+    /// The bridge of the `k`-th pair of the group.
     fn row(&self, k: usize) -> BridgeRow {
         let [x, y, z] = self.drag.map(|column| column[k]);
         BridgeRow {
@@ -180,6 +181,7 @@ impl BridgeColumns {
         }
     }
 
+    /// Sets it.
     fn set(&mut self, k: usize, row: &BridgeRow) {
         let columns = self.state.iter_mut().chain(&mut self.drag);
         let columns = columns.chain(&mut self.constants);

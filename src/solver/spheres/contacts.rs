@@ -72,6 +72,7 @@ fn rows<'a>(bodies: [&'a Body; WIDEST], row: impl Fn(&'a Body) -> &'a Row) -> Ro
     bodies.map(row)
 }
 
+/// Two grains: differences of their rows, column by column.
 impl<N: Lanes> Partners<N> for TwoGrains<'_> {
     const WALL: bool = false;
 
@@ -178,6 +179,7 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
     }
 }
 
+/// A grain and a wall: a partner of infinite mass whose surface moves by the wall's velocity field.
 impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
     const WALL: bool = true;
 
@@ -395,7 +397,8 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let (bridge, bounding) = met.wetted(processor, all, liquid, constants, rolling_spin.1);
 
     let (normal, slip, touching) = (met.normal, met.slip, met.touching);
-    let stiffness = N::choose(touching, met.along.coefficients.tangential_stiffness, zero);
+    let (law, elastic) = (met.along.coefficients, met.along.elastic);
+    let stiffness = N::choose(touching, law.tangential_stiffness, zero);
     let updated = update(
         processor,
         side_by_side::<N, _>(|k| &springs[k]),
@@ -406,14 +409,10 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
         friction * bounding,
     );
     updated.store(springs);
-    let unslid = N::choose(
-        updated.slides,
-        zero,
-        met.along.coefficients.tangential_damping,
-    );
+    let unslid = N::choose(updated.slides, zero, law.tangential_damping);
     let damping = N::choose(touching, unslid, zero);
     let mut tangential = minus(times(updated.spring, -stiffness), times(slip, damping));
-    let damped = (met.along.repulsion - met.along.elastic) * met.approach;
+    let damped = (met.along.repulsion - elastic) * met.approach;
     let in_dashpots = dt * (damped + damping * dot(slip, slip));
     let (mut repulsion, mut ruptures) = (met.along.repulsion, 0);
     if let Some(bridge) = bridge {
@@ -424,12 +423,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let force = minus(tangential, times(normal, repulsion));
     let moment = cross(normal, tangential);
 
-    let rolling = roll(
-        processor,
-        normal,
-        rolling_arm * met.along.elastic,
-        rolling_spin,
-    );
+    let rolling = roll(processor, normal, rolling_arm * elastic, rolling_spin);
     let [spin, partner_spin] = met.spins;
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = if P::WALL {
@@ -437,14 +431,10 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     } else {
         zero
     };
-    let count = N::choose(touching, one, zero);
+    let ([arm, partner_arm], count) = (met.arms, N::choose(touching, one, zero));
     let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
-    write(
-        contacts,
-        [force, moment, rolling],
-        [met.arms[0], met.arms[1], count],
-        exchanged,
-    );
+    let companions = [arm, partner_arm, count];
+    write(contacts, [force, moment, rolling], companions, exchanged);
     ruptures
 }
 

@@ -162,7 +162,7 @@ impl Incidence<'_> {
     }
 }
 
-/// Half a step of velocity and spin.
+/// Half a step of velocity and spin: `v ← v + ½ Δt (F/m + g)`, `ω ← ω + ½ Δt T/I`.
 #[inline(always)]
 fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, motion: &Motion) {
     let half = 0.5 * motion.dt;
@@ -176,8 +176,8 @@ fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, mot
     body.spin = (Q::load(processor, &body.spin) + turning * half).row();
 }
 
-/// A full step of position, and the spin that rolling friction works against. True when the slack
-/// of the inner list is used up.
+/// A full step of position, `x ← x + Δt v`, and the spin that rolling friction works against. True
+/// when the slack of the inner list is used up.
 #[inline(always)]
 fn drift<Q: Quad>(
     processor: Q::Processor,

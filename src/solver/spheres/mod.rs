@@ -117,6 +117,7 @@ impl Kernel for Spheres {
         processor.run(start).refresh
     }
 
+    /// A search may meet kinds of pairs that there were none of before: they need constants.
     fn refresh_lists(&mut self, world: &World) -> u64 {
         let searches = self.refresh();
         self.kinds.complete(world);
@@ -136,6 +137,7 @@ impl Kernel for Spheres {
         SphereShare::all(self, batch)
     }
 
+    /// Bridges that broke are booked when the world is put back.
     fn note(&mut self, tally: &Tally) {
         self.ruptures += tally.ruptures;
     }
@@ -176,6 +178,7 @@ impl Kernel for Spheres {
         (grain as usize, kind)
     }
 
+    /// Pairs on both inner lists, padding included.
     fn listed(&self) -> usize {
         self.neighbours.grains.pairs.len() + self.neighbours.walls.pairs.len()
     }

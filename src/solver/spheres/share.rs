@@ -67,7 +67,8 @@ struct Common<'a> {
 }
 
 impl<'a> SphereShare<'a> {
-    /// The shares of a batch's workers.
+    /// The shares of a batch's workers. What one phase writes and the other reads is lent as
+    /// columns, what stays with a worker is cut into slices.
     pub fn all(spheres: &'a mut Spheres, batch: &'a Batch) -> Vec<Self> {
         let ranges = WorkerRanges::all(&spheres.neighbours, batch.size());
         let Neighbours {
@@ -151,6 +152,7 @@ impl<'a> SphereShare<'a> {
             kind: None,
             springs: &mut **springs,
             forces,
+            // Walls hold no bridges.
             bridges: &mut [],
             bridge_effects: &mut [],
         });
@@ -264,7 +266,8 @@ struct WorkerRanges {
 const COST_OF_GRAIN: usize = 3;
 
 impl WorkerRanges {
-    /// The ranges of `size` workers.
+    /// The ranges of `size` workers: pairs of grains in equal numbers, as each takes about as long,
+    /// and grains such that each worker has as many partners to sum up.
     fn all(neighbours: &Neighbours, size: usize) -> Vec<Self> {
         let groups = neighbours.grains.pairs.len() / GROUP;
         let cuts = cuts(neighbours, size);
