@@ -247,8 +247,8 @@ impl ScreenshotJob {
         }
     }
 
-    /// One frame further. The renderer takes one picture at a time and drops a second one: a picture
-    /// waits until the renderer `is_free`.
+    /// One frame further. The renderer takes one picture at a time and drops a second one: a
+    /// picture waits until the renderer `is_free`.
     fn go_on(&mut self, simulation: &mut Simulation, studio: &mut Studio, is_free: &mut bool) {
         let frames = self.subject.frames();
         if self.stage == JobStage::Waiting

@@ -206,8 +206,8 @@ fn runs_that_were_left_can_be_taken_up_and_forgotten() {
     assert_eq!(asked(&mut harness), [Command::Forget(0)]);
 }
 
-/// Plots of a run of 20 s with an avalanche at 10 s and of one kept beside it, in a window 600 points
-/// wide that notes the moments that are clicked on [s].
+/// Plots of a run of 20 s with an avalanche at 10 s and of one kept beside it, in a window 600
+/// points wide that notes the moments that are clicked on [s].
 fn clickable_plots() -> Harness<'static, Vec<f64>> {
     let mut series = Series::default();
     for i in 0..=1000 {

@@ -1,5 +1,5 @@
-//! The bars: what playing, stepping, speed and a fault ask for, the film that is recorded, the big button of a scene
-//! that stands still.
+//! The bars: what playing, stepping, speed and a fault ask for, the film that is recorded, the big
+//! button of a scene that stands still.
 
 use crate::window_of_panels::{Window, commands, prepared, three_grains};
 use bevy_egui::egui::accesskit::Role;
