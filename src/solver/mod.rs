@@ -84,6 +84,20 @@ impl Solver {
 
     /// Takes `steps` steps.
     ///
+    /// ```
+    /// use grainfall::measure::coordination_number;
+    /// use grainfall::scene::Scene;
+    /// use grainfall::solver::{Solver, advise};
+    /// use grainfall::world;
+    ///
+    /// let scene = Scene::open("bouncing-grain")?;
+    /// let mut world = world::build(&scene, advise(&scene).time_step);
+    /// Solver::new(1).advance(&mut world, 100)?;
+    /// assert_eq!(world.clock.step, 100);
+    /// println!("{} contacts per grain", coordination_number(&world));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// A [`Fault`] when a grain's state becomes absurd; `world` is then as it was before the call.
     pub fn advance(&mut self, world: &mut World, steps: u64) -> Result<(), Fault> {
