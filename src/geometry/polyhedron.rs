@@ -3,6 +3,7 @@
 use super::{Flaw, Solid};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// A convex core and the radius by which it is rounded: the body is all that lies within `rounding` of the core.
 ///
@@ -118,6 +119,38 @@ impl Rounded {
 }
 
 /// Volume of a sphere [m³].
+///
+/// The masses of all grains come from it: the order of the products is in the bits of every run.
 pub fn sphere_volume(radius: f64) -> f64 {
-    4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius
+    4.0 / 3.0 * PI * radius * radius * radius
+}
+
+/// Volume of this many equal spheres, or of one times a share [m³].
+///
+/// The numbers of grains and the limits of the time step come from it, in this order of the
+/// products; the last bit may differ from that of [`sphere_volume`].
+pub fn spheres_volume(count: f64, radius: f64) -> f64 {
+    count * 4.0 / 3.0 * PI * (radius * radius * radius)
+}
+
+/// Radius of the sphere of this volume [m].
+pub fn sphere_radius(volume: f64) -> f64 {
+    (0.75 / PI * volume).cbrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn volumes_of_spheres_agree_and_give_the_radius_back() {
+        for radius in [1.25e-3, 3e-3, 0.1] {
+            // A few roundings.
+            let ratio = spheres_volume(1.0, radius) / sphere_volume(radius);
+            assert!((ratio - 1.0).abs() < 1e-15);
+            let back = sphere_radius(sphere_volume(radius));
+            assert!((back / radius - 1.0).abs() < 1e-15);
+        }
+        assert_eq!(spheres_volume(2.0, 0.1), 2.0 * spheres_volume(1.0, 0.1));
+    }
 }

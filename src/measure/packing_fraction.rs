@@ -10,6 +10,7 @@
 
 use super::column::volume;
 use super::surface::{SurfaceLine, mean_radius};
+use crate::geometry::sphere_radius;
 use crate::world::{Shape, World};
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -39,7 +40,7 @@ pub fn packing_fraction(world: &World, surface: &SurfaceLine) -> f64 {
 /// Radius of grain `i`, of a polyhedron that of the sphere of its volume [m].
 fn radius(world: &World, i: usize) -> f64 {
     match world.polyhedra {
-        Some(_) => (0.75 / PI * volume(world, i)).cbrt(),
+        Some(_) => sphere_radius(volume(world, i)),
         None => world.grains.radius[i],
     }
 }

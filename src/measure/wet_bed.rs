@@ -4,6 +4,7 @@
 //! the solver.
 
 use super::surface::mean_radius;
+use crate::geometry::sphere_volume;
 use crate::world::{Contact, World};
 
 /// Number of liquid bridges.
@@ -25,8 +26,7 @@ pub fn capillary_number(world: &World) -> Option<f64> {
 pub fn galilei_number(world: &World) -> Option<f64> {
     let viscosity = world.wetting()?.viscosity;
     let grains = &world.grains;
-    let volume: f64 =
-        grains.radius.iter().map(|r| r.powi(3)).sum::<f64>() * 4.0 / 3.0 * std::f64::consts::PI;
+    let volume: f64 = grains.radius.iter().copied().map(sphere_volume).sum();
     let density = grains.mass.iter().sum::<f64>() / volume;
     let radius = mean_radius(grains);
     (viscosity > 0.0).then(|| {

@@ -11,6 +11,7 @@ use super::{
     PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain, SceneGrains,
     SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, StoredCells, TimeStep,
 };
+use crate::geometry::spheres_volume;
 use crate::physics::limits::{self, Limits};
 use crate::physics::{ContactLaw, Liquid, SmallestGap};
 use glam::DVec3;
@@ -255,9 +256,7 @@ impl Scene {
         }
         let solid: f64 = classes
             .iter()
-            .map(|class| {
-                class.count as f64 * 4.0 / 3.0 * PI * (class.radius * class.radius * class.radius)
-            })
+            .map(|class| spheres_volume(class.count as f64, class.radius))
             .sum();
         let part = solid / room;
         Err(Problem::new(

@@ -96,8 +96,8 @@ fn rayleigh_limit(grain: &SmallestGrain) -> StepLimit {
 )]
 fn impact_limit(grain: &SmallestGrain, speed: f64) -> StepLimit {
     let material = grain.material;
-    let (radius, poisson) = (grain.radius, material.poisson_ratio);
-    let mass = 4.0 / 3.0 * PI * (radius * radius * radius) * material.density / 2.0;
+    let poisson = material.poisson_ratio;
+    let mass = grain.mass() / 2.0;
     let modulus = material.youngs_modulus / (2.0 * (1.0 - poisson * poisson));
     let fifth_power = mass * mass / (0.5 * grain.radius * modulus * modulus * speed);
     // Rounded, so that a platform's own last bit of the root does not show in a run.

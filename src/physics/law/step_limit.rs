@@ -4,8 +4,8 @@
 //! circumstances go in, limits with their reasons come out. What is done with limits is the
 //! solver's.
 
+use crate::geometry::spheres_volume;
 use crate::physics::Material;
-use std::f64::consts::PI;
 
 /// One limit on the time step.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -32,7 +32,7 @@ pub struct SmallestGrain<'a> {
 impl SmallestGrain<'_> {
     /// [kg]
     pub(super) fn mass(&self) -> f64 {
-        4.0 / 3.0 * PI * (self.radius * self.radius * self.radius) * self.material.density
+        spheres_volume(1.0, self.radius) * self.material.density
     }
 }
 

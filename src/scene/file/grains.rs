@@ -4,6 +4,7 @@
 //! [`SceneGrains`]. Whether the values make sense is for [`crate::scene`]'s checks.
 
 use super::keys::{either, metres, missing_length};
+use crate::geometry::spheres_volume;
 use crate::scene::check::{check_container, fraction, volume};
 use crate::scene::error::Problem;
 use crate::scene::shape::rotation;
@@ -13,7 +14,6 @@ use crate::scene::{
 };
 use glam::{DQuat, DVec3};
 use serde::Deserialize;
-use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 /// Sphero-radius of the grains of Man et al. 2023 [m].
@@ -392,7 +392,7 @@ fn solid_volume(
 pub(crate) fn count_of(solid_volume: f64, species: &[SceneSpecies]) -> usize {
     let grain_volume: f64 = species
         .iter()
-        .map(|s| s.share * 4.0 / 3.0 * PI * (s.radius * s.radius * s.radius))
+        .map(|s| spheres_volume(s.share, s.radius))
         .sum();
     let count = solid_volume / grain_volume;
     // A nonsensical radius or share gives a nonsensical number here; their own checks say so.
