@@ -189,3 +189,68 @@ fn cells(outcome: &Outcome, columns: &[TableColumn]) -> Vec<String> {
     ];
     values.chain(results).chain(fixed).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::{MeasuredValue, SummaryEntry};
+
+    /// Scripts of users read these columns.
+    #[test]
+    fn heads_of_the_tables_stay_as_they_are() {
+        let heads = |columns: &[TableColumn]| {
+            let heads: Vec<String> = columns.iter().map(TableColumn::head).collect();
+            heads.join(",")
+        };
+        assert_eq!(
+            heads(DRUM),
+            "θ [°],θ_m [°],θ_r [°],Δθ [°],drops,Δθ ≥ 0.5° [°],Δθ ≥ 2° [°],Δθ ≥ 3° [°],Tg [m²/s²],\
+             Tg′ [m²/s²],ta/ts,√(1/Ga),Ca,φ,Z,h [mm],κ [1/m],bridges,ruptures [1/s],\
+             drum power [mW],viscous loss [J],largest overlap,energy residual"
+        );
+        assert_eq!(
+            heads(COLLAPSE),
+            "α,α_eff,φ_i,R_∞ [mm],R_99 [mm],R_95 [mm],R_c [mm],ℛ,H_∞ [mm],H_a [mm],H_∞/R_i,\
+             V_cone/V_init,t_max [s],t_f [s],T_max,T_f,peak energy [g cm²/s²],P11,P12,P22,\
+             deposit shape,Z,largest overlap,energy residual"
+        );
+    }
+
+    #[test]
+    fn cells_hold_results_by_their_keys() {
+        let entry = |key: ResultKey, value| SummaryEntry {
+            key,
+            value: Some(value),
+            note: String::new(),
+        };
+        let results = Summary {
+            from: 0.0,
+            to: 1.0,
+            samples: 50,
+            entries: vec![
+                entry(
+                    RunQuantity::PeakEnergy.into(),
+                    MeasuredValue::Number(2.966e-7),
+                ),
+                entry(
+                    Measure::LargestOverlap.into(),
+                    MeasuredValue::Number(3.04e-4),
+                ),
+                entry(RunQuantity::Shape.into(), MeasuredValue::Choice("cone")),
+                entry(
+                    RunQuantity::GalileiNumber.into(),
+                    MeasuredValue::Number(4.0),
+                ),
+            ],
+        };
+        let cell = |columns: &[TableColumn], head: &str| {
+            let column = columns.iter().find(|column| column.head == head);
+            column.expect(head).cell(&results)
+        };
+        assert_eq!(cell(COLLAPSE, "peak energy"), "2.97");
+        assert_eq!(cell(COLLAPSE, "largest overlap"), "0.0003");
+        assert_eq!(cell(COLLAPSE, "deposit shape"), "cone");
+        assert_eq!(cell(COLLAPSE, "ℛ"), "–");
+        assert_eq!(cell(DRUM, "√(1/Ga)"), "0.5000");
+    }
+}

@@ -185,7 +185,7 @@ fn numbers_ui(ui: &mut egui::Ui, run: &RunView) {
             ui.label(format!(
                 "{}: {}",
                 number::title(layer),
-                number::with_prefix(value, "J")
+                layer.quantity().text(value)
             ))
             .on_hover_text(layer.quantity().explanation());
         });
@@ -193,7 +193,7 @@ fn numbers_ui(ui: &mut egui::Ui, run: &RunView) {
     let residual = sample.value(Measure::EnergyResidual);
     let row = |measure: Measure, value: f64| TableRow {
         name: number::title(measure),
-        value: number::with_prefix(value, "J"),
+        value: measure.quantity().text(value),
         hint: measure.quantity().explanation(),
     };
     let works = [Measure::GravityWork, Measure::WallWork];
