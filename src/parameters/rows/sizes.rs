@@ -1,11 +1,11 @@
 //! How many grains there are, how large they are, and how large what holds them is.
 
+use crate::geometry::spheres_volume;
 use crate::parameters::Value;
 use crate::parameters::row::{InScene, Kind, Place, Row};
 use crate::physics::limits;
 use crate::physics::units;
 use crate::scene::{Scene, SceneCells, SceneContainer, SceneGrains, count_of};
-use std::f64::consts::PI;
 
 /// Most grains a field offers, as a multiple of the scene's.
 const MORE_GRAINS: f64 = 4.0;
@@ -288,7 +288,7 @@ fn set_grain_radius(scene: &mut Scene, wanted: f64) -> Option<()> {
     if species.iter().any(|kind| kind.radius != old) || wanted <= 0.0 {
         return None;
     }
-    let volume = solid_volume.unwrap_or_else(|| *count as f64 * 4.0 / 3.0 * PI * old.powi(3));
+    let volume = solid_volume.unwrap_or_else(|| spheres_volume(*count as f64, old));
     for kind in species.iter_mut() {
         kind.radius = wanted;
     }
