@@ -4,13 +4,15 @@
 //! path of its key. A scene that passes can be built: its grains fit, its names exist, its numbers
 //! are finite and within what the solver can bear.
 
+use super::container::{SceneContainer, ScenePlane, SceneTube, volume};
+use super::description::{Scene, TimeStep};
 use super::error::Problem;
+use super::grains::{SceneCells, SceneGrain, SceneGrains, SceneSpecies};
 use super::lattice::Lattice;
+use super::materials::{PairOverride, SceneMaterial};
 use super::mixture::size_classes;
-use super::{
-    PairOverride, Scene, SceneBody, SceneCells, SceneContainer, SceneGrain, SceneGrains,
-    SceneMaterial, ScenePlane, SceneShape, SceneSpecies, SceneTube, StoredCells, TimeStep,
-};
+use super::packing::StoredCells;
+use super::shape::{MOST_POINTS, MOST_SIDES, SceneBody, SceneShape};
 use crate::geometry::spheres_volume;
 use crate::physics::limits::{self, Limits};
 use crate::physics::{ContactLaw, Liquid, SmallestGap};
@@ -24,10 +26,6 @@ type Checked = Result<(), Problem>;
 const MOST_POLYHEDRA: usize = 200_000;
 /// Voronoi cells that are made to choose the grains from, in numbers of [`MOST_POLYHEDRA`].
 const CELLS_PER_GRAIN: usize = 2;
-/// Points of which a grain may be the hull.
-pub(super) const MOST_POINTS: usize = 60;
-/// Sides that a prism may have.
-pub(super) const MOST_SIDES: u32 = 30;
 /// Materials, species, planes or pairs a scene may have.
 const MOST_KINDS: usize = 200;
 /// States a run may write.
@@ -327,21 +325,6 @@ impl Scene {
             ));
         }
         Ok(())
-    }
-}
-
-/// Volume of a container that can be filled [m³].
-pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
-    match container {
-        SceneContainer::Drum { radius, width, .. } => Ok(PI * radius * radius * width),
-        SceneContainer::Box { min, max, .. } => Ok((*max - *min).element_product()),
-        SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
-            Err(Problem::new(
-                "grains",
-                "is a `Fill`, but the container is open",
-                "a `Drum` or a `Box` to fill, or the grains as a `List`",
-            ))
-        }
     }
 }
 

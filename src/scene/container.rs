@@ -1,7 +1,9 @@
 //! The walls of a scene.
 
+use super::error::Problem;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// The walls of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,5 +73,20 @@ impl SceneContainer {
     /// Whether it has a curved wall at the start, into which Voronoi cells are cut to fit.
     pub fn cuts_cells(&self) -> bool {
         matches!(self, Self::Drum { .. } | Self::Column { tube: Some(_), .. })
+    }
+}
+
+/// Volume of a container that can be filled [m³].
+pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
+    match container {
+        SceneContainer::Drum { radius, width, .. } => Ok(PI * radius * radius * width),
+        SceneContainer::Box { min, max, .. } => Ok((*max - *min).element_product()),
+        SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
+            Err(Problem::new(
+                "grains",
+                "is a `Fill`, but the container is open",
+                "a `Drum` or a `Box` to fill, or the grains as a `List`",
+            ))
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! The grains of a scene: a filling of spheres, Voronoi cells, or a list.
 
-use super::{SceneContainer, SceneShape, StoredCells, check, shape};
+use super::container::{SceneContainer, volume};
+use super::packing::StoredCells;
+use super::shape::{SceneBody, SceneShape, sphere_radius};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +93,26 @@ pub struct SceneGrain {
     pub film: Option<f64>,
 }
 
+impl SceneGrain {
+    /// What it takes up in space; none where its shape encloses nothing, or nothing is left of it to round.
+    pub fn body(&self) -> Option<SceneBody> {
+        let Some(rounding) = self.shape.rounding() else {
+            return Some(SceneBody::Sphere);
+        };
+        let core = self.shape.solid()?.eroded(rounding)?;
+        Some(SceneBody::Polyhedron {
+            core: core.turned(self.orientation).moved(self.position),
+            rounding,
+        })
+    }
+
+    /// Radius of the sphere of its volume [m].
+    pub fn equal_volume_radius(&self) -> f64 {
+        let solid = self.shape.solid();
+        solid.map_or(self.radius, |solid| sphere_radius(solid.moments().volume))
+    }
+}
+
 impl SceneCells {
     /// Volume of a cell of the lattice [m³].
     fn cell_volume(&self) -> f64 {
@@ -100,7 +122,7 @@ impl SceneCells {
     /// Radius of the sphere of the volume of the smallest grains that it makes in `container` [m].
     pub fn smallest_radius(&self, container: &SceneContainer) -> f64 {
         let whole = SMALLEST_CELL * self.cell_volume();
-        shape::sphere_radius(if container.cuts_cells() {
+        sphere_radius(if container.cuts_cells() {
             SMALLEST_PART * whole
         } else {
             whole
@@ -129,6 +151,6 @@ fn bed_volume(container: &SceneContainer) -> Option<f64> {
         SceneContainer::Column { radius, height, .. } => {
             Some(std::f64::consts::PI * radius * radius * height)
         }
-        closed => check::volume(closed).ok(),
+        closed => volume(closed).ok(),
     }
 }

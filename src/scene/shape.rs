@@ -2,11 +2,14 @@
 //!
 //! In: what a scene says of a shape. Out: the solid it is, about its own centroid, and the rounded core a grain of it has.
 
-use super::SceneGrain;
-use super::check::{MOST_POINTS, MOST_SIDES};
 use crate::geometry::Solid;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
+
+/// Points of which a grain may be the hull.
+pub(super) const MOST_POINTS: usize = 60;
+/// Sides that a prism may have.
+pub(super) const MOST_SIDES: u32 = 30;
 
 /// What a listed grain is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,26 +108,6 @@ impl SceneShape {
         };
         let centroid = solid.moments().centroid;
         Some(solid.moved(-centroid))
-    }
-}
-
-impl SceneGrain {
-    /// What it takes up in space; none where its shape encloses nothing, or nothing is left of it to round.
-    pub fn body(&self) -> Option<SceneBody> {
-        let Some(rounding) = self.shape.rounding() else {
-            return Some(SceneBody::Sphere);
-        };
-        let core = self.shape.solid()?.eroded(rounding)?;
-        Some(SceneBody::Polyhedron {
-            core: core.turned(self.orientation).moved(self.position),
-            rounding,
-        })
-    }
-
-    /// Radius of the sphere of its volume [m].
-    pub fn equal_volume_radius(&self) -> f64 {
-        let solid = self.shape.solid();
-        solid.map_or(self.radius, |solid| sphere_radius(solid.moments().volume))
     }
 }
 

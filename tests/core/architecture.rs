@@ -12,12 +12,7 @@ use std::fs;
 use std::path::Path;
 
 /// Folders that still have circles among what stands in them.
-const CIRCLES_LEFT: &[&str] = &[
-    "src/scene",
-    "src/solver",
-    "src/solver/polyhedra",
-    "src/solver/spheres",
-];
+const CIRCLES_LEFT: &[&str] = &["src/solver", "src/solver/polyhedra", "src/solver/spheres"];
 
 /// Columns by which code in braces is indented.
 const INDENT: usize = 4;

@@ -5,7 +5,8 @@
 
 use super::keys::{either, metres, missing_length};
 use crate::geometry::spheres_volume;
-use crate::scene::check::{check_container, fraction, volume};
+use crate::scene::check::{check_container, fraction};
+use crate::scene::container::volume;
 use crate::scene::error::Problem;
 use crate::scene::shape::rotation;
 use crate::scene::{

@@ -1,0 +1,111 @@
+//! From a file, a built-in scene or a text to a checked [`Scene`].
+
+use super::built_in::built_in;
+use super::description::Scene;
+use super::error::{self, SceneError};
+use super::file::SceneFile;
+use super::syntax;
+use ron::extensions::Extensions;
+use std::io::Read;
+use std::path::Path;
+
+/// Largest scene file that is read [bytes]: room for about half a million listed grains.
+const LARGEST_FILE: u64 = 64 << 20;
+
+impl Scene {
+    /// The scene in the file at `path`.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no scene, or states something impossible.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        Self::parse(&name, &read(path, &name)?)
+    }
+
+    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name or path.
+    ///
+    /// # Errors
+    /// As [`Scene::load`], and when there is neither such a file nor such a scene.
+    pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = name.as_ref();
+        if path.exists() {
+            return Self::load(path);
+        }
+        let name = path.display().to_string();
+        let wanted = name.strip_suffix(".ron").unwrap_or(&name);
+        let mut known = built_in().iter();
+        if let Some(scene) = known.find(|scene| scene.name == wanted || scene.path == name) {
+            return Self::parse(scene.path, scene.text);
+        }
+        let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
+        Err(SceneError::unreadable(
+            &name,
+            "there is no such file, nor a built-in scene of that name",
+            &format!("a file, or {}", error::one_of(&names)),
+        )
+        .advise(error::suggestion(wanted, &names)))
+    }
+
+    /// The scene that `text` states; `file` is what errors call it, and names of files in it are relative to its folder.
+    ///
+    /// # Errors
+    /// When the text is no scene, or states something impossible.
+    pub fn parse(file: &str, text: &str) -> Result<Self, SceneError> {
+        let text = text.trim_start_matches('\u{feff}');
+        if text.trim().is_empty() {
+            return Err(SceneError::unreadable(
+                file,
+                "the file is empty",
+                "a scene `(title: …, …)`",
+            ));
+        }
+        let refuse = |problem| SceneError::from_problem(file, text, problem);
+        let scene = ron::Options::default()
+            .with_default_extension(
+                Extensions::IMPLICIT_SOME
+                    | Extensions::UNWRAP_NEWTYPES
+                    | Extensions::UNWRAP_VARIANT_NEWTYPES,
+            )
+            .from_str::<SceneFile>(text)
+            .map_err(|error| syntax::explain(file, text, &error))?
+            .into_scene(folder_of(file))
+            .map_err(refuse)?;
+        scene.problem().map_err(refuse)?;
+        Ok(scene)
+    }
+
+    /// Whether every value makes sense and all fit together, as a scene made by a program may not. Parsed scenes do.
+    ///
+    /// # Errors
+    /// When a value does not.
+    pub fn check(&self) -> Result<(), SceneError> {
+        self.problem()
+            .map_err(|problem| SceneError::outside_of_files(&self.title, problem))
+    }
+}
+
+fn folder_of(file: &str) -> &Path {
+    Path::new(file).parent().unwrap_or(Path::new(""))
+}
+
+/// Text of the file at `path`, which errors call `name`.
+fn read(path: &Path, name: &str) -> Result<String, SceneError> {
+    let refuse = |fault: String| SceneError::unreadable(name, fault, "a scene file in RON");
+    if path.is_dir() {
+        return Err(refuse("this is a folder".to_owned()));
+    }
+    let unreadable = |error: std::io::Error| refuse(format!("cannot be read: {error}"));
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a file that is too large, even where its size is not known beforehand.
+    let read = file.take(LARGEST_FILE + 1).read_to_end(&mut bytes);
+    if read.map_err(unreadable)? as u64 > LARGEST_FILE {
+        return Err(refuse("is larger than 64 MiB".to_owned()));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
+        refuse("is not UTF-8 text".to_owned()).at_line(&text, good)
+    })
+}
