@@ -42,15 +42,24 @@ mod workers;
 pub use crate::lanes::Processor;
 pub use fault::{Fault, FaultKind};
 pub use profile::{Profile, Stage};
-pub use terms::{ForceTerms, NormalLaw, force_terms};
+pub use terms::{ForceTerms, NormalLaw};
 pub use time_step::{Extremes, Limit, TimeStepAdvice, advise};
 
-use crate::world::{Clock, World};
+use crate::world::{Clock, Contact, World};
 use crate::{lanes, physics::law};
 use polyhedra::Polyhedra;
 use spheres::Spheres;
 use std::time::Instant;
 use workers::WorkerPool;
+
+/// The terms of `contact`: one entry for spheres, one for each pair of features of polyhedra.
+pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
+    if world.polyhedra.is_some() {
+        polyhedra::force_terms(world, contact)
+    } else {
+        vec![terms::terms_of_spheres(world, contact)]
+    }
+}
 
 /// Advances worlds.
 pub struct Solver {

@@ -14,7 +14,6 @@ use super::law::{
     BridgeConstants, FilmConstants, Law, LawUser, NormalContact, PairConstants, Pairing,
     attraction, contributions, drag, normal_contact, rolling_gain,
 };
-use super::polyhedra;
 use crate::physics::{BridgeLaw, ContactLaw, CoulombBound, Liquid};
 use crate::world::{Contact, Feature, Partner, World};
 use glam::DVec3;
@@ -73,17 +72,14 @@ impl ForceTerms {
     }
 }
 
-/// The terms of `contact`: one entry for spheres, one for each pair of features of polyhedra.
-pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
-    if world.polyhedra.is_some() {
-        return polyhedra::force_terms(world, contact);
-    }
+/// The terms of a `contact` of spheres.
+pub(super) fn terms_of_spheres(world: &World, contact: &Contact) -> ForceTerms {
     let meeting = Meeting::of(world, contact);
-    vec![world.law.choose(Terms {
+    world.law.choose(Terms {
         meeting: &meeting,
         world,
         contact,
-    })]
+    })
 }
 
 /// The terms of a contact of spheres.

@@ -11,9 +11,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-/// Folders that still have circles among what stands in them.
-const CIRCLES_LEFT: &[&str] = &["src/solver", "src/solver/polyhedra", "src/solver/spheres"];
-
 /// Columns by which code in braces is indented.
 const INDENT: usize = 4;
 
@@ -448,10 +445,9 @@ fn circles(arrows: &Neighbours) -> BTreeSet<BTreeSet<String>> {
 }
 
 /// A sentence for every circle in folders other than those `left`.
-fn circles_in_words(tree: &Tree, left: &[&str]) -> Vec<String> {
+fn circles_in_words(tree: &Tree) -> Vec<String> {
     let mut said = Vec::new();
-    let folders = neighbours(tree).into_iter();
-    for (folder, arrows) in folders.filter(|(folder, _)| !left.contains(&folder.as_str())) {
+    for (folder, arrows) in neighbours(tree) {
         for circle in circles(&arrows) {
             let mut text = format!("In {folder} these name each other in a circle:");
             for (from, to) in circle
@@ -516,7 +512,7 @@ fn folders_keep_the_order_that_their_own_tables_state() {
 
 #[test]
 fn neighbours_never_name_each_other_in_a_circle() {
-    let said = circles_in_words(&Tree::of(&sources()), CIRCLES_LEFT);
+    let said = circles_in_words(&Tree::of(&sources()));
     assert!(said.is_empty(), "{}", said.join("\n"));
 }
 
@@ -537,11 +533,10 @@ fn a_circle_through_what_a_folder_hands_on_is_found() {
         ("ui/dock.rs", "use super::Menu;\npub struct Dock;"),
         ("ui/menu.rs", "pub struct Menu(Option<Box<super::Dock>>);"),
     ];
-    let said = circles_in_words(&crate_of(&files), &[]);
+    let said = circles_in_words(&crate_of(&files));
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("dock → menu (Menu)"), "{said:?}");
     assert!(said[0].contains("menu → dock (Dock)"), "{said:?}");
-    assert_eq!(circles_in_words(&crate_of(&files), &["src/ui"]), [""; 0]);
 }
 
 #[test]
@@ -561,7 +556,7 @@ fn tests_comments_and_faces_make_no_circle() {
             "use crate::ui::words::{self, short};\npub struct Dock;",
         ),
     ];
-    assert_eq!(circles_in_words(&crate_of(&files), &[]), [""; 0]);
+    assert_eq!(circles_in_words(&crate_of(&files)), [""; 0]);
 }
 
 #[test]

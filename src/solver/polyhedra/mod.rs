@@ -18,6 +18,7 @@
 //! | `nearest` | nearest points of two features |
 //! | `workspace` | which features are measured in a step, and their measurement |
 //! | `forces` | contact forces |
+//! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
 //! | `terms` | contact forces again, term by term |
 //!
@@ -33,6 +34,7 @@ mod neighbours;
 mod pairs;
 mod share;
 mod terms;
+mod working_copy;
 mod workspace;
 
 pub use terms::force_terms;
@@ -54,6 +56,8 @@ use neighbours::{PairList, Sides, partner};
 use pairs::PairForce;
 use share::PolyhedraShare;
 use std::sync::Arc;
+use working_copy::Known;
+pub use working_copy::Polyhedra;
 use workspace::Workspace;
 
 /// Width of the skin in which pairs are kept, relative to the smallest bounding radius.
@@ -62,60 +66,6 @@ const SKIN: f64 = 0.2;
 /// How far a body or a wall may move until the pairs must be found anew, relative to the skin: less
 /// than half of it, by more than rounding.
 const SLACK: f64 = 0.499;
-
-/// The working copy of a world of polyhedra.
-#[derive(Default)]
-pub struct Polyhedra {
-    /// What moves of every grain.
-    bodies: Vec<Body>,
-    /// What acts on every grain.
-    loads: Vec<Load>,
-    /// Vertices, edges and faces along the body axes.
-    shapes: Shapes,
-    /// Every vertex where it is now [m].
-    vertices: Vec<Row>,
-    /// The plane of every face: outward unit normal, distance from the origin [m].
-    planes: Vec<Row>,
-    /// The walls at the time of the positions.
-    walls: Walls,
-    /// Pairs of bodies near each other.
-    pairs: PairList,
-    /// The contact force of every pair; of those that do not act, any.
-    forces: Vec<PairForce>,
-    /// Which pairs act.
-    acting: Vec<bool>,
-    /// Which pairs are whose.
-    sides: Sides,
-    /// Where the bodies were when the pairs were found.
-    reference: Vec<Row>,
-    /// Where the walls were then.
-    reference_surfaces: Vec<Surface>,
-    /// Width of the skin in which pairs are kept [m].
-    skin: f64,
-    /// Sizes that bound how far two bodies move in a step.
-    extents: Extents,
-    /// What the pairs' constants were computed from.
-    known: Known,
-    /// The shapes that the tables were made from.
-    known_shapes: Option<Arc<[Polyhedron]>>,
-    /// Room to work in, one for each worker.
-    workspaces: Vec<Workspace>,
-    /// Length of a step [s].
-    dt: f64,
-    /// Gravity [m/s²].
-    gravity: Row,
-    /// Whether the features of a pair share its stiffness.
-    rule: FeatureRule,
-}
-
-/// What the pairs' constants depend on.
-#[derive(Default, PartialEq)]
-struct Known {
-    law: ContactLaw,
-    materials: Materials,
-    species: Vec<SpeciesId>,
-    masses: Vec<f64>,
-}
 
 impl Kernel for Polyhedra {
     type Share<'a> = PolyhedraShare<'a>;

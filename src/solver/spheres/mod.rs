@@ -13,6 +13,7 @@
 //! | `contacts` | the pair loop: geometry, contact law, sliding, rolling |
 //! | `bridges` | liquid bridges in the pair loop |
 //! | `integrate` | sums of forces, velocity Verlet |
+//! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
 //!
 //! Not here: the order of the stages (`super::step`), formulas of force laws
@@ -26,6 +27,7 @@ mod neighbours;
 mod rows;
 mod share;
 mod slots;
+mod working_copy;
 
 use super::FaultKind;
 use super::row::{Row, length_squared, row, vector};
@@ -43,39 +45,10 @@ use neighbours::{Neighbours, PairList, grain_key, wall_key};
 use rows::{Body, Pair};
 use share::SphereShare;
 use slots::Slots;
+pub use working_copy::Spheres;
 
 /// A grain that moves by more than this share of its radius in one step is lost.
 const LARGEST_MOVE: f64 = 0.1;
-
-/// The working copy of a world of spheres.
-#[derive(Default)]
-pub struct Spheres {
-    /// In which slot each grain's rows stand.
-    slots: Slots,
-    /// What the pair loop reads of every grain, and the padding body behind them.
-    bodies: Vec<Body>,
-    /// What only the integration reads or writes of every grain.
-    loads: Vec<Load>,
-    /// The walls at the time of the positions.
-    walls: Walls,
-    /// Who may touch whom, with the histories of their contacts.
-    neighbours: Neighbours,
-    /// Constants of each kind of pair.
-    kinds: Kinds,
-    /// Step, gravity and the slack of the lists.
-    motion: Motion,
-    /// Which contact law presses the grains.
-    law: ContactLaw,
-    /// The liquid, where there is any.
-    liquid: Option<Liquid>,
-    /// Volume of the film on every grain and, of none, on the padding body; empty where nothing is
-    /// wet [m³].
-    films: Vec<f64>,
-    /// What the bridges of every grain have done; empty where nothing is wet.
-    bridge_loads: Vec<BridgeLoad>,
-    /// Bridges that broke since the world was taken in.
-    ruptures: u64,
-}
 
 impl Kernel for Spheres {
     type Share<'a> = SphereShare<'a>;

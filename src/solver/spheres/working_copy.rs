@@ -1,0 +1,39 @@
+//! What the solver keeps of a world of spheres between loading and storing it.
+
+use super::super::walls::Walls;
+use super::integrate::{BridgeLoad, Load, Motion};
+use super::kinds::Kinds;
+use super::neighbours::Neighbours;
+use super::rows::Body;
+use super::slots::Slots;
+use crate::physics::{ContactLaw, Liquid};
+
+/// The working copy of a world of spheres.
+#[derive(Default)]
+pub struct Spheres {
+    /// In which slot each grain's rows stand.
+    pub(super) slots: Slots,
+    /// What the pair loop reads of every grain, and the padding body behind them.
+    pub(super) bodies: Vec<Body>,
+    /// What only the integration reads or writes of every grain.
+    pub(super) loads: Vec<Load>,
+    /// The walls at the time of the positions.
+    pub(super) walls: Walls,
+    /// Who may touch whom, with the histories of their contacts.
+    pub(super) neighbours: Neighbours,
+    /// Constants of each kind of pair.
+    pub(super) kinds: Kinds,
+    /// Step, gravity and the slack of the lists.
+    pub(super) motion: Motion,
+    /// Which contact law presses the grains.
+    pub(super) law: ContactLaw,
+    /// The liquid, where there is any.
+    pub(super) liquid: Option<Liquid>,
+    /// Volume of the film on every grain and, of none, on the padding body; empty where nothing is
+    /// wet [m³].
+    pub(super) films: Vec<f64>,
+    /// What the bridges of every grain have done; empty where nothing is wet.
+    pub(super) bridge_loads: Vec<BridgeLoad>,
+    /// Bridges that broke since the world was taken in.
+    pub(super) ruptures: u64,
+}
