@@ -6,5 +6,5 @@
 mod polyhedron;
 mod solid;
 
-pub use polyhedron::{Polyhedron, Rounded, sphere_radius, sphere_volume, spheres_volume};
+pub use polyhedron::{Polyhedron, Rounded, sphere_volume, spheres_volume};
 pub use solid::{Flaw, HalfSpace, Moments, Solid};

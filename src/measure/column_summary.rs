@@ -5,7 +5,7 @@
 
 use super::collapse::Collapse;
 use super::column::{Column, cone_volume};
-use super::deposit::Deposit;
+use super::deposit::{Deposit, HeightProfile};
 use super::quantity::MeasuredValue;
 use super::run_quantity::RunQuantity;
 use super::sampled_quantity::Measure;
@@ -53,7 +53,9 @@ impl Summary {
         let ratio = column.cone_volume_ratio(front, height);
         self.add(RunQuantity::RelativeConeVolume, ratio);
         let profile = Deposit::of(world).map(|deposit| deposit.height_profile());
-        let flat = profile.as_ref().map_or(f64::NAN, |p| p.flat_radius());
+        let flat = profile
+            .as_ref()
+            .map_or(f64::NAN, HeightProfile::flat_radius);
         self.add(RunQuantity::FlatRadius, flat);
         let shape = profile.map(|profile| profile.shape(front).word());
         self.add_value(RunQuantity::Shape, shape.map(MeasuredValue::Choice));

@@ -10,7 +10,6 @@
 
 use super::column::volume;
 use super::surface::{SurfaceLine, mean_radius};
-use crate::geometry::sphere_radius;
 use crate::world::{Shape, World};
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -40,7 +39,7 @@ pub fn packing_fraction(world: &World, surface: &SurfaceLine) -> f64 {
 /// Radius of grain `i`, of a polyhedron that of the sphere of its volume [m].
 fn radius(world: &World, i: usize) -> f64 {
     match world.polyhedra {
-        Some(_) => sphere_radius(volume(world, i)),
+        Some(_) => (0.75 / PI * volume(world, i)).cbrt(),
         None => world.grains.radius[i],
     }
 }
