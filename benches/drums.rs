@@ -1,8 +1,9 @@
-//! Whole steps of the three drums of Kasper et al. 2021, dry and wet, per grain and step, on one thread and two; where the
-//! time of a step goes; the neighbour search alone; one contact law alone.
+//! Whole steps of the three drums of Kasper et al. 2021, dry and wet, per grain and step, on one
+//! thread and two; where the time of a step goes; the neighbour search alone; one contact law
+//! alone.
 //!
-//! `cargo bench --no-default-features --bench drums`, see `benches/README.md`. Beds are settled once and kept with the
-//! user's own.
+//! `cargo bench --no-default-features --bench drums`, see `benches/README.md`. Beds are settled
+//! once and kept with the user's own.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use grainfall::scene::Scene;
@@ -48,7 +49,8 @@ fn settled(scene: Scene) -> World {
     }
 }
 
-/// Whole steps, in calls of 1000, as runs take them between two samples; throughput is in grains times steps.
+/// Whole steps, in calls of 1000, as runs take them between two samples; throughput is in grains
+/// times steps.
 fn steps(criterion: &mut Criterion) {
     const STEPS: u64 = 1000;
     let mut group = criterion.benchmark_group("step");
@@ -91,7 +93,8 @@ fn steps_in_lanes(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A solver that knows nothing takes one step: cell grid and lists, copying in and out, and that step.
+/// A solver that knows nothing takes one step: cell grid and lists, copying in and out, and that
+/// step.
 fn neighbour_search(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lists from nothing and one step");
     for (name, scene) in drums() {

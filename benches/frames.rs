@@ -1,7 +1,8 @@
-//! What a frame of the picture costs the processor when the world in it is another, without a graphics device: colours,
-//! shadows and places of all grains, for two drums of spheres and a column of as many polyhedra as the tallest one of
-//! Man et al. 2023; and what it costs to make the meshes of those polyhedra, once for a scene. Then the same for the whole
-//! window, every panel open and a grain under the microscope, with what a frame allocates.
+//! What a frame of the picture costs the processor when the world in it is another, without a
+//! graphics device: colours, shadows and places of all grains, for two drums of spheres and a
+//! column of as many polyhedra as the tallest one of Man et al. 2023; and what it costs to make the
+//! meshes of those polyhedra, once for a scene. Then the same for the whole window, every panel
+//! open and a grain under the microscope, with what a frame allocates.
 //!
 //! `cargo bench --bench frames`, see `benches/README.md`.
 

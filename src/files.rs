@@ -5,7 +5,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-/// Writes the file at `path` with what `fill` writes, whole or not at all; missing folders are made.
+/// Writes the file at `path` with what `fill` writes, whole or not at all; missing folders are
+/// made.
 ///
 /// # Errors
 /// When it cannot be written; nothing is left behind then.
@@ -22,8 +23,9 @@ pub fn write_whole(
     Ok(())
 }
 
-/// An empty folder under a name of its own beside `path`, in which to make what is then given that name as a whole; it goes
-/// away with what is in it when it is dropped. Missing folders above are made.
+/// An empty folder under a name of its own beside `path`, in which to make what is then given that
+/// name as a whole; it goes away with what is in it when it is dropped. Missing folders above are
+/// made.
 ///
 /// # Errors
 /// When it cannot be made.

@@ -1,8 +1,9 @@
 //! The solver's small vector vocabulary: numbers that stand side by side.
 //!
-//! [`Lanes`] is what the pair loop computes with: one number (the scalar twin, for any processor), four (AVX2) or eight
-//! (AVX-512). Every operation is an exact IEEE one, taken element by element and never fused, so that a result has the
-//! same bits in any width. [`Processor::detect`] chooses at run time.
+//! [`Lanes`] is what the pair loop computes with: one number (the scalar twin, for any processor),
+//! four (AVX2) or eight (AVX-512). Every operation is an exact IEEE one, taken element by element
+//! and never fused, so that a result has the same bits in any width. [`Processor::detect`] chooses
+//! at run time.
 
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -60,12 +61,14 @@ pub trait Lanes:
     fn count(mask: Self::Mask) -> u32;
     /// One number from each lane; the first [`Lanes::COUNT`] of them count.
     fn numbers(self) -> [f64; WIDEST];
-    /// `m` between √½ and √2 and whole `k` with `m 2ᵏ` the number, where that is positive and normal.
+    /// `m` between √½ and √2 and whole `k` with `m 2ᵏ` the number, where that is positive and
+    /// normal.
     fn split(self) -> (Self, Self);
 }
 
-/// How [`Lanes::split`] takes the bits of a number apart. With those of √½ taken off, the exponent's are those of `k`, off by
-/// [`split_bits::BIAS`]; the others, put on √½'s again, are those of `m`.
+/// How [`Lanes::split`] takes the bits of a number apart. With those of √½ taken off, the
+/// exponent's are those of `k`, off by [`split_bits::BIAS`]; the others, put on √½'s again, are
+/// those of `m`.
 mod split_bits {
     /// The bits of √½.
     pub const ROOT_OF_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
@@ -135,7 +138,8 @@ pub fn minus<N: Lanes>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// What `of` makes of the numbers of the lanes; where there are fewer than [`WIDEST`], the last one fills up.
+/// What `of` makes of the numbers of the lanes; where there are fewer than [`WIDEST`], the last one
+/// fills up.
 #[inline(always)]
 pub fn side_by_side<N: Lanes, T>(of: impl Fn(usize) -> T) -> [T; WIDEST] {
     std::array::from_fn(|k| of(k.min(N::COUNT - 1)))
@@ -330,7 +334,8 @@ mod avx {
     };
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
-    /// Proof that the processor has AVX2: only [`Avx2::detect`] makes one. Every intrinsic below rests on one of the two.
+    /// Proof that the processor has AVX2: only [`Avx2::detect`] makes one. Every intrinsic below
+    /// rests on one of the two.
     #[derive(Clone, Copy, Debug)]
     pub struct Avx2(());
 
@@ -831,7 +836,8 @@ mod avx {
     }
 }
 
-/// Asks for the memory at the beginning of `items`, up to `LINES` cache lines of it, before it is needed.
+/// Asks for the memory at the beginning of `items`, up to `LINES` cache lines of it, before it is
+/// needed.
 #[inline(always)]
 pub fn prefetch<T, const LINES: usize>(items: &[T]) {
     #[cfg(target_arch = "x86_64")]

@@ -21,9 +21,9 @@
 //!                 + SimulationPlugin        + the same SimulationPlugin
 //! ```
 //!
-//! A module names only modules above it in this table. Nothing but `simulation`, `headless` and what is drawn knows of
-//! Bevy: without features the package is a library without it; `headless` adds the program without a window, `desktop`
-//! (the default) the window.
+//! A module names only modules above it in this table. Nothing but `simulation`, `headless` and
+//! what is drawn knows of Bevy: without features the package is a library without it; `headless`
+//! adds the program without a window, `desktop` (the default) the window.
 //!
 //! | module | holds |
 //! |---|---|
@@ -48,10 +48,11 @@
 //! | `window` | the app that opens them in a window, or draws them into a picture |
 //!
 //! # Conventions
-//! SI units everywhere in state, files and output; other units only in panels and in scene keys that name their unit.
-//! The frame is right-handed with x to the right, **y up** and z towards the viewer; a drum's axis is z, and a positive
-//! drum speed turns anticlockwise as the viewer sees it. A contact's normal points from grain `i` to its partner `j`.
-//! State and forces are `f64`; `f32` only on the way to the screen.
+//! SI units everywhere in state, files and output; other units only in panels and in scene keys
+//! that name their unit. The frame is right-handed with x to the right, **y up** and z towards the
+//! viewer; a drum's axis is z, and a positive drum speed turns anticlockwise as the viewer sees it.
+//! A contact's normal points from grain `i` to its partner `j`. State and forces are `f64`; `f32`
+//! only on the way to the screen.
 
 #![cfg_attr(
     test,

@@ -1,7 +1,7 @@
 //! The command line: what to open, what to change, and whether a window is wanted.
 //!
-//! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state than a file states,
-//! 130 interrupted.
+//! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state
+//! than a file states, 130 interrupted.
 
 use clap::{Args, Parser, Subcommand};
 use grainfall::headless::{self, Progress};
@@ -51,7 +51,8 @@ struct Arguments {
 #[cfg(feature = "desktop")]
 #[derive(Args)]
 struct PictureArguments {
-    /// Open with two runs side by side, the right one with this value of a live parameter: viscosity=1.41
+    /// Open with two runs side by side, the right one with this value of a live parameter:
+    /// viscosity=1.41
     #[arg(long, value_name = "KEY=VALUE", conflicts_with = "no_render")]
     compare: Option<String>,
     /// Take a picture of the window and end
@@ -111,7 +112,8 @@ struct What {
     /// Threads the solver works on [default: all cores, one less with a window]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     threads: Option<u16>,
-    /// Commands to carry out when their time comes: a list in RON or JSON, a run's summary.json, or a session
+    /// Commands to carry out when their time comes: a list in RON or JSON, a run's summary.json, or
+    /// a session
     #[arg(long, value_name = "FILE")]
     commands: Option<PathBuf>,
 }
@@ -120,7 +122,8 @@ struct What {
 enum Task {
     /// Run a scene's variations side by side and set their results beside each other
     ///
-    /// Stopped with Ctrl-C, it goes on where it was when it is called again. Results: table.csv, table.md and plots.
+    /// Stopped with Ctrl-C, it goes on where it was when it is called again. Results: table.csv,
+    /// table.md and plots.
     Sweep {
         /// A scene file, or the name of a built-in scene
         scene: String,
@@ -351,7 +354,8 @@ fn open_window(
 const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
                          `desktop`";
 
-/// Signals that follow each other sooner are one: tools such as `timeout` send theirs to a process and to its whole group.
+/// Signals that follow each other sooner are one: tools such as `timeout` send theirs to a process
+/// and to its whole group.
 const ONE_SIGNAL: Duration = Duration::from_millis(500);
 
 /// Becomes true when somebody asks the program to end; a second time ends it at once.

@@ -1,7 +1,7 @@
 //! Convex solids with plane faces, and the rounded polyhedra that are made of them.
 //!
-//! In: points, boxes, half-spaces. Out: corners and faces, integrals, cut, eroded and rounded solids. Nothing here knows of a
-//! world.
+//! In: points, boxes, half-spaces. Out: corners and faces, integrals, cut, eroded and rounded
+//! solids. Nothing here knows of a world.
 
 mod polyhedron;
 mod solid;

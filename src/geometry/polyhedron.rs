@@ -5,10 +5,12 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// A convex core and the radius by which it is rounded: the body is all that lies within `rounding` of the core.
+/// A convex core and the radius by which it is rounded: the body is all that lies within `rounding`
+/// of the core.
 ///
-/// The body frame has its origin at the centroid of the solid that mass and inertia belong to and its axes along that
-/// solid's principal axes. A core of one vertex, without edges or faces, is a sphere.
+/// The body frame has its origin at the centroid of the solid that mass and inertia belong to and
+/// its axes along that solid's principal axes. A core of one vertex, without edges or faces, is a
+/// sphere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Polyhedron {
     /// Corners of the core [m].
@@ -37,8 +39,9 @@ pub struct Rounded {
 }
 
 impl Polyhedron {
-    /// `solid` with its edges and corners rounded: it is eroded by `rounding` [m], then dilated by it, so that flat faces
-    /// stay where they were. Volume and moments are those of `solid` itself, as in the program of Man et al. 2023.
+    /// `solid` with its edges and corners rounded: it is eroded by `rounding` [m], then dilated by
+    /// it, so that flat faces stay where they were. Volume and moments are those of `solid` itself,
+    /// as in the program of Man et al. 2023.
     ///
     /// # Errors
     /// [`Flaw::Empty`] where erosion leaves nothing.
@@ -90,8 +93,8 @@ impl Polyhedron {
 }
 
 impl Rounded {
-    /// Whether it is a body that a world can hold, as one from a file may not be: finite, of positive size, its edges and
-    /// faces between corners that exist.
+    /// Whether it is a body that a world can hold, as one from a file may not be: finite, of
+    /// positive size, its edges and faces between corners that exist.
     pub fn is_sound(&self) -> bool {
         let shape = &self.shape;
         let exists = |&v: &u16| usize::from(v) < shape.vertices.len();

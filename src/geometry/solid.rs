@@ -1,19 +1,21 @@
 //! A convex solid with plane faces: cutting, merging, integrals.
 //!
-//! In: a box, points or half-spaces. Out: corners and faces, volume, centroid and second moments, the solid eroded by a
-//! depth. Everything is computed with additions, multiplications, divisions and square roots alone, so that the bits do
-//! not depend on the machine.
+//! In: a box, points or half-spaces. Out: corners and faces, volume, centroid and second moments,
+//! the solid eroded by a depth. Everything is computed with additions, multiplications, divisions
+//! and square roots alone, so that the bits do not depend on the machine.
 
 use glam::{DMat3, DQuat, DVec3};
 
-/// Distance from a plane, in sizes of the solid, below which a corner counts as lying in it. Rounding is a ten-thousandth
-/// of it.
+/// Distance from a plane, in sizes of the solid, below which a corner counts as lying in it.
+/// Rounding is a ten-thousandth of it.
 const SLACK: f64 = 1e-12;
-/// Corners nearer to each other than this, in sizes of the solid, are made one by [`Solid::merged`].
+/// Corners nearer to each other than this, in sizes of the solid, are made one by
+/// [`Solid::merged`].
 const SAME_CORNER: f64 = 1e-7;
 /// Turns after which the Jacobi iteration ends; four or five do.
 const MOST_SWEEPS: usize = 20;
-/// Products of inertia below this part of the second moments count as zero: the axes of a cube are then its edges.
+/// Products of inertia below this part of the second moments count as zero: the axes of a cube are
+/// then its edges.
 const NO_PRODUCT: f64 = 1e-14;
 
 /// All points `x` with `normal · x ≤ offset`.
@@ -65,7 +67,8 @@ pub enum Flaw {
 }
 
 impl Solid {
-    /// The solid with these corners [m] and faces, each a loop of corners, anticlockwise seen from outside.
+    /// The solid with these corners [m] and faces, each a loop of corners, anticlockwise seen from
+    /// outside.
     pub fn new(vertices: Vec<DVec3>, faces: Vec<Vec<u16>>) -> Self {
         let (min, max) = bounds(&vertices);
         Self {
@@ -109,8 +112,8 @@ impl Solid {
         solid
     }
 
-    /// The convex hull of `points`; none where they lie in one plane. Meant for a few dozen points: the work grows with
-    /// the third to fourth power of their number.
+    /// The convex hull of `points`; none where they lie in one plane. Meant for a few dozen points:
+    /// the work grows with the third to fourth power of their number.
     pub fn hull(points: &[DVec3]) -> Option<Self> {
         let (min, max) = bounds(points);
         let size = (max - min).max_element();
@@ -157,8 +160,8 @@ impl Solid {
         self.drop_unused();
     }
 
-    /// The solid with every face moved inwards by `depth` [m]; none where nothing is left. Faces that shrink to nothing
-    /// vanish, and corners that come together are made one.
+    /// The solid with every face moved inwards by `depth` [m]; none where nothing is left. Faces
+    /// that shrink to nothing vanish, and corners that come together are made one.
     pub fn eroded(&self, depth: f64) -> Option<Self> {
         let (min, max) = bounds(&self.vertices);
         let planes: Vec<HalfSpace> = (0..self.faces.len())
@@ -232,8 +235,8 @@ impl Solid {
         edges
     }
 
-    /// Volume, centroid and second moments, exact but for rounding: the sum over the tetrahedra between a point inside and
-    /// the triangles of the faces.
+    /// Volume, centroid and second moments, exact but for rounding: the sum over the tetrahedra
+    /// between a point inside and the triangles of the faces.
     pub fn moments(&self) -> Moments {
         let apex = self.vertices.iter().sum::<DVec3>() / self.vertices.len().max(1) as f64;
         let mut volume = 0.0;
@@ -260,8 +263,8 @@ impl Solid {
         }
     }
 
-    /// Whether it is a closed convex surface: every edge in exactly two faces, Euler's formula, no corner outside of any
-    /// face, every loop anticlockwise seen from outside.
+    /// Whether it is a closed convex surface: every edge in exactly two faces, Euler's formula, no
+    /// corner outside of any face, every loop anticlockwise seen from outside.
     ///
     /// # Errors
     /// The first [`Flaw`] there is.
@@ -346,9 +349,11 @@ impl Solid {
 }
 
 impl Moments {
-    /// The principal axes as a rotation from them to the present axes, and the second moments along them [m⁵].
+    /// The principal axes as a rotation from them to the present axes, and the second moments along
+    /// them [m⁵].
     ///
-    /// Jacobi's iteration: of all possible choices the one nearest to the present axes, right-handed.
+    /// Jacobi's iteration: of all possible choices the one nearest to the present axes,
+    /// right-handed.
     pub fn principal_axes(&self) -> (DQuat, DVec3) {
         let mut moments = self.second.to_cols_array_2d();
         let mut axes = DMat3::IDENTITY.to_cols_array_2d();
@@ -433,8 +438,9 @@ fn supporting(points: &[DVec3], a: DVec3, b: DVec3, c: DVec3, slack: f64) -> Opt
     })
 }
 
-/// What is left of a face when the corners with heights above `slack` are cut off. New corners are added to `vertices` at
-/// height zero; `cuts` remembers them by the edge they cut, as two faces share each.
+/// What is left of a face when the corners with heights above `slack` are cut off. New corners are
+/// added to `vertices` at height zero; `cuts` remembers them by the edge they cut, as two faces
+/// share each.
 fn cut_face(
     face: &[u16],
     vertices: &mut Vec<DVec3>,
@@ -466,7 +472,8 @@ fn cut_face(
     left
 }
 
-/// The face that closes `faces` where they were cut: the loop of those sides in the plane that no other face shares.
+/// The face that closes `faces` where they were cut: the loop of those sides in the plane that no
+/// other face shares.
 fn cap(faces: &[Vec<u16>], in_plane: impl Fn(u16) -> bool) -> Option<Vec<u16>> {
     let open: Vec<[u16; 2]> = faces
         .iter()

@@ -1,8 +1,8 @@
 //! The program without a window: an app whose systems step a run, progress bars, what is printed.
 //!
-//! In: a [`crate::runner::Job`] or a [`Sweep`]. Out: their files and a word on the terminal. The run is moved by the
-//! same system as in the window, inline and as fast as the machine can; the loop that moves it to its
-//! end, records it and stops it is the one of [`crate::runner`].
+//! In: a [`crate::runner::Job`] or a [`Sweep`]. Out: their files and a word on the terminal. The
+//! run is moved by the same system as in the window, inline and as fast as the machine can; the
+//! loop that moves it to its end, records it and stops it is the one of [`crate::runner`].
 
 mod pack;
 mod program;

@@ -214,7 +214,8 @@ impl Engine {
         }
     }
 
-    /// Carries `command` out, or keeps it until there is a run that stands where it was asked to go.
+    /// Carries `command` out, or keeps it until there is a run that stands where it was asked to
+    /// go.
     fn dispatch(&mut self, command: LabCommand) {
         if self.must_wait(&command) {
             self.waiting.push(command);

@@ -154,8 +154,8 @@ impl RunView {
         self.news.as_ref().map_or(&[], |news| &news.parameters)
     }
 
-    /// Present value of `parameter`, or the value asked for where that is still to be carried out; NaN
-    /// where the scene has no such parameter.
+    /// Present value of `parameter`, or the value asked for where that is still to be carried out;
+    /// NaN where the scene has no such parameter.
     pub fn value(&self, parameter: &Parameter) -> Value {
         let asked = self.asked.get(parameter).copied();
         let present = || parameter.read(self.world()?);

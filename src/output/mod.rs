@@ -1,7 +1,7 @@
 //! The files that a run leaves behind.
 //!
-//! In: a [`RunSoFar`] of a run on its way. Out: a folder of files, each whole, in SI units. Not here:
-//! when a run holds for its outputs and what is told meanwhile (see `runner`).
+//! In: a [`RunSoFar`] of a run on its way. Out: a folder of files, each whole, in SI units. Not
+//! here: when a run holds for its outputs and what is told meanwhile (see `runner`).
 //!
 //! Each row of the table uses only rows below it.
 //!

@@ -114,7 +114,8 @@ impl<'a> Cells<'a> {
         })
     }
 
-    /// For each polyhedron its number of faces, then for each of them its number of points and these.
+    /// For each polyhedron its number of faces, then for each of them its number of points and
+    /// these.
     fn faces(self) -> impl Iterator<Item = i64> {
         let shapes = self.shapes().zip(self.offsets());
         let polyhedra = shapes.filter(|(shape, _)| !shape.faces.is_empty());

@@ -4,7 +4,8 @@ use crate::measure::{FlowHistory, LEFT_OUT, SMALLEST_DROP, Series, Summary, resu
 use crate::run::{Run, StampedCommand};
 use crate::world::World;
 
-/// A run so far, as files and results show it: its present state and what was kept of it until then.
+/// A run so far, as files and results show it: its present state and what was kept of it until
+/// then.
 #[derive(Clone, Copy)]
 pub struct RunSoFar<'a> {
     /// The state now.

@@ -1,7 +1,7 @@
 //! VTK's XML files: a head that describes arrays of numbers, and behind it the numbers themselves.
 //!
-//! In: the arrays of a data set. Out: a `.vtp` or `.vtu` file as the VTK file formats' chapter on XML
-//! has it, with its numbers appended raw, little endian, each array behind its length in bytes.
+//! In: the arrays of a data set. Out: a `.vtp` or `.vtu` file as the VTK file formats' chapter on
+//! XML has it, with its numbers appended raw, little endian, each array behind its length in bytes.
 //! Number by number: a file is larger than the world it shows, and is never held whole. Not here:
 //! reading, compression, other kinds of data sets.
 

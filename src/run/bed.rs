@@ -15,13 +15,15 @@ use std::fs;
 use std::io;
 use std::path::PathBuf;
 
-/// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds are then stale.
+/// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds
+/// are then stale.
 const FORMAT: u32 = 4;
 const MAGIC: &[u8; 12] = b"grainfallbed";
 /// Bytes before the contents: magic, format, key, checksum.
 const HEADER: usize = MAGIC.len() + 4 + 2 * blake3::OUT_LEN;
 
-/// Beds that come with the program, those of the paper's scenes; `grainfall bed SCENE --out FILE` makes them.
+/// Beds that come with the program, those of the paper's scenes; `grainfall bed SCENE --out FILE`
+/// makes them.
 static SHIPPED: [&[u8]; 3] = [
     include_bytes!("../../assets/beds/dry-r3.bed"),
     include_bytes!("../../assets/beds/dry-r2.bed"),
@@ -39,7 +41,8 @@ pub struct BedStore {
     folder: Option<PathBuf>,
 }
 
-/// What settling adds to a built world. Beds have forces and springs in single precision ([`start`]).
+/// What settling adds to a built world. Beds have forces and springs in single precision
+/// ([`start`]).
 #[derive(Serialize, Deserialize)]
 struct Bed {
     position: Vec<DVec3>,
@@ -201,7 +204,8 @@ impl Bed {
         }
     }
 
-    /// One finite entry per grain in each column, and contacts only between grains and walls that exist.
+    /// One finite entry per grain in each column, and contacts only between grains and walls that
+    /// exist.
     fn fits(&self, built: &World) -> bool {
         let count = built.grains.len();
         let walls = built.container.walls.len();
@@ -254,7 +258,8 @@ impl BedContact {
         }
     }
 
-    /// Whether it is a finite contact of one of `grains` grains with another or with one of `walls` walls.
+    /// Whether it is a finite contact of one of `grains` grains with another or with one of `walls`
+    /// walls.
     fn is_between(&self, grains: usize, walls: usize) -> bool {
         let partner = match self.partner {
             Partner::Grain(other) => (other as usize) < grains,

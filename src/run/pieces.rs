@@ -1,7 +1,7 @@
 //! A long way cut into pieces that each take about the same wall-clock time.
 //!
-//! In: a goal and how to go there. Out: pieces, between which orders are heard, progress is told and
-//! checkpoints are kept. How a way is cut does not show in a trajectory.
+//! In: a goal and how to go there. Out: pieces, between which orders are heard, progress is told
+//! and checkpoints are kept. How a way is cut does not show in a trajectory.
 
 use std::time::Duration;
 

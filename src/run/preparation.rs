@@ -152,8 +152,8 @@ fn settling_step(scene: &Scene) -> f64 {
     advise(&dry).time_step
 }
 
-/// `built` with the contacts and forces of grains that touch from the start, their elastic energy in
-/// the ledger.
+/// `built` with the contacts and forces of grains that touch from the start, their elastic energy
+/// in the ledger.
 ///
 /// A step of next to no length leaves every grain in its place and the forces there behind. Where
 /// even that one is a fault, the world stays as it was built: the run's first step meets it again

@@ -1,8 +1,8 @@
 //! The record of a run, as files hold it: that this scene with these commands comes to that state.
 //!
-//! In: a state and all that leads to it. Out: a [`RunRecord`], as JSON files hold it. Its fingerprint
-//! shows whether the file was edited or damaged since. Nothing is computed again here: `grainfall
-//! verify FILE` does that.
+//! In: a state and all that leads to it. Out: a [`RunRecord`], as JSON files hold it. Its
+//! fingerprint shows whether the file was edited or damaged since. Nothing is computed again here:
+//! `grainfall verify FILE` does that.
 
 use super::{Command, ScriptedCommand, StampedCommand};
 use crate::files::write_whole;

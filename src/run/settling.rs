@@ -1,13 +1,14 @@
 //! From grains placed in a container to a bed at rest.
 //!
-//! In: a scene whose container is to be filled, with its time step. Out: a world at time zero in which
-//! every grain rests on others under the scene's own gravity, contacts with their histories included.
-//! The walls stand still meanwhile.
+//! In: a scene whose container is to be filled, with its time step. Out: a world at time zero in
+//! which every grain rests on others under the scene's own gravity, contacts with their histories
+//! included. The walls stand still meanwhile.
 //!
-//! The grains fall freely, then lose a share of their velocity between pieces of so many steps until
-//! they creep, then relax with nothing but the contact laws, so that the end is a true equilibrium;
-//! where they do not come to rest so (a grain may swing between two others with hardly a loss), they
-//! are calmed again. All stages are counted in steps: the same scene gives the same bits.
+//! The grains fall freely, then lose a share of their velocity between pieces of so many steps
+//! until they creep, then relax with nothing but the contact laws, so that the end is a true
+//! equilibrium; where they do not come to rest so (a grain may swing between two others with hardly
+//! a loss), they are calmed again. All stages are counted in steps: the same scene gives the same
+//! bits.
 
 use crate::measure::elastic_energy;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
@@ -19,7 +20,8 @@ use glam::DVec3;
 const KEPT: f64 = 0.9;
 /// Kinetic energy over `Σ m g r` at which calming ends.
 const CREEPING: f64 = 1e-8;
-/// Kinetic energy over `Σ m g r` of a bed at rest; rms speeds are then near 1e-5 m/s for millimetres.
+/// Kinetic energy over `Σ m g r` of a bed at rest; rms speeds are then near 1e-5 m/s for
+/// millimetres.
 const QUIET: f64 = 1e-9;
 /// A relaxation, in units of `√(r/g)`: grains that balance where they cannot stay fall within it.
 const RELAXATION: f64 = 10.0;
@@ -60,8 +62,8 @@ enum Stage {
 }
 
 impl Settling {
-    /// Starts from `built`, a scene's world with its grains placed and at rest, on `threads` threads, with steps of
-    /// `time_step` [s].
+    /// Starts from `built`, a scene's world with its grains placed and at rest, on `threads`
+    /// threads, with steps of `time_step` [s].
     pub fn new(built: World, time_step: f64, threads: usize) -> Self {
         let world = standing(&built, time_step);
         let gravity = world.gravity.length();
@@ -140,8 +142,8 @@ impl Settling {
     }
 }
 
-/// `built` as it settles: with walls that stand still, dry, with steps of `time_step` [s]. Liquid is poured over the
-/// settled bed, so that a drum has one bed for all liquids.
+/// `built` as it settles: with walls that stand still, dry, with steps of `time_step` [s]. Liquid
+/// is poured over the settled bed, so that a drum has one bed for all liquids.
 pub fn standing(built: &World, time_step: f64) -> World {
     let mut world = built.clone();
     world.clock = Clock::new(time_step);
@@ -158,8 +160,8 @@ pub fn standing(built: &World, time_step: f64) -> World {
 
 /// Puts a `settled` world at rest at time zero, with liquid, step and moving walls as in `built`.
 ///
-/// Forces and springs are rounded to single precision, which disturbs a bed far less than its last creeping does: kept
-/// beds are small and the same to the bit.
+/// Forces and springs are rounded to single precision, which disturbs a bed far less than its last
+/// creeping does: kept beds are small and the same to the bit.
 pub fn start(settled: World, built: &World) -> World {
     let mut world = World {
         clock: built.clock,

@@ -1,8 +1,8 @@
 //! Checkpoints: a run as it stood, kept in its folder, so that a run that was stopped can go on.
 //!
-//! In: a run and what was written of it. Out: a file, and from it the same. A finished run keeps its
-//! last checkpoint: the same command again reads its results from it, and a longer duration goes on
-//! from there. A checkpoint of another scene, script or version is none.
+//! In: a run and what was written of it. Out: a file, and from it the same. A finished run keeps
+//! its last checkpoint: the same command again reads its results from it, and a longer duration
+//! goes on from there. A checkpoint of another scene, script or version is none.
 
 use super::Job;
 use crate::output::{CHECKPOINT, OutputError, Written, write_file};

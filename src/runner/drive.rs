@@ -1,7 +1,7 @@
 //! The loop that drives a run to its end.
 //!
-//! In: a [`Job`] and what moves its run. Out: the run's files and a [`Finished`]. On the way the loop
-//! hears whether to stop, tells how far the run has come, and holds at each output time.
+//! In: a [`Job`] and what moves its run. Out: the run's files and a [`Finished`]. On the way the
+//! loop hears whether to stop, tells how far the run has come, and holds at each output time.
 
 use super::checkpoint::{CheckpointFile, Found, Kept};
 use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
@@ -25,8 +25,8 @@ pub struct Finished {
     pub warnings: Vec<String>,
 }
 
-/// Runs `job` by itself, without an app, until it is done, a fault occurs or `stop` says so; `watch`
-/// hears how far it has come. Returns how it ended, and the run as it stands then.
+/// Runs `job` by itself, without an app, until it is done, a fault occurs or `stop` says so;
+/// `watch` hears how far it has come. Returns how it ended, and the run as it stands then.
 ///
 /// ```
 /// use grainfall::runner::{self, Job};

@@ -26,8 +26,8 @@ pub struct Job {
 }
 
 impl Job {
-    /// A run of `scene`, called `name`, with its files in the folder `out`, on all cores: the grains at
-    /// each output time, no commands, no checkpoints, the user's beds.
+    /// A run of `scene`, called `name`, with its files in the folder `out`, on all cores: the
+    /// grains at each output time, no commands, no checkpoints, the user's beds.
     pub fn new(name: impl Into<String>, scene: Scene, out: impl Into<PathBuf>) -> Self {
         Self {
             scene,

@@ -1,9 +1,9 @@
 //! A scene run to its end: the one loop that prepares, advances, records, keeps checkpoints and
 //! stops when it is told to.
 //!
-//! In: a [`Job`], or a file that states a state to come to. Out: the files of an output folder and a
-//! [`Finished`], or a [`Verdict`]. Runs without a window, cases of a sweep and `grainfall verify` all
-//! go through here. Not here: printing, and the app whose systems step a run (see `headless`).
+//! In: a [`Job`], or a file that states a state to come to. Out: the files of an output folder and
+//! a [`Finished`], or a [`Verdict`]. Runs without a window, cases of a sweep and `grainfall verify`
+//! all go through here. Not here: printing, and the app whose systems step a run (see `headless`).
 //!
 //! Each row of the table uses only rows below it.
 //!

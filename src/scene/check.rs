@@ -18,7 +18,6 @@ use crate::physics::limits::{self, Limits};
 use crate::physics::{ContactLaw, Liquid, SmallestGap};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
-use std::f64::consts::PI;
 
 type Checked = Result<(), Problem>;
 

@@ -50,8 +50,8 @@ pub enum TimeStep {
     Automatic,
     /// This step [s].
     Given(f64),
-    /// The largest stable step at any time: a change that moves the limit changes the step too, as a
-    /// command of its own.
+    /// The largest stable step at any time: a change that moves the limit changes the step too, as
+    /// a command of its own.
     Following,
 }
 
@@ -79,8 +79,8 @@ impl Scene {
         }
     }
 
-    /// Number of its grains. Voronoi cells that are all to be grains can be a few more or less: which cells have their
-    /// centroid in a column is known when they are made.
+    /// Number of its grains. Voronoi cells that are all to be grains can be a few more or less:
+    /// which cells have their centroid in a column is known when they are made.
     pub fn grain_count(&self) -> usize {
         match &self.grains {
             SceneGrains::Fill { count, .. } => *count,
@@ -140,8 +140,9 @@ impl Scene {
         }
     }
 
-    /// Indices of the species whose grains the one at `index` can change places with while a run goes on, itself included:
-    /// those of its radius, or all species of Voronoi cells. Empty for listed grains.
+    /// Indices of the species whose grains the one at `index` can change places with while a run
+    /// goes on, itself included: those of its radius, or all species of Voronoi cells. Empty for
+    /// listed grains.
     pub fn interchangeable_species(&self, index: usize) -> Vec<usize> {
         match &self.grains {
             SceneGrains::Fill { species, .. } => {

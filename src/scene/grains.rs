@@ -6,25 +6,31 @@ use super::shape::{SceneBody, SceneShape, sphere_radius};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Volume of the smallest of some ten thousand Voronoi cells, in lattice cells (one of 70 000 is smaller, with 0.16).
+/// Volume of the smallest of some ten thousand Voronoi cells, in lattice cells (one of 70 000 is
+/// smaller, with 0.16).
 const SMALLEST_CELL: f64 = 0.2;
 
-/// Part of a cell that a wall leaves where the cell's centroid lies inside of it, at least (Grünbaum 1960: (3/4)³).
+/// Part of a cell that a wall leaves where the cell's centroid lies inside of it, at least
+/// (Grünbaum 1960: (3/4)³).
 const SMALLEST_PART: f64 = 0.42;
 
 /// The grains of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SceneGrains {
-    /// The container is filled from below with `count` grains in all, then settled while it is at rest.
+    /// The container is filled from below with `count` grains in all, then settled while it is at
+    /// rest.
     Fill {
-        /// Number of grains (given, or from the bulk fraction of the container's volume at a packing fraction).
+        /// Number of grains (given, or from the bulk fraction of the container's volume at a
+        /// packing fraction).
         count: usize,
         /// Volume of all grains that a bulk fraction asks for [m³]; none where the count was given.
         solid_volume: Option<f64>,
-        /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
+        /// The species and their shares; the shares add up to 1. Labels are exact in number, random
+        /// in place.
         species: Vec<SceneSpecies>,
     },
-    /// Rounded Voronoi cells that fill the container, some of them taken away at random; nothing is settled.
+    /// Rounded Voronoi cells that fill the container, some of them taken away at random; nothing is
+    /// settled.
     Voronoi(SceneCells),
     /// Each grain as listed; nothing is settled.
     List(Vec<SceneGrain>),
@@ -41,10 +47,11 @@ pub struct SceneCells {
     pub solid_fraction: f64,
     /// Part of the container's volume that the cells take, from below.
     pub bulk_fraction: f64,
-    /// The file that the grains come from in place of being cut. The cell above is then a cube of their mean volume, the
-    /// rounding their smallest, and nothing is taken away.
+    /// The file that the grains come from in place of being cut. The cell above is then a cube of
+    /// their mean volume, the rounding their smallest, and nothing is taken away.
     pub packing: Option<StoredCells>,
-    /// The species and their shares; the shares add up to 1. Labels are exact in number, random in place.
+    /// The species and their shares; the shares add up to 1. Labels are exact in number, random in
+    /// place.
     pub species: Vec<SceneCellSpecies>,
 }
 
@@ -81,7 +88,8 @@ pub struct SceneGrain {
     pub velocity: DVec3,
     /// Angular velocity [rad/s].
     pub spin: DVec3,
-    /// Radius [m]; of a polyhedron that of the sphere about its centroid that holds it before it is rounded.
+    /// Radius [m]; of a polyhedron that of the sphere about its centroid that holds it before it is
+    /// rounded.
     pub radius: f64,
     /// What it is.
     pub shape: SceneShape,
@@ -94,7 +102,8 @@ pub struct SceneGrain {
 }
 
 impl SceneGrain {
-    /// What it takes up in space; none where its shape encloses nothing, or nothing is left of it to round.
+    /// What it takes up in space; none where its shape encloses nothing, or nothing is left of it
+    /// to round.
     pub fn body(&self) -> Option<SceneBody> {
         let Some(rounding) = self.shape.rounding() else {
             return Some(SceneBody::Sphere);
@@ -135,7 +144,8 @@ impl SceneCells {
         (volume / self.cell_volume()).round() as usize
     }
 
-    /// Grains that the bed is made of: `π R_i² H_i` times cells per volume times `φ_i` for a column.
+    /// Grains that the bed is made of: `π R_i² H_i` times cells per volume times `φ_i` for a
+    /// column.
     pub fn grain_count(&self, container: &SceneContainer) -> usize {
         if let Some(packing) = &self.packing {
             return packing.grains().len();

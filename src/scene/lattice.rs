@@ -1,16 +1,16 @@
 //! Where the grains of a filling begin: the cells of a lattice, from below.
 //!
-//! In: a container and the size classes of its grains. Out: cells in rising order, in each of which either one of the
-//! largest grains fits with room to spare, or a block of smaller ones. A filling that fits has a lattice; one that does
-//! not has none. Nothing is random here.
+//! In: a container and the size classes of its grains. Out: cells in rising order, in each of which
+//! either one of the largest grains fits with room to spare, or a block of smaller ones. A filling
+//! that fits has a lattice; one that does not has none. Nothing is random here.
 
 use super::SceneContainer;
 use super::mixture::SizeClass;
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// Free width between neighbours, in radii: the first that leaves room for all grains is taken. A loose lattice lets
-/// grains fall in disorder; a tight one holds more.
+/// Free width between neighbours, in radii: the first that leaves room for all grains is taken. A
+/// loose lattice lets grains fall in disorder; a tight one holds more.
 const GAPS: [f64; 2] = [0.1, 0.02];
 
 /// The cells of a filling.
@@ -155,7 +155,8 @@ impl Lattice {
     }
 }
 
-/// How far any grain of a cell reaches from the cell's centre in the plane across the drum's axis [m].
+/// How far any grain of a cell reaches from the cell's centre in the plane across the drum's axis
+/// [m].
 fn block_radius(pitch: f64, classes: &[SizeClass], divisions: &[usize]) -> f64 {
     classes
         .iter()

@@ -23,8 +23,8 @@ pub struct SceneMaterial {
     pub rolling_friction: f64,
 }
 
-/// What differs from the mixing rule (the harmonic mean of both materials' values, Eq. 3.7 of Man et al. 2023) when two
-/// materials meet.
+/// What differs from the mixing rule (the harmonic mean of both materials' values, Eq. 3.7 of Man
+/// et al. 2023) when two materials meet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Pair", deny_unknown_fields)]
 pub struct PairOverride {

@@ -1,7 +1,8 @@
 //! How many grains of each kind a filling has.
 //!
-//! In: the number of grains and the species with their shares. Out: whole numbers that add up, grouped by radius: species
-//! that share one radius can change places while a run goes on, so their grains are placed as one class.
+//! In: the number of grains and the species with their shares. Out: whole numbers that add up,
+//! grouped by radius: species that share one radius can change places while a run goes on, so their
+//! grains are placed as one class.
 
 use super::SceneSpecies;
 
@@ -52,7 +53,8 @@ pub fn species_counts(count: usize, shares: &[f64]) -> Vec<(usize, usize)> {
     apportion(count, shares).into_iter().enumerate().collect()
 }
 
-/// `total` split in proportion to `shares` by the method of the largest remainder; the first wins a tie.
+/// `total` split in proportion to `shares` by the method of the largest remainder; the first wins a
+/// tie.
 fn apportion(total: usize, shares: &[f64]) -> Vec<usize> {
     let sum: f64 = shares.iter().sum();
     if sum <= 0.0 {

@@ -1,7 +1,8 @@
 //! What was asked for: a scene read from a RON file, every value checked.
 //!
-//! In: the text of a scene file. Out: a [`Scene`] in SI units, or a [`SceneError`] that names file, line, key, value and
-//! what was expected. Nothing here places a grain: [`crate::world::build`] does.
+//! In: the text of a scene file. Out: a [`Scene`] in SI units, or a [`SceneError`] that names file,
+//! line, key, value and what was expected. Nothing here places a grain: [`crate::world::build`]
+//! does.
 //!
 #![doc = include_str!("../../scenes/README.md")]
 

@@ -1,8 +1,8 @@
 //! Where in a scene file each key stands.
 //!
-//! In: the text of a file, sound or not. Out: for each key and list element its path (`grains.species[0].radius`), its
-//! place and its value as written. Errors alone need it, so it is made only when there is one. It does not judge the text:
-//! the RON reader has done that or will.
+//! In: the text of a file, sound or not. Out: for each key and list element its path
+//! (`grains.species[0].radius`), its place and its value as written. Errors alone need it, so it is
+//! made only when there is one. It does not judge the text: the RON reader has done that or will.
 
 use std::ops::Range;
 
@@ -36,8 +36,8 @@ impl<'a> Outline<'a> {
         self.text
     }
 
-    /// The last entry called `path`; where there is none, the one that says it in another unit (`radius_mm` for
-    /// `radius`), or else the nearest entry that would hold it.
+    /// The last entry called `path`; where there is none, the one that says it in another unit
+    /// (`radius_mm` for `radius`), or else the nearest entry that would hold it.
     pub fn find(&self, path: &str) -> Option<&Entry> {
         let named = |wanted: &dyn Fn(&str) -> bool| self.entries.iter().rfind(|e| wanted(&e.path));
         named(&|p| p == path)

@@ -1,8 +1,10 @@
-//! Voronoi cells kept in a file, so that several scenes can have the very same grains without cutting them anew.
+//! Voronoi cells kept in a file, so that several scenes can have the very same grains without
+//! cutting them anew.
 //!
-//! In: the grains that [`crate::world::Packing`] made, or the bytes of a file. Out: the file's bytes, or the grains. A file
-//! that is damaged, of another version or holds absurd grains is refused. A scene that was kept names file and checksum; where
-//! the file is gone, the same grains are taken from [`HeldCells`].
+//! In: the grains that [`crate::world::Packing`] made, or the bytes of a file. Out: the file's
+//! bytes, or the grains. A file that is damaged, of another version or holds absurd grains is
+//! refused. A scene that was kept names file and checksum; where the file is gone, the same grains
+//! are taken from [`HeldCells`].
 
 use crate::geometry::Rounded;
 use serde::{Deserialize, Serialize};
@@ -117,7 +119,8 @@ fn held() -> MutexGuard<'static, BTreeMap<String, Weak<[Rounded]>>> {
     HELD.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Grains that came with a scene: while this lives, the scene can be made though the file that it names is gone.
+/// Grains that came with a scene: while this lives, the scene can be made though the file that it
+/// names is gone.
 pub struct HeldCells {
     checksum: String,
     grains: Arc<[Rounded]>,

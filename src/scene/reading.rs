@@ -23,7 +23,8 @@ impl Scene {
         Self::parse(&name, &read(path, &name)?)
     }
 
-    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of that name or path.
+    /// The scene that a person calls `name`: the file at that path, or else a built-in scene of
+    /// that name or path.
     ///
     /// # Errors
     /// As [`Scene::load`], and when there is neither such a file nor such a scene.
@@ -47,7 +48,8 @@ impl Scene {
         .advise(error::suggestion(wanted, &names)))
     }
 
-    /// The scene that `text` states; `file` is what errors call it, and names of files in it are relative to its folder.
+    /// The scene that `text` states; `file` is what errors call it, and names of files in it are
+    /// relative to its folder.
     ///
     /// # Errors
     /// When the text is no scene, or states something impossible.
@@ -75,7 +77,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Whether every value makes sense and all fit together, as a scene made by a program may not. Parsed scenes do.
+    /// Whether every value makes sense and all fit together, as a scene made by a program may not.
+    /// Parsed scenes do.
     ///
     /// # Errors
     /// When a value does not.

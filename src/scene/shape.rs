@@ -1,6 +1,7 @@
 //! The shapes that listed grains can have.
 //!
-//! In: what a scene says of a shape. Out: the solid it is, about its own centroid, and the rounded core a grain of it has.
+//! In: what a scene says of a shape. Out: the solid it is, about its own centroid, and the rounded
+//! core a grain of it has.
 
 use crate::geometry::Solid;
 use glam::{DQuat, DVec3};
@@ -81,8 +82,8 @@ impl SceneShape {
         }
     }
 
-    /// Radius of the sphere about its centroid that holds it before it is rounded [m]; not a number for a sphere, nor
-    /// where it encloses nothing.
+    /// Radius of the sphere about its centroid that holds it before it is rounded [m]; not a number
+    /// for a sphere, nor where it encloses nothing.
     pub fn radius(&self) -> f64 {
         let solid = self.solid();
         solid.map_or(f64::NAN, |solid| {
@@ -91,8 +92,8 @@ impl SceneShape {
         })
     }
 
-    /// The solid before it is rounded, its centroid at the origin; none of a sphere, of points in one plane, nor of too many
-    /// points or sides.
+    /// The solid before it is rounded, its centroid at the origin; none of a sphere, of points in
+    /// one plane, nor of too many points or sides.
     pub fn solid(&self) -> Option<Solid> {
         let solid = match self {
             Self::Box { size, .. } => Solid::cuboid(-0.5 * *size, 0.5 * *size),

@@ -1,7 +1,7 @@
 //! What the RON reader refuses, in words a person can act on.
 //!
-//! In: the reader's error and the text. Out: a [`SceneError`] that names the key round the place and says what belongs
-//! there. Values that can be read but make no sense are for [`super::check`].
+//! In: the reader's error and the text. Out: a [`SceneError`] that names the key round the place
+//! and says what belongs there. Values that can be read but make no sense are for [`super::check`].
 
 use super::error::{SceneError, one_of, suggestion};
 use super::outline::{Entry, Outline, byte_at};

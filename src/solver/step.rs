@@ -16,10 +16,9 @@
 //! | motion | every worker sums the forces on its grains, kicks twice, drifts | integration |
 //! | store | rows become columns again, clock, walls and angle follow | exchange |
 //!
-//! where forces and motion alternate in batches of steps, between which only the lists are touched. The
-//! motion of the last step is one kick, without a drift.
-//! Velocity Verlet's second half kick of one step and the first of the next are one pass over the
-//! grains.
+//! where forces and motion alternate in batches of steps, between which only the lists are touched.
+//! The motion of the last step is one kick, without a drift. Velocity Verlet's second half kick of
+//! one step and the first of the next are one pass over the grains.
 //!
 //! Not here: any formula.
 

@@ -3,8 +3,8 @@
 //! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`,
 //! `series.csv`, and `flow.csv` and `velocity.csv` or a column's `profile.csv`), a table of all
 //! results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one
-//! core. A sweep that was stopped goes on when it is called again: finished cases are kept, others go
-//! on from their checkpoints.
+//! core. A sweep that was stopped goes on when it is called again: finished cases are kept, others
+//! go on from their checkpoints.
 
 mod case;
 pub(crate) mod chart;
@@ -69,8 +69,8 @@ pub struct Swept {
     pub table: String,
 }
 
-/// Runs `sweep` until every case is done or `interrupted` becomes true; `watch` hears how far it has
-/// come.
+/// Runs `sweep` until every case is done or `interrupted` becomes true; `watch` hears how far it
+/// has come.
 ///
 /// # Errors
 /// A [`RunnerError`] when the input asks for something that cannot be, or a file cannot be written.
@@ -91,8 +91,8 @@ pub fn run(
     })
 }
 
-/// Runs the cases, the costliest first so that no core idles at the end; returns what became of them
-/// in their own order.
+/// Runs the cases, the costliest first so that no core idles at the end; returns what became of
+/// them in their own order.
 fn run_cases(
     sweep: &Sweep,
     cases: &[Case],

@@ -27,15 +27,16 @@ pub enum Shape {
         /// Upper corner [m].
         max: DVec3,
     },
-    /// A drum about the z axis, centred on the origin. Its walls are the rim, the back plate and the front plate.
+    /// A drum about the z axis, centred on the origin. Its walls are the rim, the back plate and
+    /// the front plate.
     Drum {
         /// Inner radius [m].
         radius: f64,
         /// Inner width along z [m].
         width: f64,
     },
-    /// An unbounded floor at y = 0 on which a column about the y axis stands at the start. Its walls are the floor and, where
-    /// a tube holds the column, that tube.
+    /// An unbounded floor at y = 0 on which a column about the y axis stands at the start. Its
+    /// walls are the floor and, where a tube holds the column, that tube.
     Column {
         /// Radius of the column at the start [m].
         radius: f64,
@@ -72,7 +73,8 @@ pub enum Surface {
         /// Inner radius [m].
         radius: f64,
     },
-    /// A thin upright tube about the y axis, unbounded above; it acts inside, outside and at its rim.
+    /// A thin upright tube about the y axis, unbounded above; it acts inside, outside and at its
+    /// rim.
     Tube {
         /// Radius [m].
         radius: f64,
@@ -112,8 +114,8 @@ impl Container {
 }
 
 impl Surface {
-    /// Distance of the point `x` from the wall, positive on the grains' side [m], and the unit vector from `x` towards
-    /// the wall.
+    /// Distance of the point `x` from the wall, positive on the grains' side [m], and the unit
+    /// vector from `x` towards the wall.
     pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
         match *self {
             Self::Plane { point, normal } => ((x - point).dot(normal), -normal),

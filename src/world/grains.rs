@@ -43,15 +43,17 @@ pub struct Grains {
     pub rolling_torque: Vec<DVec3>,
     /// Touching partners, walls too, at the last evaluation.
     pub contact_count: Vec<u32>,
-    /// Energy exchanged at the contacts of which the grain is the first partner, since the start [J]: lost in dashpots,
-    /// lost in sliding (with what tangential springs lose as their stiffness changes), lost in rolling, done by walls.
+    /// Energy exchanged at the contacts of which the grain is the first partner, since the start
+    /// [J]: lost in dashpots, lost in sliding (with what tangential springs lose as their stiffness
+    /// changes), lost in rolling, done by walls.
     pub exchanged: Vec<[f64; 4]>,
     /// Volume of the liquid film on each, its part in bridges included [m³].
     pub film: Vec<f64>,
     /// Bridges to grains that it did not touch at the last evaluation.
     pub open_bridges: Vec<u32>,
-    /// Energy lost in bridges of which the grain is the first partner, since the start [J]: to viscosity, and to capillary
-    /// forces, which give back on the way together what they take on the way apart until the bridge breaks.
+    /// Energy lost in bridges of which the grain is the first partner, since the start [J]: to
+    /// viscosity, and to capillary forces, which give back on the way together what they take on
+    /// the way apart until the bridge breaks.
     pub liquid_loss: Vec<[f64; 2]>,
 }
 
@@ -78,7 +80,8 @@ impl Grains {
         );
     }
 
-    /// Adds a grain at rest in equilibrium (no force) of this radius [m], mass [kg] and moment of inertia [kg m²].
+    /// Adds a grain at rest in equilibrium (no force) of this radius [m], mass [kg] and moment of
+    /// inertia [kg m²].
     pub(super) fn push(
         &mut self,
         position: DVec3,

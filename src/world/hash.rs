@@ -21,8 +21,8 @@ impl fmt::Debug for StateHash {
 }
 
 impl World {
-    /// Hash of all that moves: clock, grains, contacts with their histories, the liquid, polyhedra's
-    /// orientations, the container's angle.
+    /// Hash of all that moves: clock, grains, contacts with their histories, the liquid,
+    /// polyhedra's orientations, the container's angle.
     pub fn hash(&self) -> StateHash {
         let mut hasher = blake3::Hasher::new();
         let mut number = |x: f64| {

@@ -27,7 +27,8 @@ impl Ledger {
         }
     }
 
-    /// Records that potential energy was `before` under the old gravity and is `after` under the new one [J].
+    /// Records that potential energy was `before` under the old gravity and is `after` under the
+    /// new one [J].
     pub fn close_gravity_segment(&mut self, before: f64, after: f64) {
         self.gravity_work += self.potential_reference - before;
         self.potential_reference = after;

@@ -1,9 +1,11 @@
-//! Which Voronoi cells become grains: those of the bed, without as many as the solid fraction leaves out.
+//! Which Voronoi cells become grains: those of the bed, without as many as the solid fraction
+//! leaves out.
 //!
-//! In: a scene whose grains are Voronoi cells. Out: rounded polyhedra in their places, in slices of work, so that whoever
-//! waits can show progress. A cell belongs to a column or a drum if its centroid does; where a curved wall stands at the
-//! start, what reaches through it is cut off along the flat sides of a prism inside of that wall. The lowest bodies touch
-//! the floor and neighbours touch each other, all without overlap but for rounding.
+//! In: a scene whose grains are Voronoi cells. Out: rounded polyhedra in their places, in slices of
+//! work, so that whoever waits can show progress. A cell belongs to a column or a drum if its
+//! centroid does; where a curved wall stands at the start, what reaches through it is cut off along
+//! the flat sides of a prism inside of that wall. The lowest bodies touch the floor and neighbours
+//! touch each other, all without overlap but for rounding.
 
 use super::mixture::random;
 use super::voronoi::{Boundary, Tessellation};
@@ -18,11 +20,11 @@ use rayon::prelude::*;
 const REMOVED: u64 = 4;
 /// Slices of work that the cells are made in, each some ten milliseconds to a second long.
 const SLICES: usize = 16;
-/// A cell whose point is farther than this from a column's or a drum's wall lies wholly outside, in diagonals of a lattice
-/// cell.
+/// A cell whose point is farther than this from a column's or a drum's wall lies wholly outside, in
+/// diagonals of a lattice cell.
 const MARGIN: f64 = 1.0;
-/// Halvings of 60° that lead to the angle between the sides of a prism in a curved wall: 96 sides, which leave a gap of
-/// half a thousandth of the radius at most.
+/// Halvings of 60° that lead to the angle between the sides of a prism in a curved wall: 96 sides,
+/// which leave a gap of half a thousandth of the radius at most.
 const HALVINGS: u32 = 4;
 
 /// Voronoi cells on their way to be grains.
@@ -54,8 +56,8 @@ enum Axis {
 }
 
 impl Packing {
-    /// The cells that `scene` asks for; none where its grains are no Voronoi cells, come from a file, or its container is
-    /// open.
+    /// The cells that `scene` asks for; none where its grains are no Voronoi cells, come from a
+    /// file, or its container is open.
     pub fn new(scene: &Scene) -> Option<Self> {
         let SceneGrains::Voronoi(cells) = &scene.grains else {
             return None;
@@ -160,7 +162,8 @@ impl Region {
         })
     }
 
-    /// What is left of `cell`: nothing where its centroid lies outside, else all but what reaches through the wall.
+    /// What is left of `cell`: nothing where its centroid lies outside, else all but what reaches
+    /// through the wall.
     fn keep(&self, mut cell: Solid) -> Option<Solid> {
         if self.distance(cell.moments().centroid) > 0.0 {
             return None;

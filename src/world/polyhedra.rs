@@ -5,11 +5,12 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Shapes, orientations and contact histories of a world of polyhedra, one entry per grain in every column but the last.
+/// Shapes, orientations and contact histories of a world of polyhedra, one entry per grain in every
+/// column but the last.
 ///
-/// In such a world every grain is a rounded polyhedron: [`super::Grains::radius`] is the distance of the farthest point of
-/// its surface from its centroid, [`super::Grains::inertia`] the mean of its principal moments, and
-/// [`super::Grains::spin`] follows from `angular_momentum`.
+/// In such a world every grain is a rounded polyhedron: [`super::Grains::radius`] is the distance
+/// of the farthest point of its surface from its centroid, [`super::Grains::inertia`] the mean of
+/// its principal moments, and [`super::Grains::spin`] follows from `angular_momentum`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Polyhedra {
     /// Every shape there is, in its body frame: never changed, shared by all snapshots of a world.
@@ -119,7 +120,8 @@ impl Polyhedra {
         turn * ((turn.conjugate() * self.angular_momentum[i]) / self.inertia[i])
     }
 
-    /// Gives grain `i` the angular velocity `spin` [rad/s]; [`super::Grains::spin`] is for the caller to set.
+    /// Gives grain `i` the angular velocity `spin` [rad/s]; [`super::Grains::spin`] is for the
+    /// caller to set.
     pub fn set_spin(&mut self, i: usize, spin: DVec3) {
         let turn = self.orientation[i];
         self.angular_momentum[i] = turn * ((turn.conjugate() * spin) * self.inertia[i]);

@@ -1,9 +1,10 @@
 //! The Voronoi cells of one random point in each cell of a lattice.
 //!
-//! In: a box, the wanted size of a lattice cell and a seed. Out: the Voronoi cell of each point as a [`Solid`]; together
-//! they fill the box. A point is uniformly distributed in its lattice cell, as in the program of Man et al. 2023; so no
-//! place is farther from the nearest point than a lattice cell is wide from corner to corner. The cells themselves are
-//! those of `meshless_voronoi`, which treats degenerate cases exactly.
+//! In: a box, the wanted size of a lattice cell and a seed. Out: the Voronoi cell of each point as
+//! a [`Solid`]; together they fill the box. A point is uniformly distributed in its lattice cell,
+//! as in the program of Man et al. 2023; so no place is farther from the nearest point than a
+//! lattice cell is wide from corner to corner. The cells themselves are those of
+//! `meshless_voronoi`, which treats degenerate cases exactly.
 
 use super::mixture::random;
 use crate::geometry::Solid;
@@ -34,7 +35,8 @@ pub struct Tessellation {
 }
 
 impl Tessellation {
-    /// The box between `min` and `max` with lattice cells as near `size` [m] as whole numbers of them allow.
+    /// The box between `min` and `max` with lattice cells as near `size` [m] as whole numbers of
+    /// them allow.
     pub fn new(min: DVec3, max: DVec3, size: f64, boundary: Boundary, seed: u64) -> Self {
         let counts = lattice_counts(max - min, size);
         let lattice_cell = (max - min) / DVec3::from_array(counts.map(|count| count as f64));
@@ -74,8 +76,8 @@ impl Tessellation {
         self.lattice_cell.length()
     }
 
-    /// The cells of the points at `indices`, which ascend: all places of the box that are nearer to the one point than to
-    /// any other. Cells of a box that repeats itself reach out of it.
+    /// The cells of the points at `indices`, which ascend: all places of the box that are nearer to
+    /// the one point than to any other. Cells of a box that repeats itself reach out of it.
     pub fn cells(&self, indices: &[usize]) -> Vec<Solid> {
         let mut wanted = vec![false; self.len()];
         for index in indices {

@@ -1,4 +1,5 @@
-//! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no driver needed.
+//! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no
+//! driver needed.
 
 #![allow(
     clippy::disallowed_methods,

@@ -1,4 +1,5 @@
-//! Measures, each on data of known answer, and the small worlds built by hand that they are tried on.
+//! Measures, each on data of known answer, and the small worlds built by hand that they are tried
+//! on.
 
 mod collapse;
 mod column;
@@ -100,8 +101,9 @@ fn on_floor() -> World {
     empty(Shape::Planes, vec![floor])
 }
 
-/// A floor on which a column of this radius and height stood; the species `first` and `second` of materials of those names
-/// have the frictions `mu11`, `mu22` and 0.4 on the floor, mixed pairs the harmonic mean.
+/// A floor on which a column of this radius and height stood; the species `first` and `second` of
+/// materials of those names have the frictions `mu11`, `mu22` and 0.4 on the floor, mixed pairs the
+/// harmonic mean.
 fn column(radius: f64, height: f64, [mu11, mu22]: [f64; 2]) -> World {
     let material = |name: &str| Material {
         name: name.into(),
@@ -195,8 +197,8 @@ fn feature(grain: u32, partner: Partner, corner: u16, overlap: f64) -> FeatureCo
     }
 }
 
-/// The points of a cubic lattice in a frame turned by `angle` about z, filling a drum of `radius` and `width` up to `top`
-/// above its middle.
+/// The points of a cubic lattice in a frame turned by `angle` about z, filling a drum of `radius`
+/// and `width` up to `top` above its middle.
 fn lattice_in_drum(
     radius: f64,
     width: f64,

@@ -1,4 +1,5 @@
-//! Claims about the registry of parameters: each has one row, and what files held before is still read.
+//! Claims about the registry of parameters: each has one row, and what files held before is still
+//! read.
 
 use grainfall::parameters::{
     Arguments, Kind, Parameter, Settings, Value, Values, entries, live_parameters,

@@ -1,4 +1,5 @@
-//! Claims about scene files: what is read, what is refused and in which words, and what world a scene becomes.
+//! Claims about scene files: what is read, what is refused and in which words, and what world a
+//! scene becomes.
 
 mod build;
 mod files;

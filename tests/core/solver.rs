@@ -1,6 +1,8 @@
-//! The solver: forces and motions with known answers, conservation, determinism, faults, time steps.
+//! The solver: forces and motions with known answers, conservation, determinism, faults, time
+//! steps.
 //!
-//! Every case is a scene's text, so that each can be opened and looked at. Figures are printed: `--nocapture` shows them.
+//! Every case is a scene's text, so that each can be opened and looked at. Figures are printed:
+//! `--nocapture` shows them.
 
 mod bridges;
 mod cloud;

@@ -1,5 +1,5 @@
-//! Claims about a time step that a change makes too long: it is told, shortened by a recorded command,
-//! taken back and computed again to the bit.
+//! Claims about a time step that a change makes too long: it is told, shortened by a recorded
+//! command, taken back and computed again to the bit.
 
 use crate::run::{prepared, set};
 use crate::timeline::{arrive, change, go_on, hash};

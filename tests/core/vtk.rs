@@ -6,7 +6,8 @@ use grainfall::scene::Scene;
 use grainfall::simulation::Provenance;
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
 
-/// A cube whose half edge is 1 mm when rounded by 0.2 mm, turned by a quarter about y, and a sphere of 0.5 mm.
+/// A cube whose half edge is 1 mm when rounded by 0.2 mm, turned by a quarter about y, and a sphere
+/// of 0.5 mm.
 fn cube_and_sphere() -> World {
     let text = r#"(
         title: "Two",

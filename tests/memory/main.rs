@@ -1,4 +1,5 @@
-//! Bytes per grain of a world and its solver, counted by the allocator. A binary of its own: nothing else allocates in it.
+//! Bytes per grain of a world and its solver, counted by the allocator. A binary of its own:
+//! nothing else allocates in it.
 
 use grainfall::output::write_grains;
 use grainfall::scene::Scene;

@@ -1,4 +1,5 @@
-//! Kasper et al. 2021: the drum, dry and wet. What holds is asserted here; what does not stands in docs/validation.md.
+//! Kasper et al. 2021: the drum, dry and wet. What holds is asserted here; what does not stands in
+//! docs/validation.md.
 
 use super::value;
 use grainfall::measure::{Measure, ResultKey, RunQuantity, Summary, summarise};

@@ -1,5 +1,5 @@
-//! Man et al. 2023: the column of two frictions, 1 cm high. What holds is asserted here; what does not stands in
-//! docs/validation.md.
+//! Man et al. 2023: the column of two frictions, 1 cm high. What holds is asserted here; what does
+//! not stands in docs/validation.md.
 
 use super::value;
 use grainfall::measure::{Measure, RunQuantity, Summary, results};

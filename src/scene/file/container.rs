@@ -1,7 +1,7 @@
 //! How a file spells the container.
 //!
-//! In: the keys of `container`. Out: a [`SceneContainer`] with the papers' values where a key is left
-//! out. Whether the values make sense is for [`crate::scene`]'s checks.
+//! In: the keys of `container`. Out: a [`SceneContainer`] with the papers' values where a key is
+//! left out. Whether the values make sense is for [`crate::scene`]'s checks.
 
 use super::keys::{either, metres, missing_length, per_second};
 use crate::scene::error::Problem;
@@ -40,14 +40,14 @@ pub(super) enum ContainerFile {
 
 #[derive(Deserialize)]
 #[serde(rename = "Tube", deny_unknown_fields)]
-struct TubeFile {
+pub(super) struct TubeFile {
     speed: f64,
     material: Option<String>,
 }
 
 #[derive(Deserialize)]
 #[serde(rename = "Plane", deny_unknown_fields)]
-struct PlaneFile {
+pub(super) struct PlaneFile {
     name: Option<String>,
     point: DVec3,
     normal: DVec3,

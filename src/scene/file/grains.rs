@@ -35,7 +35,7 @@ pub(super) enum GrainsFile {
 
 #[derive(Deserialize)]
 #[serde(rename = "Voronoi", deny_unknown_fields)]
-struct CellsFile {
+pub(super) struct CellsFile {
     cell: Option<f64>,
     cell_mm: Option<f64>,
     rounding: Option<f64>,
@@ -56,7 +56,7 @@ struct CellSpeciesFile {
 
 #[derive(Deserialize)]
 #[serde(rename = "Species", deny_unknown_fields)]
-struct SpeciesFile {
+pub(super) struct SpeciesFile {
     name: Option<String>,
     radius: Option<f64>,
     radius_mm: Option<f64>,
@@ -66,7 +66,7 @@ struct SpeciesFile {
 
 #[derive(Deserialize)]
 #[serde(rename = "Grain", deny_unknown_fields)]
-struct GrainFile {
+pub(super) struct GrainFile {
     position: DVec3,
     #[serde(default)]
     velocity: DVec3,
@@ -377,7 +377,8 @@ fn given_count(
     Ok(usize::try_from(count).unwrap_or(usize::MAX))
 }
 
-/// Volume of the grains of a bed that takes `bulk_fraction` of the container's volume, packed at `packing` [m³].
+/// Volume of the grains of a bed that takes `bulk_fraction` of the container's volume, packed at
+/// `packing` [m³].
 fn solid_volume(
     container: &SceneContainer,
     bulk_fraction: f64,

@@ -1,7 +1,8 @@
 //! The keys of a scene file, with their defaults and units.
 //!
-//! In: RON. Out: a [`Scene`] whose values are not yet checked. This is the only place that knows how
-//! a file spells things; the scene's checks are the only ones that know which values make sense.
+//! In: RON. Out: a [`Scene`] whose values are not yet checked. This is the only place that knows
+//! how a file spells things; the scene's checks are the only ones that know which values make
+//! sense.
 //!
 //! What the keys mean stands in `scenes/README.md`.
 
@@ -69,7 +70,8 @@ fn first_seed() -> u64 {
     1
 }
 
-/// A material. What it leaves out is the spheres' dry glass of Kasper et al. 2021, or the polyhedra of Man et al. 2023.
+/// A material. What it leaves out is the spheres' dry glass of Kasper et al. 2021, or the polyhedra
+/// of Man et al. 2023.
 #[derive(Deserialize)]
 #[serde(rename = "Material", default, deny_unknown_fields)]
 #[derive(Default)]
@@ -140,7 +142,8 @@ impl<'de> Visitor<'de> for InOrder {
 }
 
 impl SceneFile {
-    /// The scene it states; `folder` is the one it stands in. Numbers are as the file gives them, sensible or not.
+    /// The scene it states; `folder` is the one it stands in. Numbers are as the file gives them,
+    /// sensible or not.
     pub fn into_scene(self, folder: &Path) -> Result<Scene, Problem> {
         let container = self.container.into_container()?;
         let grains = self.grains.into_grains(&container, folder)?;

@@ -40,14 +40,14 @@ mod workspace;
 pub use terms::force_terms;
 
 use super::FaultKind;
-use super::row::{Row, length_squared, row, sub, vector};
+use super::row::{length_squared, row, sub, vector};
 use super::step::{Kernel, Tally};
 use super::walls::Walls;
 use super::workers::Batch;
 use crate::lanes::Processor;
+use crate::physics::FeatureRule;
 use crate::physics::law::PairConstants;
-use crate::physics::{ContactLaw, FeatureRule, Materials};
-use crate::world::{Contact, Polyhedron, SpeciesId, Surface, World};
+use crate::world::{Contact, Surface, World};
 use bodies::{Body, Load, Placing, Shapes};
 use forces::DEEPEST;
 use glam::DVec3;
@@ -58,7 +58,6 @@ use share::PolyhedraShare;
 use std::sync::Arc;
 use working_copy::Known;
 pub use working_copy::Polyhedra;
-use workspace::Workspace;
 
 /// Width of the skin in which pairs are kept, relative to the smallest bounding radius.
 const SKIN: f64 = 0.2;

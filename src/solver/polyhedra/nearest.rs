@@ -213,8 +213,8 @@ fn between_edges<N: Lanes>(
 /// Where on the edges `along` and `across`, the first beginning at `offset` from the second, the
 /// nearest points lie (0 at the beginning, 1 at the end).
 ///
-/// With the edges `u` and `v` and the way `w` from the beginning of the second to that of the first,
-/// the squared distance `|w + s u − t v|²` is least at `s = (b f − c e)/(a e − b²)` and
+/// With the edges `u` and `v` and the way `w` from the beginning of the second to that of the
+/// first, the squared distance `|w + s u − t v|²` is least at `s = (b f − c e)/(a e − b²)` and
 /// `t = (b s + f)/e`, where `a = u·u`, `e = v·v`, `b = u·v`, `c = u·w` and `f = v·w`. Where `t`
 /// falls beyond an end it is put there, and `s` is where the first edge is nearest to that end.
 /// Edges that are parallel meet all along what they have beside each other: its middle is taken.

@@ -35,16 +35,14 @@ use super::step::{Kernel, Tally};
 use super::walls::Walls;
 use super::workers::Batch;
 use crate::lanes::Processor;
+use crate::physics::Liquid;
 use crate::physics::law::{BridgeKinds, contributions, rupture_gap};
-use crate::physics::{ContactLaw, Liquid};
 use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
-use integrate::{BridgeLoad, Load, Motion, Start};
-use kinds::Kinds;
+use integrate::{Load, Motion, Start};
 use neighbours::{Neighbours, PairList, grain_key, wall_key};
 use rows::{Body, Pair};
 use share::SphereShare;
-use slots::Slots;
 pub use working_copy::Spheres;
 
 /// A grain that moves by more than this share of its radius in one step is lost.

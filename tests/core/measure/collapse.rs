@@ -5,7 +5,8 @@ use grainfall::measure::{
     Collapse, Measure, MeasuredValue, RunQuantity, Sample, Series, results, sample,
 };
 
-/// Samples every 0.02 s of an energy per grain (two thirds of it translation) and a front, up to `end` [s].
+/// Samples every 0.02 s of an energy per grain (two thirds of it translation) and a front, up to
+/// `end` [s].
 fn course(end: f64, energy: impl Fn(f64) -> f64, front: impl Fn(f64) -> f64) -> Series {
     let mut series = Series::default();
     for step in 0..=(end / 0.02).round() as u64 {
@@ -68,7 +69,8 @@ fn drums_have_no_collapse() {
     assert_eq!(Collapse::of(&course(1.0, energy, |_| f64::NAN)), None);
 }
 
-/// Two grains of the first species and one of the second in a row on the floor, the first two moving.
+/// Two grains of the first species and one of the second in a row on the floor, the first two
+/// moving.
 fn three_grains() -> World {
     let mut world = column(0.025, 0.05, [0.1, 0.4]);
     for (i, kind) in [0, 0, 1].into_iter().enumerate() {

@@ -6,7 +6,8 @@ use grainfall::measure::{
 };
 use std::f64::consts::PI;
 
-/// A column of the paper's radius, as high as it is wide, of ten grains of which `second` are of the second species.
+/// A column of the paper's radius, as high as it is wide, of ten grains of which `second` are of
+/// the second species.
 fn mixture(frictions: [f64; 2], second: u16) -> Column {
     let mut world = column(0.025, 0.025, frictions);
     for i in 0..10 {

@@ -28,7 +28,8 @@ fn ring(distance: impl Fn(i32) -> f64) -> World {
     world
 }
 
-/// Spheres of 1 mm on a cubic lattice, wherever `inside` says so of a place's distance from the axis and its height.
+/// Spheres of 1 mm on a cubic lattice, wherever `inside` says so of a place's distance from the
+/// axis and its height.
 fn heap(inside: impl Fn(f64, f64) -> bool) -> World {
     let mut world = column(0.025, 0.05, [0.1, 0.4]);
     for (i, j, k) in

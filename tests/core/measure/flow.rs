@@ -1,4 +1,5 @@
-//! Profile of the flowing layer, curvature of the surface, torque of the drum, numbers of the liquid.
+//! Profile of the flowing layer, curvature of the surface, torque of the drum, numbers of the
+//! liquid.
 
 use super::*;
 use glam::DVec2;
@@ -12,8 +13,8 @@ const RADIUS: f64 = 0.0605;
 const WIDTH: f64 = 0.022;
 const GRAIN: f64 = 0.002;
 
-/// A closed lattice whose surface is tilted by `angle` and whose top grains lie `bulge(s)` above the plane at distance s
-/// from the middle.
+/// A closed lattice whose surface is tilted by `angle` and whose top grains lie `bulge(s)` above
+/// the plane at distance s from the middle.
 fn bed(angle: f64, bulge: impl Fn(f64) -> f64) -> World {
     let mut world = drum(RADIUS, WIDTH, 0.0);
     let along = DVec2::from_angle(angle);

@@ -9,7 +9,8 @@ fn phi(world: &World) -> f64 {
     packing_fraction(world, &line)
 }
 
-/// A box of `cells` cells of `edge`, each with grains of radius `r` at the places of `basis` (in edges).
+/// A box of `cells` cells of `edge`, each with grains of radius `r` at the places of `basis` (in
+/// edges).
 fn crystal(cells: [i32; 3], edge: f64, basis: &[[f64; 3]], r: f64) -> World {
     let [nx, ny, nz] = cells;
     let mut world = open_box(edge * DVec3::new(f64::from(nx), f64::from(ny + 3), f64::from(nz)));

@@ -1,5 +1,5 @@
-//! The registry of measured quantities: every row is complete, every key is its own, every result is
-//! found by its key and its name.
+//! The registry of measured quantities: every row is complete, every key is its own, every result
+//! is found by its key and its name.
 
 use super::*;
 use grainfall::measure::{

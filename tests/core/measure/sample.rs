@@ -1,4 +1,5 @@
-//! Whole samples: what they hold, that they are the same each time, and that no state makes them panic or hang.
+//! Whole samples: what they hold, that they are the same each time, and that no state makes them
+//! panic or hang.
 
 use super::*;
 use grainfall::measure::{Measure, Sample, sample};

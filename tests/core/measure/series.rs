@@ -13,8 +13,8 @@ const INTERVAL: f64 = 0.02;
 /// 0.5 rpm in degrees [°/s].
 const RISE: f64 = 3.0;
 
-/// Angles [rad] that rise at 3 °/s from 22° and fall in 0.3 s, from the first of `tops` [°] to the first of `bottoms` [°]
-/// and so on, and end on a last rise.
+/// Angles [rad] that rise at 3 °/s from 22° and fall in 0.3 s, from the first of `tops` [°] to the
+/// first of `bottoms` [°] and so on, and end on a last rise.
 fn sawtooth(tops: &[f64], bottoms: &[f64]) -> Vec<f64> {
     let mut corners = vec![(0.0, 22.0)];
     let mut at = 0.0;

@@ -14,8 +14,8 @@ fn turn_rigidly(world: &mut World, speed: f64) {
     }
 }
 
-/// A bed of the paper's drum: a face-centred cubic lattice as thin as a settled bed (φ = 0.6), shaken so that no two
-/// grains have the same surroundings.
+/// A bed of the paper's drum: a face-centred cubic lattice as thin as a settled bed (φ = 0.6),
+/// shaken so that no two grains have the same surroundings.
 fn shaken_bed(radius: f64) -> World {
     let mut world = drum(0.0605, 0.022, SPEED);
     let mut noise = Noise::new(1);

@@ -1,4 +1,5 @@
-//! Whatever a file holds, reading it ends in a scene that can be built or in a message: never in a panic, never in a hang.
+//! Whatever a file holds, reading it ends in a scene that can be built or in a message: never in a
+//! panic, never in a hang.
 
 use grainfall::scene::{Scene, SceneGrains, built_in};
 use grainfall::solver::{Solver, advise};

@@ -1,4 +1,5 @@
-//! Liquid bridges: forces against LIGGGHTS 3.8 and closed forms, rupture, sharing of films, energy, stability.
+//! Liquid bridges: forces against LIGGGHTS 3.8 and closed forms, rupture, sharing of films, energy,
+//! stability.
 
 use super::*;
 use glam::DVec3;
@@ -6,7 +7,8 @@ use grainfall::measure::EnergyLedger;
 use grainfall::solver::{Processor, advise};
 use std::f64::consts::PI;
 
-/// So short that nothing moves by a bit and no spring stretches: the forces are those of the given state.
+/// So short that nothing moves by a bit and no spring stretches: the forces are those of the given
+/// state.
 const NO_TIME: f64 = 1e-20;
 
 /// Two listed grains and a liquid; `second` is the rest of the second grain's entry.
@@ -256,7 +258,8 @@ fn dry_grains_make_no_bridge() {
     assert!(world.contacts[0].bridge.is_none());
 }
 
-/// Two grains that hit each other head-on and part, with the balance's residual over the energy before.
+/// Two grains that hit each other head-on and part, with the balance's residual over the energy
+/// before.
 fn collide(viscosity: f64, dt: f64) -> (World, f64) {
     let liquid = format!("(case: 3, viscosity: {viscosity}, volume: 1.7e-8)");
     let mut world = wet_pair(

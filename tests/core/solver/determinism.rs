@@ -6,7 +6,8 @@ use grainfall::solver::Processor;
 use grainfall::world::{Contact, StateHash};
 use std::sync::OnceLock;
 
-/// Two sizes, three materials, a quick drum: some 300 grains that fall, hit and avalanche within the steps tried.
+/// Two sizes, three materials, a quick drum: some 300 grains that fall, hit and avalanche within
+/// the steps tried.
 const DRUM: &str = r#"(
     title: "A quick drum of everything",
     materials: {

@@ -1,4 +1,5 @@
-//! Absurd states stop the solver with a fault that names grain, time and quantity, and leave the world as it was.
+//! Absurd states stop the solver with a fault that names grain, time and quantity, and leave the
+//! world as it was.
 
 use super::*;
 use glam::DVec3;

@@ -1,5 +1,5 @@
-//! Golden hashes: runs that have the bits they always had, on any machine and for any number of threads, as a step knows
-//! nothing but + − × ÷ √. A commit that changes one says why.
+//! Golden hashes: runs that have the bits they always had, on any machine and for any number of
+//! threads, as a step knows nothing but + − × ÷ √. A commit that changes one says why.
 
 use super::*;
 use grainfall::scene::SceneContainer;
@@ -17,8 +17,8 @@ fn scene(name: &str, values: &[(&str, &str)]) -> Scene {
     scene
 }
 
-/// Asserts that `scene`, `before` steps after its start by one thread, has the hash `golden` after 300 more by any
-/// number of threads.
+/// Asserts that `scene`, `before` steps after its start by one thread, has the hash `golden` after
+/// 300 more by any number of threads.
 #[track_caller]
 fn assert_golden(scene: &Scene, before: u64, golden: &str) {
     let mut start = build(scene, advise(scene).time_step);

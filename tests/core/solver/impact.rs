@@ -153,8 +153,9 @@ fn hertz_stiffness(modulus: f64, ratio: f64, effective_radius: f64) -> f64 {
     4.0 / 3.0 * modulus / (2.0 * (1.0 - ratio * ratio)) * effective_radius.sqrt()
 }
 
-/// Every combination of material, partner, speed and restitution has an error of first order in the step, because the
-/// dashpot sees the velocity half a step ago: the error is bounded by `share` steps per contact and halves with the step.
+/// Every combination of material, partner, speed and restitution has an error of first order in the
+/// step, because the dashpot sees the velocity half a step ago: the error is bounded by `share`
+/// steps per contact and halves with the step.
 fn check_restitution(
     shots: impl Fn(f64) -> Vec<(Shot, f64)>,
     expected: impl Fn(f64, &Shot) -> f64,
@@ -372,7 +373,8 @@ fn damped_grazing_impact_obeys_coulomb() {
     assert_relative("of the closed form", change, friction * 1.9 * vn, 0.02);
 }
 
-/// The balance's residual after an oblique Hertz–Mindlin impact, relative to the energy it began with.
+/// The balance's residual after an oblique Hertz–Mindlin impact, relative to the energy it began
+/// with.
 fn residual(dt: f64) -> f64 {
     let mut world = oblique_world(0.8, 0.3, "HertzMindlin", (0.5, 0.4), dt);
     let initial = world.kinetic_energy();

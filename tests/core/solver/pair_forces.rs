@@ -1,10 +1,12 @@
-//! Forces between two grains against LIGGGHTS 3.8 (`hertz tangential history rolling_friction cdt`), evaluated by that
-//! program with `run 0` for set overlaps and velocities: no step taken, no tangential history.
+//! Forces between two grains against LIGGGHTS 3.8
+//! (`hertz tangential history rolling_friction cdt`), evaluated by that program with `run 0` for
+//! set overlaps and velocities: no step taken, no tangential history.
 
 use super::*;
 use glam::DVec3;
 
-/// So short that nothing moves by a bit and no spring stretches: the forces are those of the given state.
+/// So short that nothing moves by a bit and no spring stretches: the forces are those of the given
+/// state.
 const NO_TIME: f64 = 1e-20;
 
 /// Two of the paper's grains, r = 3 mm, wet friction.

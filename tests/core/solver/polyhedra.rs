@@ -1,4 +1,5 @@
-//! Rounded polyhedra: free rotation, resting, sliding, tipping, each kind of contact, shared stiffness, the same bits.
+//! Rounded polyhedra: free rotation, resting, sliding, tipping, each kind of contact, shared
+//! stiffness, the same bits.
 
 use super::*;
 use glam::{DQuat, DVec3};
@@ -483,8 +484,9 @@ fn collapse_closes_its_energy_balance_and_comes_to_rest() {
     }
 }
 
-/// What the ledger leaves unexplained of the impact of a tilted box on the floor, over its energy before: the root of the
-/// mean square over eight heights, so that it does not matter where in a step the box arrives.
+/// What the ledger leaves unexplained of the impact of a tilted box on the floor, over its energy
+/// before: the root of the mean square over eight heights, so that it does not matter where in a
+/// step the box arrives.
 fn unexplained_of_impact(rule: &str, dt: f64) -> f64 {
     let heights = 8;
     let square = |k: u32| {

@@ -1,7 +1,8 @@
-//! Benchmarks 1 to 3 of Chung and Ooi 2011, Granular Matter 13, 643–656, doi 10.1007/s10035-011-0277-0.
+//! Benchmarks 1 to 3 of Chung and Ooi 2011, Granular Matter 13, 643–656, doi
+//! 10.1007/s10035-011-0277-0.
 //!
-//! Each tolerance is half of the last printed digit. A rigid plane is one whose E* is that of the sphere alone: sphere and
-//! plane each get twice the sphere's modulus.
+//! Each tolerance is half of the last printed digit. A rigid plane is one whose E* is that of the
+//! sphere alone: sphere and plane each get twice the sphere's modulus.
 
 use super::impact::Shot;
 use super::*;

@@ -1,9 +1,11 @@
-//! Polyhedra resumed: a solver that knows nothing of a world goes on to the same bits as the one that brought it there.
+//! Polyhedra resumed: a solver that knows nothing of a world goes on to the same bits as the one
+//! that brought it there.
 //!
-//! What a solver keeps of pairs of polyhedra (lists of features, how far they may move before anything can touch) is a
-//! cache. The beginning of a run tries it hardest: cells that were cut apart touch along whole faces, exactly, and fall
-//! together, so that a distance changes by rounding alone. There a pair that was left out for a distance just above zero
-//! once made a run differ from its resumed twin.
+//! What a solver keeps of pairs of polyhedra (lists of features, how far they may move before
+//! anything can touch) is a cache. The beginning of a run tries it hardest: cells that were cut
+//! apart touch along whole faces, exactly, and fall together, so that a distance changes by
+//! rounding alone. There a pair that was left out for a distance just above zero once made a run
+//! differ from its resumed twin.
 
 use super::*;
 use grainfall::solver::advise;

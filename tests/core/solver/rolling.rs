@@ -1,4 +1,5 @@
-//! One grain on a plane: sliding that turns into rolling, rolling that comes to rest, rest that stays.
+//! One grain on a plane: sliding that turns into rolling, rolling that comes to rest, rest that
+//! stays.
 
 use super::*;
 use glam::DVec3;

@@ -17,8 +17,8 @@ fn scene_after(name: &str, settings: &[(&str, &str)], time: f64) -> World {
     world
 }
 
-/// Largest difference between the sum of a contact's terms and the force that the solver applied, relative to the largest
-/// term of that contact; and how many contacts there were.
+/// Largest difference between the sum of a contact's terms and the force that the solver applied,
+/// relative to the largest term of that contact; and how many contacts there were.
 fn worst_difference(world: &World) -> (f64, usize) {
     let difference = |contact: &Contact| {
         let terms = force_terms(world, contact);

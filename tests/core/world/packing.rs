@@ -235,7 +235,8 @@ fn the_seed_decides_and_the_mix_changes_labels_alone() {
     assert_eq!(changed.grains, first.grains);
 }
 
-/// Changes only with the geometry's arithmetic or the random numbers, never with the machine or the number of threads.
+/// Changes only with the geometry's arithmetic or the random numbers, never with the machine or the
+/// number of threads.
 #[test]
 fn a_packing_is_the_same_everywhere() {
     let world = world_of(&Scene::open("small-column").unwrap());

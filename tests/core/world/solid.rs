@@ -6,7 +6,8 @@ use grainfall::world::Polyhedron;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A rotation that no symmetry of the solids here knows, from a quaternion of whole numbers: 1 + 4 + 9 + 16 = 30.
+/// A rotation that no symmetry of the solids here knows, from a quaternion of whole numbers: 1 + 4
+/// + 9 + 16 = 30.
 fn askew() -> DQuat {
     DQuat::from_xyzw(1.0, -2.0, 3.0, 4.0).normalize()
 }
