@@ -52,6 +52,7 @@ pub trait Lanes:
     /// Rows again; the first [`Lanes::COUNT`] of them count.
     fn rows(columns: [Self; 4]) -> [Self::Quad; WIDEST];
     /// Square root.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// Where `self > other`.
     fn exceeds(self, other: Self) -> Self::Mask;

@@ -141,7 +141,10 @@ pub fn table_of_keys() -> String {
             "at the next start"
         };
         let (key, symbol, what) = (entry.key(), row.symbol, row.description);
-        table += &format!("| `{key}` | {symbol} | {takes} | {acts} | {what} |\n");
+        table += &[
+            "| `", &key, "` | ", symbol, " | ", &takes, " | ", acts, " | ", what, " |\n",
+        ]
+        .concat();
     }
     table
 }

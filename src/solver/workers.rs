@@ -378,10 +378,10 @@ pub fn split<'a, T>(
 }
 
 /// Cuts `slice` into one range for each worker: see [`split`].
-pub fn split_once<'a, T>(
-    slice: &'a mut [T],
+pub fn split_once<T>(
+    slice: &mut [T],
     ranges: impl Iterator<Item = Range<usize>>,
-) -> impl Iterator<Item = &'a mut [T]> {
+) -> impl Iterator<Item = &mut [T]> {
     let parts = split(slice, ranges.map(|range| vec![range]));
     parts.into_iter().filter_map(|part| part.into_iter().next())
 }
@@ -547,7 +547,7 @@ mod tests {
     #[should_panic(expected = "disjoint")]
     fn ranges_that_overlap_are_refused() {
         let batch = Batch::new(2);
-        let ranges = [vec![0..3, 6..8], vec![4..7]];
+        let ranges = [[0..3, 6..8].to_vec(), std::iter::once(4..7).collect()];
         batch.lend::<_, ForcePhase>(&mut [0; 10], ranges);
     }
 
@@ -556,7 +556,7 @@ mod tests {
     fn proof_of_another_batch_is_refused() {
         let mut numbers = [0; 4];
         let (batch, other) = (Batch::new(1), Batch::new(1));
-        let lent = other.lend::<_, ForcePhase>(&mut numbers, [vec![0..4]]);
+        let lent = other.lend::<_, ForcePhase>(&mut numbers, [std::iter::once(0..4).collect()]);
         let read = |mut column: Column<'_, i32, ForcePhase>, phase: InPhase<'_, ForcePhase>| {
             column.write_first(&phase).len()
         };

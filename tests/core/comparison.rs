@@ -322,7 +322,7 @@ fn a_half_that_meets_a_fault_stops_the_other_where_it_stands() {
     until(&mut simulation, |s| {
         matches!(s.status(), Status::Faulted(_))
     });
-    until(&mut simulation, |s| s.has_answered());
+    until(&mut simulation, grainfall::lab::Lab::has_answered);
     let steps = Half::ALL.map(|half| simulation.half(half).world().map(step_of));
     assert_eq!(steps[0], steps[1]);
     carry_out(&mut simulation, Command::Seek(5));

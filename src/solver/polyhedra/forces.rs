@@ -32,7 +32,7 @@ pub struct Forces<'a> {
     /// What the active features of each block remember.
     pub points: &'a mut [Vec<ContactPoint>],
     /// What the pairs do; of those that do nothing, whatever they did before.
-    pub forces: &'a mut [PairForce],
+    pub effects: &'a mut [PairForce],
     /// Whether they do anything.
     pub acting: &'a mut [bool],
     /// Room to work in.
@@ -49,14 +49,14 @@ impl Work for Forces<'_> {
             pairs,
             terms,
             points,
-            forces,
+            effects,
             acting,
             workspace,
         } = self;
         let mut tally = Tally::default();
         acting.fill(false);
         let blocks = pairs.chunks_mut(BLOCK).zip(terms.chunks_mut(BLOCK));
-        let effects = forces.chunks_mut(BLOCK).zip(acting.chunks_mut(BLOCK));
+        let effects = effects.chunks_mut(BLOCK).zip(acting.chunks_mut(BLOCK));
         for (((pairs, terms), points), (forces, acting)) in blocks.zip(points).zip(effects) {
             let mut block = Block {
                 pairs,

@@ -60,7 +60,9 @@ impl PairList {
         let count = bodies.len() as u32;
         let spheres = bodies.iter().map(|body| row(body.centre(), body.reach()));
         for_each_near(spheres, skin, |i, near| {
-            near.iter().for_each(|j| push((i, *j)));
+            for j in near {
+                push((i, *j));
+            }
             let body = &bodies[i as usize];
             for (w, wall) in (count..).zip(walls.iter()) {
                 if wall.surface.distance(body.centre()).0 < body.reach() + skin {

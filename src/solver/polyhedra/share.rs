@@ -166,7 +166,7 @@ impl Share for PolyhedraShare<'_> {
             pairs: &mut *self.pairs,
             terms: &mut *self.terms,
             points: &mut *self.points,
-            forces: self.forces.write_first(phase),
+            effects: self.forces.write_first(phase),
             acting: self.acting.write_first(phase),
             workspace: &mut *self.workspace,
         })

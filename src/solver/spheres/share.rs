@@ -150,7 +150,7 @@ impl<'a> SphereShare<'a> {
         let of_walls = rows.zip(forces).map(|((own, springs), forces)| PairRows {
             pairs: &common.wall_pairs[own.clone()],
             kind: None,
-            springs: &mut **springs,
+            springs,
             forces,
             // Walls hold no bridges.
             bridges: &mut [],
