@@ -66,7 +66,7 @@ impl Panel for BesidePaper {
         _out: &mut Vec<Request>,
     ) {
         let run = simulation.half(view.focus);
-        let viscosity = run.value(&Parameter::Viscosity).number();
+        let millipascals = 1e3 * run.value(&Parameter::Viscosity).number();
         let Some(world) = run.world() else {
             ui.weak("The laws appear when the bed stands.");
             return;
@@ -80,7 +80,6 @@ impl Panel for BesidePaper {
         let ratio = drop.zip(dry).map(|(drop, dry)| drop / dry);
         let flowing = summary.value(RunQuantity::NonRigidShare);
         let inverse_root = summary.value(RunQuantity::InverseRootGalilei);
-        let millipascals = 1e3 * viscosity;
         comparison_ui(
             ui,
             Comparison {
