@@ -24,7 +24,7 @@ pub enum Mode {
 
 /// How far the runs of a lab may go.
 #[derive(Clone, Debug)]
-pub struct Clock {
+pub struct LabClock {
     mode: Mode,
     /// Simulated seconds per wall-clock second.
     speed: f64,
@@ -36,7 +36,7 @@ pub struct Clock {
     hold: u64,
 }
 
-impl Clock {
+impl LabClock {
     /// A clock that runs or holds, at `speed` simulated seconds per wall-clock second.
     pub fn new(runs: bool, speed: f64) -> Self {
         let mode = if runs { Mode::Running } else { Mode::Paused };
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_step_are_saved_up_and_none_is_lost() {
-        let mut clock = Clock::new(true, 0.5);
+        let mut clock = LabClock::new(true, 0.5);
         clock.tick(Duration::from_millis(1500), at(7));
         assert_eq!(clock.goal(None), 8, "0.75 s are one step");
         clock.tick(Duration::from_millis(1500), at(8));
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn no_goal_lies_beyond_the_hold() {
-        let mut clock = Clock::new(true, f64::INFINITY);
+        let mut clock = LabClock::new(true, f64::INFINITY);
         clock.tick(Duration::ZERO, at(0));
         assert_eq!(clock.goal(None), u64::MAX);
         clock.hold_at(Some(5));

@@ -4,8 +4,8 @@
 //! short piece at a time, so that commands are answered quickly; how the pieces fall does not show
 //! in a trajectory. On which thread it is moved is up to the driver.
 
-use super::clock::{Clock, Mode};
-use super::command::LabCommand;
+use super::clock::{LabClock, Mode};
+use super::lab_command::LabCommand;
 use super::runs::Runs;
 use super::update::{SavedFile, Update};
 use super::{Half, Options, Status};
@@ -44,8 +44,8 @@ const OF_ONE_RUN: &str =
 
 /// A preparation that becomes a run, the runs of a lab, and their clock.
 pub struct Engine {
-    stage: Stage,
-    clock: Clock,
+    stage: LabStage,
+    clock: LabClock,
     /// The scene as it was opened.
     original: Arc<Scene>,
     threads: usize,
@@ -62,7 +62,7 @@ pub struct Engine {
     profiled: Instant,
 }
 
-enum Stage {
+enum LabStage {
     Preparing(Box<Preparation>),
     Ready(Runs),
     /// There is no run, as the status says.
@@ -75,20 +75,24 @@ impl Engine {
     pub fn open(scene: Arc<Scene>, time_step: f64, options: Options) -> Self {
         let original = scene.clone();
         let preparation = Preparation::new(scene, time_step, options.threads, options.beds.clone());
-        Self::at(Stage::Preparing(Box::new(preparation)), original, options)
+        Self::at(
+            LabStage::Preparing(Box::new(preparation)),
+            original,
+            options,
+        )
     }
 
     /// An engine that goes on with `session` at the moment that was shown.
     pub fn resume(session: Session, options: Options) -> Self {
         let original = Arc::new(session.original().clone());
         let timeline = session.into_timeline(options.threads, options.memory);
-        Self::at(Stage::Ready(Runs::new(timeline)), original, options)
+        Self::at(LabStage::Ready(Runs::new(timeline)), original, options)
     }
 
-    fn at(stage: Stage, original: Arc<Scene>, options: Options) -> Self {
+    fn at(stage: LabStage, original: Arc<Scene>, options: Options) -> Self {
         Self {
             stage,
-            clock: Clock::new(options.autoplay, options.speed),
+            clock: LabClock::new(options.autoplay, options.speed),
             original,
             threads: options.threads,
             memory: options.memory,
@@ -114,16 +118,16 @@ impl Engine {
     /// Whether there is work to do without another message.
     pub fn is_busy(&self) -> bool {
         match &self.stage {
-            Stage::Preparing(_) => true,
-            Stage::Ready(runs) => runs.have_work(&self.clock),
-            Stage::Failed(_) => false,
+            LabStage::Preparing(_) => true,
+            LabStage::Ready(runs) => runs.have_work(&self.clock),
+            LabStage::Failed(_) => false,
         }
     }
 
     /// Does one short piece of work, if there is any.
     pub fn work(&mut self) {
         match &mut self.stage {
-            Stage::Preparing(preparation) => match preparation.advance() {
+            LabStage::Preparing(preparation) => match preparation.advance() {
                 Ok(Prepared::NotYet) => {}
                 Ok(Prepared::Ready(run)) => {
                     let warnings = preparation.warnings().to_vec();
@@ -131,7 +135,7 @@ impl Engine {
                 }
                 Err(fault) => self.fail(Status::Faulted(fault)),
             },
-            Stage::Ready(runs) => {
+            LabStage::Ready(runs) => {
                 let started = Instant::now();
                 let piece = runs.advance(&mut self.clock, self.pieces.steps());
                 self.pieces.fit(piece.steps, started.elapsed());
@@ -139,7 +143,7 @@ impl Engine {
                     self.dispatch_waiting();
                 }
             }
-            Stage::Failed(_) => {}
+            LabStage::Failed(_) => {}
         }
     }
 
@@ -148,7 +152,7 @@ impl Engine {
         let mut update = std::mem::take(&mut self.news);
         update.status = Some(self.status());
         update.answered = Some(self.answered);
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             if self.profiled.elapsed() > PROFILE_TIME {
                 self.profiled = Instant::now();
                 runs.renew_profiles();
@@ -161,14 +165,14 @@ impl Engine {
 
     fn status(&self) -> Status {
         let runs = match &self.stage {
-            Stage::Failed(status) => return status.clone(),
-            Stage::Preparing(preparation) => {
+            LabStage::Failed(status) => return status.clone(),
+            LabStage::Preparing(preparation) => {
                 return Status::Preparing {
                     stage: preparation.name().into(),
                     progress: preparation.progress(),
                 };
             }
-            Stage::Ready(runs) => runs,
+            LabStage::Ready(runs) => runs,
         };
         match runs.fault() {
             Some(fault) => Status::Faulted(fault.clone()),
@@ -191,7 +195,7 @@ impl Engine {
             .and_then(|script| timeline.schedule(script).map_err(|error| error.to_string()));
         match scheduled {
             Ok(()) => {
-                self.stage = Stage::Ready(Runs::new(timeline));
+                self.stage = LabStage::Ready(Runs::new(timeline));
                 self.dispatch_waiting();
             }
             Err(reason) => self.fail(Status::Failed(reason)),
@@ -200,13 +204,13 @@ impl Engine {
 
     /// Ends without a run; what waited for one is answered.
     fn fail(&mut self, status: Status) {
-        self.stage = Stage::Failed(status);
+        self.stage = LabStage::Failed(status);
         self.dispatch_waiting();
     }
 
     /// Lets the runs go on by what `passed` wall-clock time is worth.
     fn tick(&mut self, passed: Duration) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             self.clock.tick(passed, runs.now());
             if let Some(step) = self.clock.due() {
                 runs.skip_towards(step);
@@ -251,7 +255,7 @@ impl Engine {
                 Command::Redo => self.travel(Runs::redo),
                 Command::Return(index) => self.take_up(index),
                 Command::Forget(index) => {
-                    if let Stage::Ready(runs) = &mut self.stage {
+                    if let LabStage::Ready(runs) = &mut self.stage {
                         runs.forget(index);
                     }
                 }
@@ -261,7 +265,7 @@ impl Engine {
 
     /// Holds here; what waited for the end of a way is carried out here.
     fn pause(&mut self) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             runs.stop();
             self.dispatch_waiting();
         }
@@ -270,7 +274,7 @@ impl Engine {
 
     /// Takes so many steps from here and holds.
     fn step(&mut self, steps: u64) {
-        if let Stage::Ready(runs) = &self.stage {
+        if let LabStage::Ready(runs) = &self.stage {
             let until = runs.now().step.saturating_add(steps);
             self.play(Mode::Stepping { until });
         }
@@ -278,7 +282,7 @@ impl Engine {
 
     /// Starts afresh, and goes on where nothing had stopped it.
     fn reset(&mut self) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             runs.reset();
             let goes_on = self.clock.mode() == Mode::Running && runs.fault().is_none();
             self.play(if goes_on { Mode::Running } else { Mode::Paused });
@@ -287,7 +291,7 @@ impl Engine {
 
     /// Shows a branch again, where there is one run only.
     fn take_up(&mut self, index: usize) {
-        if matches!(&self.stage, Stage::Ready(runs) if runs.is_pair()) {
+        if matches!(&self.stage, LabStage::Ready(runs) if runs.is_pair()) {
             self.news.warnings.push(OF_ONE_RUN.into());
         } else {
             self.travel(|runs| runs.take_up(index));
@@ -296,7 +300,7 @@ impl Engine {
 
     /// Starts a second run beside the first, or says why not.
     fn compare(&mut self, parameter: Parameter, value: Value) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             match runs.compare(parameter, value, self.memory / 2) {
                 Ok(()) => self.begin_anew(),
                 Err(reason) => self.news.warnings.push(reason),
@@ -306,7 +310,7 @@ impl Engine {
 
     /// Goes on with one of two runs.
     fn end_comparison(&mut self, keep: Half) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             runs.end_comparison(keep);
             self.begin_anew();
         }
@@ -328,15 +332,15 @@ impl Engine {
                 | LabCommand::All(Command::Seek(_) | Command::Pause | Command::Speed(_))
         );
         match &self.stage {
-            Stage::Preparing(_) => !matches!(command, LabCommand::Hold(_)),
-            Stage::Ready(runs) if !runs.are_on_the_way() || acts_at_once => false,
+            LabStage::Preparing(_) => !matches!(command, LabCommand::Hold(_)),
+            LabStage::Ready(runs) if !runs.are_on_the_way() || acts_at_once => false,
             // What takes a lone run elsewhere need not wait until it has come to the place before.
-            Stage::Ready(runs) => {
+            LabStage::Ready(runs) => {
                 let moves =
                     matches!(command, LabCommand::All(command) if command.moving().is_some());
                 runs.is_pair() || !moves
             }
-            Stage::Failed(_) => false,
+            LabStage::Failed(_) => false,
         }
     }
 
@@ -350,24 +354,24 @@ impl Engine {
     /// Writes the whole session, on the way from one piece of work to the next.
     fn save(&mut self, path: PathBuf) {
         let outcome = match &mut self.stage {
-            Stage::Ready(runs) => runs
+            LabStage::Ready(runs) => runs
                 .save(&path, &self.original)
                 .map_err(|error| error.to_string()),
-            Stage::Preparing(_) | Stage::Failed(_) => Err("there is no run".into()),
+            LabStage::Preparing(_) | LabStage::Failed(_) => Err("there is no run".into()),
         };
         self.news.saved.push(SavedFile { path, outcome });
     }
 
     fn use_threads(&mut self, threads: usize) {
         self.threads = threads;
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             runs.use_threads(threads);
         }
     }
 
     /// Changes all runs, or one of them; says why where that is refused.
     fn change(&mut self, change: &Command, half: Option<Half>) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             let last = self.last_set.replace(Instant::now());
             let joins = last.is_some_and(|last| last.elapsed() < ONE_CHANGE);
             let refused: Option<CommandError> = runs.change(change, half, joins).err();
@@ -378,7 +382,7 @@ impl Engine {
 
     /// Sets out for another moment and holds there.
     fn travel(&mut self, set_out: impl FnOnce(&mut Runs)) {
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             set_out(runs);
         }
         self.play(Mode::Paused);
@@ -387,7 +391,7 @@ impl Engine {
     /// Goes on in `mode` from here, forgetting what earlier ticks granted and what went wrong.
     fn play(&mut self, mode: Mode) {
         self.clock.set_mode(mode);
-        if let Stage::Ready(runs) = &mut self.stage {
+        if let LabStage::Ready(runs) = &mut self.stage {
             runs.forget_faults();
         }
     }

@@ -6,9 +6,9 @@
 //! the lab does. It computes nothing itself: an engine does, inline or on a thread of its own, and
 //! which one does not show in a trajectory.
 
-use super::command::LabCommand;
 use super::driver::Driver;
 use super::engine::{Engine, Message};
+use super::lab_command::LabCommand;
 use super::runs::ONE_STEP;
 use super::update::{RunsNews, SavedFile, Update};
 use super::{DriverKind, Half, Options, RunView, Status};

@@ -12,12 +12,11 @@
 //! | `driver` | who computes: the caller, or a thread |
 //! | `engine` | what the driver moves: commands are dispatched here |
 //! | `runs`, `run_view` | the runs, kept at the same step; what the outside sees of each |
-//! | `command`, `update` | what is asked of a lab; what the engine tells the outside |
+//! | `lab_command`, `update` | what is asked of a lab; what the engine tells the outside |
 //! | `clock`, `options` | how far the runs may go; how a lab is opened |
 //! | `status`, `half` | what a lab does; left and right |
 
 mod clock;
-mod command;
 mod driver;
 mod engine;
 mod half;
@@ -26,15 +25,16 @@ mod half;
     reason = "the lab is what this module is about"
 )]
 mod lab;
+mod lab_command;
 mod options;
 mod run_view;
 mod runs;
 mod status;
 mod update;
 
-pub use command::LabCommand;
 pub use half::Half;
 pub use lab::{Comparison, Lab};
+pub use lab_command::LabCommand;
 pub use options::{DriverKind, Options};
 pub use run_view::{RunView, SMALLEST_DROP};
 pub use status::Status;

@@ -10,7 +10,7 @@
 //! because of a fault or because it was told to, the one that is ahead goes back to it.
 
 use super::Half;
-use super::clock::Clock;
+use super::clock::LabClock;
 use super::update::{RunNews, RunsNews};
 use crate::run::{
     Branch, Command, CommandError, Parameter, Run, Session, Snapshot, Timeline, Value,
@@ -171,7 +171,7 @@ impl Runs {
 
     /// The step that `run` is to come to before the next command. While one is on the way to a
     /// moment, the others wait.
-    fn goal(&self, run: &LabRun, clock: &Clock) -> u64 {
+    fn goal(&self, run: &LabRun, clock: &LabClock) -> u64 {
         let destination = run.timeline.destination();
         if destination.is_none() && self.are_on_the_way() {
             return run.step();
@@ -180,12 +180,12 @@ impl Runs {
     }
 
     /// Whether one of them is to go further.
-    pub fn have_work(&self, clock: &Clock) -> bool {
+    pub fn have_work(&self, clock: &LabClock) -> bool {
         (self.list.iter()).any(|run| run.step() < self.goal(run, clock))
     }
 
     /// Lets each go at most `steps` steps towards its goal, all at the same time.
-    pub fn advance(&mut self, clock: &mut Clock, steps: u64) -> Piece {
+    pub fn advance(&mut self, clock: &mut LabClock, steps: u64) -> Piece {
         let was_on_the_way = self.are_on_the_way();
         let goals: Vec<u64> = (self.list.iter())
             .map(|run| self.goal(run, clock).min(run.step().saturating_add(steps)))
@@ -402,7 +402,7 @@ impl Runs {
     }
 
     /// All runs as they are to be shown, where all are at the same step.
-    pub fn news(&mut self, clock: &Clock) -> Option<RunsNews> {
+    pub fn news(&mut self, clock: &LabClock) -> Option<RunsNews> {
         for run in &mut self.list {
             let news = run.timeline.take_news();
             self.is_news |= news.switched || news.arrived;

@@ -27,7 +27,7 @@ pub const TALL_ASPECT_RATIO: f64 = 13.0;
 
 /// A column as it stood at the start, of the grains as they are labelled now.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Column {
+pub struct InitialColumn {
     /// Radius at the start, `R_i` [m].
     pub radius: f64,
     /// Height at the start, `H_i` [m].
@@ -44,7 +44,7 @@ pub struct Column {
     pub gravity: f64,
 }
 
-impl Column {
+impl InitialColumn {
     /// The column of `world`; none where there was none, or no grains.
     ///
     /// `μ_p = Σ P_a P_b μ_ab` over the shares by number of the species, which for two of them is

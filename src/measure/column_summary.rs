@@ -4,7 +4,7 @@
 //! [`Summary`].
 
 use super::collapse::Collapse;
-use super::column::{Column, cone_volume};
+use super::column::{InitialColumn, cone_volume};
 use super::deposit::{Deposit, HeightProfile};
 use super::quantity::MeasuredValue;
 use super::run_quantity::RunQuantity;
@@ -14,13 +14,18 @@ use crate::world::World;
 
 impl Summary {
     /// Adds what a `collapse` of `column` gave, the last state of which is `world`.
-    pub(super) fn add_collapse(&mut self, world: &World, column: &Column, collapse: &Collapse) {
+    pub(super) fn add_collapse(
+        &mut self,
+        world: &World,
+        column: &InitialColumn,
+        collapse: &Collapse,
+    ) {
         self.add_column(column);
         self.add_motion(column, collapse);
         self.add_deposit(world, column, collapse);
     }
 
-    fn add_column(&mut self, column: &Column) {
+    fn add_column(&mut self, column: &InitialColumn) {
         let effective = column.effective_aspect_ratio();
         self.add(RunQuantity::AspectRatio, column.aspect_ratio());
         self.add(RunQuantity::EffectiveAspectRatio, effective);
@@ -30,7 +35,7 @@ impl Summary {
         self.add(RunQuantity::PackedAspectRatio, column.packed_aspect_ratio());
     }
 
-    fn add_motion(&mut self, column: &Column, collapse: &Collapse) {
+    fn add_motion(&mut self, column: &InitialColumn, collapse: &Collapse) {
         let (peak, unit) = (collapse.peak_time, column.time_unit());
         let rest = collapse.rest_time.unwrap_or(f64::NAN);
         self.add(RunQuantity::PeakEnergy, collapse.peak_energy);
@@ -40,7 +45,7 @@ impl Summary {
         self.add(RunQuantity::DimensionlessRestTime, rest / unit);
     }
 
-    fn add_deposit(&mut self, world: &World, column: &Column, collapse: &Collapse) {
+    fn add_deposit(&mut self, world: &World, column: &InitialColumn, collapse: &Collapse) {
         let (front, height) = (collapse.front, collapse.height);
         let at_end = |measure: Measure| format!("at the end. {}", measure.quantity().explanation());
         let front_note = at_end(Measure::FrontRadius);

@@ -2,8 +2,9 @@
 //!
 //! In: a world. Out: one value per grain, in the unit that people read.
 
-use super::quantity::{Format, Scope, Unit, quantities};
+use super::quantity::{Format, Scope, quantities};
 use crate::geometry::sphere_volume;
+use crate::physics::{Unit, units};
 use crate::world::{Partner, World};
 
 quantities! {
@@ -33,7 +34,7 @@ quantities! {
             key: "kinetic energy",
             description: "Kinetic energy of translation and rotation.",
             short_label: "Kinetic energy",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         LargestForce {
@@ -57,7 +58,7 @@ quantities! {
             key: "liquid",
             description: "Liquid on it, its part in bridges included.",
             short_label: "Liquid",
-            unit: Unit::LIQUID,
+            unit: units::FILM_VOLUME,
             format: Format::Prefixed,
             scope: Scope::Liquids,
         }
@@ -72,7 +73,7 @@ impl GrainQuantity {
 
     /// The unit that people read, to which prefixes may be added; empty for a count.
     pub fn unit(self) -> &'static str {
-        self.quantity().unit.shown
+        self.quantity().unit.shown.name
     }
 
     /// Whether grains of `world` have it.
@@ -82,7 +83,7 @@ impl GrainQuantity {
 
     /// That of each grain of `world` in the shown unit, appended to `values`.
     pub fn append(self, world: &World, values: &mut Vec<f64>) {
-        let litres = Unit::LIQUID.factor;
+        let litres = units::FILM_VOLUME.shown.factor;
         let grains = &world.grains;
         match self {
             Self::Speed => values.extend(grains.velocity.iter().map(|v| v.length())),

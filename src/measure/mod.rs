@@ -71,7 +71,7 @@ mod window;
 pub use avalanches::{Avalanche, SMALLEST_DROP, SMOOTHING_TIME, avalanches};
 pub use collapse::Collapse;
 pub use column::{
-    CRITICAL_ASPECT_RATIO, Column, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
+    CRITICAL_ASPECT_RATIO, InitialColumn, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
     TALL_REST_TIME_LAW, cone_volume, cone_volume_law, contact_shares_law, run_out_law,
 };
 pub use contact_network::{contact_shares, coordination_number, largest_overlap};
@@ -82,7 +82,7 @@ pub use energy_ledger::{EnergyLedger, elastic_energy};
 pub use flow::{FlowHistory, FlowProfile, NON_RIGID_TEMPERATURE};
 pub use grain_quantity::GrainQuantity;
 pub use packing_fraction::packing_fraction;
-pub use quantity::{Format, MeasuredValue, Quantity, Scope, Unit};
+pub use quantity::{Format, MeasuredValue, Quantity, Scope};
 pub use regime::Regime;
 pub use result_key::{DropThreshold, ResultKey};
 pub use run_quantity::RunQuantity;

@@ -8,6 +8,7 @@
 //! and its place in the list of all.
 
 use super::numeral::{self, NOTHING};
+use crate::physics::{Unit, units};
 use serde::{Serialize, Serializer};
 
 /// Row of the registry: all that people and files need to know of one quantity.
@@ -29,17 +30,6 @@ pub struct Quantity {
     pub description: &'static str,
     /// The equation it comes from, empty where there is none: `Eq. 1.1 of Man et al. 2023`.
     pub source: &'static str,
-}
-
-/// The unit of a quantity: SI in files, another for people where they use one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
-    /// SI unit, `1` for a pure number: `rad`.
-    pub si: &'static str,
-    /// The unit that people read, empty for a pure number: `°`.
-    pub shown: &'static str,
-    /// A value in the SI unit times this is the value in the shown one.
-    pub factor: f64,
 }
 
 /// How the values of a quantity are written for people.
@@ -85,55 +75,13 @@ pub enum MeasuredValue {
     Choice(&'static str),
 }
 
-const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-
-impl Unit {
-    /// Pure numbers.
-    pub const PURE: Self = Self::new("1", "", 1.0);
-    /// Angles, for people in degrees.
-    pub const ANGLE: Self = Self::new("rad", "°", DEGREES);
-    /// Angular velocities, for people in degrees per second.
-    pub const TURNING: Self = Self::new("rad/s", "°/s", DEGREES);
-    /// Lengths of the size of grains and containers, for people in millimetres.
-    pub const LENGTH: Self = Self::new("m", "mm", 1e3);
-    /// Volumes of heaps, for people in cubic centimetres.
-    pub const VOLUME: Self = Self::new("m³", "cm³", 1e6);
-    /// Volumes of liquid, for people in litres with a prefix.
-    pub const LIQUID: Self = Self::new("m³", "L", 1e3);
-    /// Times.
-    pub const TIME: Self = Self::same("s");
-    /// Energies.
-    pub const ENERGY: Self = Self::same("J");
-    /// Energies in the unit of Man et al. 2023: 1 g cm²/s² is 1e-7 J.
-    pub const ERG: Self = Self::new("J", "g cm²/s²", 1e7);
-    /// Powers of small drums, for people in milliwatts.
-    pub const POWER: Self = Self::new("W", "mW", 1e3);
-
-    /// A unit that people read as it stands in files.
-    pub const fn same(si: &'static str) -> Self {
-        Self::new(si, si, 1.0)
-    }
-
-    const fn new(si: &'static str, shown: &'static str, factor: f64) -> Self {
-        Self { si, shown, factor }
-    }
-
-    /// `name` with the shown unit in brackets: `θ [°]`; a pure number has none.
-    pub fn beside(&self, name: &str) -> String {
-        match self.shown {
-            "" => name.to_owned(),
-            unit => format!("{name} [{unit}]"),
-        }
-    }
-}
-
 impl Quantity {
     /// What a row says that does not say otherwise.
     pub(super) const BLANK: Self = Self {
         key: "",
         short_label: "",
         symbol: "",
-        unit: Unit::PURE,
+        unit: units::PURE,
         format: Format::Significant,
         scope: Scope::Everywhere,
         description: "",
@@ -189,7 +137,9 @@ impl Quantity {
     /// The same in another unit or with other digits than the quantity's own.
     pub fn number_as(&self, value: impl Into<MeasuredValue>, unit: Unit, format: Format) -> String {
         match value.into() {
-            MeasuredValue::Number(value) if value.is_finite() => format.plain(value * unit.factor),
+            MeasuredValue::Number(value) if value.is_finite() => {
+                format.plain(value * unit.shown.factor)
+            }
             MeasuredValue::Number(_) => NOTHING.into(),
             MeasuredValue::Count(count) => count.to_string(),
             MeasuredValue::Choice(word) => word.into(),
@@ -200,18 +150,18 @@ impl Quantity {
     /// word; a dash where there is none.
     pub fn text(&self, value: impl Into<MeasuredValue>) -> String {
         let value = match value.into() {
-            MeasuredValue::Number(value) => value * self.unit.factor,
+            MeasuredValue::Number(value) => value * self.unit.shown.factor,
             MeasuredValue::Count(count) => return count.to_string(),
             MeasuredValue::Choice(word) => return word.into(),
         };
         if self.format == Format::Prefixed && value.is_finite() {
-            return numeral::with_prefix(value, self.unit.shown);
+            return numeral::with_prefix(value, self.unit.shown.name);
         }
         let number = numeral::written(value, |value| self.format.plain(value));
-        if self.unit.shown.is_empty() || value.is_nan() {
+        if self.unit.shown.name.is_empty() || value.is_nan() {
             number
         } else {
-            format!("{number} {}", self.unit.shown)
+            format!("{number} {}", self.unit.shown.name)
         }
     }
 }
@@ -309,7 +259,7 @@ mod tests {
     const ANGLE: Quantity = Quantity {
         key: "drop",
         symbol: "Δθ",
-        unit: Unit::ANGLE,
+        unit: units::ANGLE,
         format: Format::Fixed(2),
         description: "A fall",
         source: "Eq. 3",
@@ -328,14 +278,14 @@ mod tests {
             format,
             ..Quantity::BLANK
         };
-        assert_eq!(with(Unit::PURE, Format::Significant).text(0.61), "0.6100");
+        assert_eq!(with(units::PURE, Format::Significant).text(0.61), "0.6100");
         let heat = with(Unit::same("m²/s²"), Format::Scientific);
         assert_eq!(heat.text(2.3e-9), "2.30·10⁻⁹ m²/s²");
         assert_eq!(heat.number(2.3e-9), "2.30e-9");
-        let energy = with(Unit::ENERGY, Format::Prefixed);
+        let energy = with(units::ENERGY, Format::Prefixed);
         assert_eq!(energy.text(0.0123), "12.30 mJ");
         assert_eq!(energy.number(0.0123), "1.23e-2");
-        assert_eq!(with(Unit::LENGTH, Format::Fixed(1)).text(0.05), "50.0 mm");
+        assert_eq!(with(units::LENGTH, Format::Fixed(1)).text(0.05), "50.0 mm");
     }
 
     #[test]

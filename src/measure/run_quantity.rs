@@ -4,8 +4,9 @@
 //! measures of the samples. How the numbers are taken stands in `run_summary` and `column_summary`.
 
 use super::deposit::DepositShape;
-use super::quantity::{Format, Scope, Unit, quantities};
+use super::quantity::{Format, Scope, quantities};
 use super::regime::Regime;
+use crate::physics::{Unit, units};
 
 quantities! {
     /// A number of a run as a whole, or of a window of it.
@@ -20,7 +21,7 @@ quantities! {
         DrumPower {
             key: "drum power",
             description: "work of the moving walls over the window, per second",
-            unit: Unit::POWER,
+            unit: units::POWER,
             format: Format::Fixed(3),
             scope: Scope::Beds,
         }
@@ -51,7 +52,7 @@ quantities! {
             key: "rise rate",
             description: "median slope of the surface angle over 0.2 s between avalanches; the \
                           drum speed where the bed turns rigidly",
-            unit: Unit::TURNING,
+            unit: units::ANGULAR_VELOCITY,
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
@@ -65,7 +66,7 @@ quantities! {
             key: "maximum angle θ_m",
             description: "mean over the avalanches, surface angle smoothed over 0.1 s",
             symbol: "θ_m",
-            unit: Unit::ANGLE,
+            unit: units::ANGLE,
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
@@ -73,7 +74,7 @@ quantities! {
             key: "repose angle θ_r",
             description: "mean over the avalanches, surface angle smoothed over 0.1 s",
             symbol: "θ_r",
-            unit: Unit::ANGLE,
+            unit: units::ANGLE,
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
@@ -82,7 +83,7 @@ quantities! {
             description: "mean over the avalanches, surface angle smoothed over 0.1 s",
             short_label: "Drop ⟨Δθ⟩",
             symbol: "Δθ",
-            unit: Unit::ANGLE,
+            unit: units::ANGLE,
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
@@ -172,7 +173,7 @@ quantities! {
             description: "largest kinetic energy per grain of the samples, translation and \
                           rotation",
             short_label: "Peak energy per grain",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
             scope: Scope::Columns,
         }
@@ -180,7 +181,7 @@ quantities! {
             key: "peak time t_max",
             description: "time of the sample with the largest kinetic energy",
             symbol: "t_max",
-            unit: Unit::TIME,
+            unit: units::TIME,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -189,7 +190,7 @@ quantities! {
             description: "first sample after the peak with a kinetic energy per grain below 1 % \
                           of the peak and the front within 1 % of R_∞",
             symbol: "t_f",
-            unit: Unit::TIME,
+            unit: units::TIME,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -213,7 +214,7 @@ quantities! {
             key: "front radius R_∞",
             description: "the front radius of the last sample",
             symbol: "R_∞",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -229,7 +230,7 @@ quantities! {
             key: "height H_∞",
             description: "the deposit height of the last sample",
             symbol: "H_∞",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -245,7 +246,7 @@ quantities! {
             key: "V_cone",
             description: "(π/3) R_∞² H_∞",
             symbol: "V_cone",
-            unit: Unit::VOLUME,
+            unit: units::VOLUME,
             scope: Scope::Columns,
             source: "Eq. 4.3 of Man et al. 2023",
         }
@@ -261,7 +262,7 @@ quantities! {
             key: "flat radius",
             description: "where the mean profile of height falls below nine tenths of its apex",
             short_label: "Flat radius of the top",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }

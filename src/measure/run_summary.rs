@@ -6,7 +6,7 @@
 
 use super::avalanches::Avalanche;
 use super::collapse::Collapse;
-use super::column::Column;
+use super::column::InitialColumn;
 use super::flow::NON_RIGID_TEMPERATURE;
 use super::quantity::MeasuredValue;
 use super::result_key::{DropThreshold, ResultKey};
@@ -63,7 +63,7 @@ const TURNOVER: [Measure; 7] = [
 /// begin at its release; a bed's count from `from_time` [s] on, with avalanches of at least
 /// `smallest_drop` [rad].
 pub fn results(series: &Series, world: &World, from_time: f64, smallest_drop: f64) -> Summary {
-    let column = Column::of(world).zip(Collapse::of(series));
+    let column = InitialColumn::of(world).zip(Collapse::of(series));
     let Some((column, collapse)) = column else {
         let mut summary = summarise(series, from_time, smallest_drop);
         add_case(&mut summary, world);

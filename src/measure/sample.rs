@@ -2,7 +2,7 @@
 //!
 //! In: a world. Out: a [`Sample`], NaN where a measure has no meaning in that world.
 
-use super::column::Column;
+use super::column::InitialColumn;
 use super::contact_network::{contact_shares, coordination_number, largest_overlap};
 use super::deposit::Deposit;
 use super::drum_torque::drum_torque;
@@ -50,7 +50,7 @@ pub fn sample_and_surface(world: &World) -> (Sample, Option<SurfaceLine>) {
         values: [f64::NAN; Measure::COUNT],
     };
     set_common(&mut sample, world);
-    let surface = match Column::of(world) {
+    let surface = match InitialColumn::of(world) {
         Some(column) => {
             set_collapse(&mut sample, world, &column);
             None
@@ -96,7 +96,7 @@ fn set_bed(sample: &mut Sample, world: &World) -> Option<SurfaceLine> {
 }
 
 /// What a collapsing column shows.
-fn set_collapse(sample: &mut Sample, world: &World, column: &Column) {
+fn set_collapse(sample: &mut Sample, world: &World, column: &InitialColumn) {
     let Some(deposit) = Deposit::of(world) else {
         return;
     };

@@ -3,7 +3,8 @@
 //! In: a world. Out: which of the numbers have a meaning in it, and their rows of the registry. How
 //! they are taken stands in the files named after them; [`super::sample()`] takes them all.
 
-use super::quantity::{Format, Scope, Unit, quantities};
+use super::quantity::{Format, Scope, quantities};
+use crate::physics::{Unit, units};
 use crate::world::{Shape, World};
 
 quantities! {
@@ -18,7 +19,7 @@ quantities! {
                           middle 70 % of the free surface, positive where the surface rises to \
                           the right.",
             symbol: "θ",
-            unit: Unit::ANGLE,
+            unit: units::ANGLE,
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
@@ -60,7 +61,7 @@ quantities! {
             key: "kinetic energy",
             description: "Kinetic energy of translation and rotation of all grains.",
             symbol: "E_kin",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         LargestOverlap {
@@ -74,49 +75,49 @@ quantities! {
             description: "Change of kinetic and elastic energy since the start that work and \
                           losses do not explain.",
             symbol: "ΔE",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         ElasticEnergy {
             key: "elastic energy",
             description: "Energy stored in the normal and tangential springs of all contacts.",
             symbol: "E_el",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         GravityWork {
             key: "gravity work",
             description: "Work of gravity on the grains since the start.",
             symbol: "W_g",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         WallWork {
             key: "wall work",
             description: "Work of the moving walls on the grains since the start.",
             symbol: "W_w",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         DashpotLoss {
             key: "dashpot loss",
             description: "Energy lost in the normal and tangential dashpots since the start.",
             symbol: "D_d",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         SlidingLoss {
             key: "sliding loss",
             description: "Energy lost in sliding friction since the start.",
             symbol: "D_s",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         RollingLoss {
             key: "rolling loss",
             description: "Energy lost in rolling friction since the start.",
             symbol: "D_r",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
         }
         MeanSpeed {
@@ -131,7 +132,7 @@ quantities! {
             description: "Mean distance of the top grains' centres from the straight line through \
                           them.",
             symbol: "h",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(3),
             scope: Scope::Beds,
             source: "Eq. 24 of Kasper et al. 2021",
@@ -172,7 +173,7 @@ quantities! {
             key: "viscous loss",
             description: "Energy lost to the viscosity of the liquid since the start.",
             symbol: "D_v",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
             scope: Scope::Liquids,
         }
@@ -181,7 +182,7 @@ quantities! {
             description: "Energy taken by capillary forces since the start: the cost of broken \
                           bridges, and what those that hold would give back.",
             symbol: "D_c",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
             scope: Scope::Liquids,
         }
@@ -190,7 +191,7 @@ quantities! {
             description: "Distance of the farthest point of a grain from the column's axis in \
                           each of 72 sectors, their mean over the sectors that hold a grain.",
             symbol: "R",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -199,7 +200,7 @@ quantities! {
             description: "Radius about the column's axis within which the centres of 99 % of the \
                           grains lie.",
             symbol: "R_99",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -208,7 +209,7 @@ quantities! {
             description: "Radius about the column's axis within which the centres of 95 % of the \
                           grains lie.",
             symbol: "R_95",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -217,7 +218,7 @@ quantities! {
             description: "The front radius of those grains alone that belong to the largest \
                           cluster of touching grains.",
             symbol: "R_c",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -226,7 +227,7 @@ quantities! {
             description: "Highest point of the grains whose centres lie within half of the \
                           column's initial radius of its axis.",
             symbol: "H",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -235,7 +236,7 @@ quantities! {
             description: "Largest height of the profile over the radius, averaged over the \
                           azimuth in rings two grain sizes wide.",
             symbol: "H_a",
-            unit: Unit::LENGTH,
+            unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
@@ -252,7 +253,7 @@ quantities! {
             key: "translational energy per grain",
             description: "Kinetic energy of translation, mean over the grains.",
             symbol: "e_t",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
             scope: Scope::Columns,
         }
@@ -260,7 +261,7 @@ quantities! {
             key: "rotational energy per grain",
             description: "Kinetic energy of rotation, mean over the grains.",
             symbol: "e_r",
-            unit: Unit::ENERGY,
+            unit: units::ENERGY,
             format: Format::Prefixed,
             scope: Scope::Columns,
         }

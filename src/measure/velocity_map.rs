@@ -30,7 +30,7 @@ pub struct VelocityMap {
 
 /// Sums over the grains near one point.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct KernelSums {
     weight: f64,
     velocity: DVec2,
     covered: bool,
@@ -86,7 +86,7 @@ pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
         columns: size.x as usize,
         velocity: Vec::new(),
     };
-    let mut sums = vec![Sums::default(); map.columns * size.y as usize];
+    let mut sums = vec![KernelSums::default(); map.columns * size.y as usize];
     for ((place, velocity), &radius) in places().zip(&grains.velocity).zip(&grains.radius) {
         let velocity = velocity.truncate() - turning * place.perp();
         let own = (place - map.corner) / spacing;
@@ -103,7 +103,7 @@ pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
             }
         }
     }
-    let mean = |sum: &Sums| sum.covered.then(|| sum.velocity / sum.weight);
+    let mean = |sum: &KernelSums| sum.covered.then(|| sum.velocity / sum.weight);
     map.velocity = sums.iter().map(mean).collect();
     Some(map)
 }

@@ -3,8 +3,8 @@
 //! In: a scene, and its world at time zero. Out: a list of [`ParameterInfo`], one per parameter, in
 //! the order of the registry.
 
-use super::parameter::{Arguments, Entry, Parameter, entries};
-use super::row::{Names, Place, Row};
+use super::parameter::{Entry, NameKind, Parameter, entries};
+use super::parameter_row::{Names, PanelSection, ParameterRow};
 use super::value::{Choice, Value};
 use crate::physics::limits;
 use crate::scene::Scene;
@@ -38,7 +38,7 @@ pub enum Values {
 
 impl ParameterInfo {
     /// What is known of it in all scenes.
-    pub fn row(&self) -> &'static Row {
+    pub fn row(&self) -> &'static ParameterRow {
         self.parameter.row()
     }
 
@@ -75,7 +75,7 @@ impl Parameter {
 /// The parameters of `scene` that can change while a run goes on, whose world at time zero is
 /// `world`.
 pub fn live_parameters(scene: &Scene, world: &World) -> Vec<ParameterInfo> {
-    let live = |row: &Row| row.is_live();
+    let live = |row: &ParameterRow| row.is_live();
     let info = |parameter: Parameter| {
         let default = parameter.read(world)?;
         Some(info(parameter, default, scene))
@@ -100,13 +100,13 @@ pub fn time_step(step: f64) -> ParameterInfo {
 /// The parameters of `scene` that act from the next start on and that panels show.
 pub fn start_parameters(scene: &Scene) -> Vec<ParameterInfo> {
     let all = stated_parameters(scene).into_iter();
-    all.filter(|info| info.row().place == Place::Start && info.acts)
+    all.filter(|info| info.row().section == PanelSection::Start && info.acts)
         .collect()
 }
 
 /// The parameters of `scene` that act from the next start on.
 pub fn stated_parameters(scene: &Scene) -> Vec<ParameterInfo> {
-    let at_start = |row: &Row| !row.is_live();
+    let at_start = |row: &ParameterRow| !row.is_live();
     let info = |parameter: Parameter| {
         let default = parameter.in_effect(scene)?;
         Some(info(parameter, default, scene))
@@ -133,20 +133,23 @@ fn info(parameter: Parameter, default: Value, scene: &Scene) -> ParameterInfo {
 pub fn label(parameter: &Parameter, scene: &Scene) -> String {
     let name = (parameter.row().name)(scene);
     let [a, b] = parameter.names();
-    match parameter.arguments() {
-        Arguments::None => name.to_owned(),
-        Arguments::Material | Arguments::Species => format!("{name} {a}"),
-        Arguments::Pair => format!("{name} {a} – {b}"),
+    match parameter.name_kind() {
+        NameKind::None => name.to_owned(),
+        NameKind::Material | NameKind::Species => format!("{name} {a}"),
+        NameKind::Pair => format!("{name} {a} – {b}"),
     }
 }
 
 /// The parameters that `scene` has, of rows that are `wanted`. Those about the same names stand
 /// together.
-fn parameters_of(scene: &Scene, wanted: impl Fn(&Row) -> bool) -> impl Iterator<Item = Parameter> {
-    let alike = |one: &Entry, other: &Entry| one.arguments == other.arguments;
+fn parameters_of(
+    scene: &Scene,
+    wanted: impl Fn(&ParameterRow) -> bool,
+) -> impl Iterator<Item = Parameter> {
+    let alike = |one: &Entry, other: &Entry| one.name_kind == other.name_kind;
     let mut all = Vec::new();
     for group in entries().chunk_by(alike) {
-        let names = group.first().map(|entry| names_in(scene, entry.arguments));
+        let names = group.first().map(|entry| names_in(scene, entry.name_kind));
         for names in names.unwrap_or_default() {
             let own = group.iter().filter(|entry| wanted(entry.row));
             let own = own.filter(|entry| (entry.row.exists)(scene, names));
@@ -157,18 +160,18 @@ fn parameters_of(scene: &Scene, wanted: impl Fn(&Row) -> bool) -> impl Iterator<
 }
 
 /// All names that parameters of `scene` can be about.
-fn names_in(scene: &Scene, arguments: Arguments) -> Vec<Names<'_>> {
+fn names_in(scene: &Scene, name_kind: NameKind) -> Vec<Names<'_>> {
     let materials = || {
         scene
             .materials
             .iter()
             .map(|material| material.name.as_str())
     };
-    match arguments {
-        Arguments::None => vec![["", ""]],
-        Arguments::Material => materials().map(|name| [name, ""]).collect(),
-        Arguments::Species => scene.species().iter().map(|s| [s.0, ""]).collect(),
-        Arguments::Pair => {
+    match name_kind {
+        NameKind::None => vec![["", ""]],
+        NameKind::Material => materials().map(|name| [name, ""]).collect(),
+        NameKind::Species => scene.species().iter().map(|s| [s.0, ""]).collect(),
+        NameKind::Pair => {
             let pairs = materials().enumerate().flat_map(|(index, a)| {
                 let others = materials().skip(index);
                 others.map(move |b| [a, b])

@@ -9,7 +9,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `parameter` | the list of parameters: each with its names and its row; their keys |
-//! | `row` | what a row says |
+//! | `parameter_row` | what a row says |
 //! | `rows` | the rows, by what they are about |
 //! | `value`, `stored` | numbers, counts and choices; how files hold them |
 //! | `list` | the parameters of one scene, with their ranges |
@@ -22,8 +22,8 @@
 
 mod list;
 mod parameter;
+mod parameter_row;
 mod relabel;
-mod row;
 mod rows;
 mod set;
 mod settings;
@@ -33,7 +33,7 @@ mod value;
 pub use list::{
     ParameterInfo, Values, label, live_parameters, start_parameters, stated_parameters, time_step,
 };
-pub use parameter::{Arguments, Entry, Parameter, Unsuited, entries};
-pub use row::{InScene, InWorld, Kind, Names, Place, Preset, Row, Scale};
+pub use parameter::{Entry, NameKind, Parameter, Unsuited, entries};
+pub use parameter_row::{InScene, InWorld, Kind, Names, PanelSection, ParameterRow, Preset, Scale};
 pub use settings::{Setting, Settings, table_of_keys};
 pub use value::{Choice, Value};

@@ -1,11 +1,11 @@
 //! Which parameters there are, each with its row, and the keys they go by.
 //!
-//! In: a key such as `friction.glass.drum`. Out: the [`Parameter`], and the [`Row`] that holds all
+//! In: a key such as `friction.glass.drum`. Out: the [`Parameter`], and the [`ParameterRow`] that holds all
 //! else that is known of it. **To add a parameter**: write its row in one of the files of `rows`,
 //! and its line in the list below. Nothing else lists parameters.
 
-use super::row::{Kind, Names, Row};
-use super::rows::{contact, liquid, materials, motion, run, sizes};
+use super::parameter_row::{Kind, Names, ParameterRow};
+use super::rows::{driving, liquid_and_bridges, material_pairs, material_properties, run, sizes};
 use super::value::Value;
 use crate::physics::Materials;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use std::fmt;
 
 /// What the names of a parameter are names of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Arguments {
+pub enum NameKind {
     /// It has none.
     None,
     /// A material.
@@ -27,9 +27,9 @@ pub enum Arguments {
 /// A row of the registry, and how parameters of it are made.
 pub struct Entry {
     /// What is known of it.
-    pub row: &'static Row,
+    pub row: &'static ParameterRow,
     /// What its names are names of.
-    pub arguments: Arguments,
+    pub name_kind: NameKind,
     /// The parameter of it that is about these names.
     pub of: fn(Names) -> Parameter,
 }
@@ -48,7 +48,7 @@ macro_rules! parameters {
 
         impl Parameter {
             /// What is known of it.
-            pub fn row(&self) -> &'static Row {
+            pub fn row(&self) -> &'static ParameterRow {
                 match self {
                     $(Self::$variant { .. } => &$row,)+
                 }
@@ -70,9 +70,9 @@ macro_rules! parameters {
             }
 
             /// What its names are names of.
-            pub fn arguments(&self) -> Arguments {
+            pub fn name_kind(&self) -> NameKind {
                 match self {
-                    $(Self::$variant { .. } => parameters!(@arguments $($($name)+)?),)+
+                    $(Self::$variant { .. } => parameters!(@name_kind $($($name)+)?),)+
                 }
             }
         }
@@ -80,7 +80,7 @@ macro_rules! parameters {
         /// Every row.
         static ENTRIES: &[Entry] = &[$(Entry {
             row: &$row,
-            arguments: parameters!(@arguments $($($name)+)?),
+            name_kind: parameters!(@name_kind $($($name)+)?),
             of: parameters!(@of $variant $($($name)+)?),
         },)+];
     };
@@ -88,10 +88,10 @@ macro_rules! parameters {
     (@names) => { ["", ""] };
     (@names $a:ident) => { [$a, ""] };
     (@names $a:ident $b:ident) => { [$a, $b] };
-    (@arguments) => { Arguments::None };
-    (@arguments material) => { Arguments::Material };
-    (@arguments species) => { Arguments::Species };
-    (@arguments $a:ident $b:ident) => { Arguments::Pair };
+    (@name_kind) => { NameKind::None };
+    (@name_kind material) => { NameKind::Material };
+    (@name_kind species) => { NameKind::Species };
+    (@name_kind $a:ident $b:ident) => { NameKind::Pair };
     (@of $variant:ident) => { |_| Parameter::$variant };
     (@of $variant:ident $a:ident) => { |[a, _]| Parameter::$variant(a.to_owned()) };
     (@of $variant:ident $a:ident $b:ident) => {
@@ -101,31 +101,31 @@ macro_rules! parameters {
 
 parameters! {
     /// Angular speed of the drum [rad/s].
-    DrumSpeed => motion::DRUM_SPEED,
+    DrumSpeed => driving::DRUM_SPEED,
     /// Magnitude of gravity, its direction kept [m/s²].
-    Gravity => motion::GRAVITY,
+    Gravity => driving::GRAVITY,
     /// Sliding friction μ between two materials where there is liquid.
-    WetFriction(a, b) => contact::WET_FRICTION,
+    WetFriction(a, b) => material_pairs::WET_FRICTION,
     /// Sliding friction μ between two materials, dry.
-    Friction(a, b) => contact::FRICTION,
+    Friction(a, b) => material_pairs::FRICTION,
     /// Rolling friction `μ_R` between two materials.
-    RollingFriction(a, b) => contact::ROLLING_FRICTION,
+    RollingFriction(a, b) => material_pairs::ROLLING_FRICTION,
     /// Restitution e between two materials.
-    Restitution(a, b) => contact::RESTITUTION,
+    Restitution(a, b) => material_pairs::RESTITUTION,
     /// Share of a species by number, where species share one radius.
-    Share(species) => motion::SHARE,
+    Share(species) => driving::SHARE,
     /// Viscosity η of the liquid [Pa s].
-    Viscosity => liquid::VISCOSITY,
+    Viscosity => liquid_and_bridges::VISCOSITY,
     /// Surface tension γ of the liquid [N/m].
-    SurfaceTension => liquid::SURFACE_TENSION,
+    SurfaceTension => liquid_and_bridges::SURFACE_TENSION,
     /// Contact angle α of the liquid [rad].
-    ContactAngle => liquid::CONTACT_ANGLE,
+    ContactAngle => liquid_and_bridges::CONTACT_ANGLE,
     /// Volume of all the liquid [m³].
-    LiquidVolume => liquid::VOLUME,
+    LiquidVolume => liquid_and_bridges::VOLUME,
     /// How bridges act: as printed or as coded.
-    BridgeLaw => liquid::BRIDGE_LAW,
+    BridgeLaw => liquid_and_bridges::BRIDGE_LAW,
     /// The liquid of the paper's Table 1, or none.
-    Liquid => liquid::CASE,
+    Liquid => liquid_and_bridges::CASE,
     /// Number of grains of a filling.
     GrainCount => sizes::GRAIN_COUNT,
     /// Radius of all grains of a filling [m].
@@ -147,21 +147,21 @@ parameters! {
     /// Height of the column [m].
     ColumnHeight => sizes::COLUMN_HEIGHT,
     /// Density of a material [kg/m³].
-    Density(material) => materials::DENSITY,
+    Density(material) => material_properties::DENSITY,
     /// Young's modulus of a material [Pa].
-    YoungsModulus(material) => materials::YOUNGS_MODULUS,
+    YoungsModulus(material) => material_properties::YOUNGS_MODULUS,
     /// Poisson's ratio of a material.
-    PoissonRatio(material) => materials::POISSON_RATIO,
+    PoissonRatio(material) => material_properties::POISSON_RATIO,
     /// Friction of two grains of the first species, from the start on.
-    FirstFriction => materials::FIRST_FRICTION,
+    FirstFriction => material_properties::FIRST_FRICTION,
     /// Friction of two grains of the second species, from the start on.
-    SecondFriction => materials::SECOND_FRICTION,
+    SecondFriction => material_properties::SECOND_FRICTION,
     /// Friction of all grains on the container, from the start on.
-    WallFriction => materials::WALL_FRICTION,
+    WallFriction => material_properties::WALL_FRICTION,
     /// Normal stiffness of linear springs [N/m].
-    NormalStiffness => materials::NORMAL_STIFFNESS,
+    NormalStiffness => material_properties::NORMAL_STIFFNESS,
     /// How contacts of two polyhedra in several places count.
-    Features => materials::FEATURES,
+    Features => material_properties::FEATURES,
     /// Time step [s].
     TimeStep => run::TIME_STEP,
     /// Seed of everything random.
@@ -180,17 +180,17 @@ pub fn entries() -> &'static [Entry] {
 impl Entry {
     /// Its key with what its names stand for: `friction.A.B`, `share.S`.
     pub fn key(&self) -> String {
-        let names = match self.arguments {
-            Arguments::None => "",
-            Arguments::Material => ".M",
-            Arguments::Species => ".S",
-            Arguments::Pair => ".A.B",
+        let names = match self.name_kind {
+            NameKind::None => "",
+            NameKind::Material => ".M",
+            NameKind::Species => ".S",
+            NameKind::Pair => ".A.B",
         };
         format!("{}{names}", self.row.key)
     }
 }
 
-impl Arguments {
+impl NameKind {
     /// How many names there are.
     pub fn count(self) -> usize {
         match self {
@@ -218,7 +218,7 @@ impl Parameter {
         let (first, names) = (parts.next().unwrap_or_default(), parts.collect::<Vec<_>>());
         let name = |index: usize| names.get(index).copied().unwrap_or_default();
         let fits =
-            |entry: &&Entry| entry.row.key == first && entry.arguments.count() == names.len();
+            |entry: &&Entry| entry.row.key == first && entry.name_kind.count() == names.len();
         let entries = entries().iter().filter(fits);
         entries
             .map(|entry| (entry.of)([name(0), name(1)]))
@@ -228,7 +228,7 @@ impl Parameter {
     /// The two materials that it is about, where it is about two.
     pub fn pair(&self) -> Option<(&str, &str)> {
         let [a, b] = self.names();
-        (self.arguments() == Arguments::Pair).then_some((a, b))
+        (self.name_kind() == NameKind::Pair).then_some((a, b))
     }
 
     /// `value` as it takes it: a number that stands for a choice as that choice, a whole number for
@@ -284,7 +284,7 @@ impl fmt::Display for Parameter {
     /// The key in command lists and for `--set`: `friction.glass.drum`, `drum-speed` …
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.row().key)?;
-        let names = self.names().into_iter().take(self.arguments().count());
+        let names = self.names().into_iter().take(self.name_kind().count());
         names.into_iter().try_for_each(|name| write!(f, ".{name}"))
     }
 }

@@ -4,7 +4,7 @@
 //! the scene with that value, checked again.
 
 use super::parameter::{Parameter, entries};
-use super::row::{InScene, Names};
+use super::parameter_row::{InScene, Names};
 use super::value::Value;
 use crate::scene::{Problem, Scene, SceneError, one_of, suggestion};
 use std::collections::BTreeSet;

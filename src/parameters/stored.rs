@@ -69,5 +69,5 @@ impl Visitor<'_> for NumberOrWord {
 /// Every choice of every parameter.
 fn choices() -> impl Iterator<Item = &'static Choice> {
     let kinds = entries().iter().map(|entry| &entry.row.kind);
-    kinds.flat_map(super::row::Kind::choices)
+    kinds.flat_map(super::parameter_row::Kind::choices)
 }

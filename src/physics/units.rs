@@ -1,7 +1,7 @@
 //! Units: what a quantity is kept in, what people read it in, and how its values stand in text.
 //!
 //! In: text such as `10us`, `2 mm`, `0.5 rpm`. Out: the number in SI units, which is what state,
-//! files and output hold.
+//! files and output hold. Parameters and measured quantities name their units from here.
 
 /// How a value is shown to people: `shown = factor × SI`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,26 +13,26 @@ pub struct DisplayUnit {
 }
 
 /// The units of a quantity.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// The SI unit, `1` for a pure number.
     pub si: &'static str,
     /// The unit that people read it in.
     pub shown: DisplayUnit,
     /// Other units that text may name.
-    others: &'static [(&'static str, Scale)],
+    others: &'static [(&'static str, Conversion)],
 }
 
 /// How a number in some unit becomes one in the SI unit.
 #[derive(Debug, PartialEq)]
-enum Scale {
+enum Conversion {
     /// The SI unit holds this many of it.
     Over(f64),
     /// It holds this many of the SI unit.
     Times(f64),
 }
 
-impl Scale {
+impl Conversion {
     fn in_si(&self, number: f64) -> f64 {
         match self {
             Self::Over(factor) => number / factor,
@@ -60,7 +60,7 @@ pub const ANGLE: Unit = unit("rad", "°", DEGREES_PER_RADIAN);
 /// Speeds of drums.
 pub const TURNING: Unit = unit("rad/s", "rpm", 30.0 / std::f64::consts::PI);
 /// Accelerations.
-pub const ACCELERATION: Unit = unit("m/s²", "m/s²", 1.0);
+pub const ACCELERATION: Unit = Unit::same("m/s²");
 /// Viscosities.
 pub const VISCOSITY: Unit = unit("Pa s", "mPa s", 1e3);
 /// Surface tensions.
@@ -68,47 +68,72 @@ pub const SURFACE_TENSION: Unit = unit("N/m", "mN/m", 1e3);
 /// Volumes of liquid.
 pub const LIQUID_VOLUME: Unit = unit("m³", "ml", 1e6);
 /// Stiffnesses of springs.
-pub const STIFFNESS: Unit = unit("N/m", "N/m", 1.0);
+pub const STIFFNESS: Unit = Unit::same("N/m");
 /// Elastic moduli.
 pub const MODULUS: Unit = unit("Pa", "MPa", 1e-6);
 /// Mass per volume.
-pub const DENSITY: Unit = unit("kg/m³", "kg/m³", 1.0);
+pub const DENSITY: Unit = Unit::same("kg/m³");
 /// Lengths.
 pub const LENGTH: Unit = Unit {
     others: &[
-        ("um", Scale::Over(1e6)),
-        ("µm", Scale::Over(1e6)),
-        ("cm", Scale::Over(1e2)),
+        ("um", Conversion::Over(1e6)),
+        ("µm", Conversion::Over(1e6)),
+        ("cm", Conversion::Over(1e2)),
     ],
     ..unit("m", "mm", 1e3)
 };
+/// Angular velocities of grains and surfaces; those of drums are [`TURNING`].
+pub const ANGULAR_VELOCITY: Unit = unit("rad/s", "°/s", DEGREES_PER_RADIAN);
+/// Volumes of heaps.
+pub const VOLUME: Unit = unit("m³", "cm³", 1e6);
+/// Volumes of films and bridges, which people read in litres with a prefix.
+pub const FILM_VOLUME: Unit = unit("m³", "L", 1e3);
+/// Energies.
+pub const ENERGY: Unit = Unit::same("J");
+/// Energies in the unit of Man et al. 2023: 1 g cm²/s² is 1e-7 J.
+pub const ERG: Unit = unit("J", "g cm²/s²", 1e7);
+/// Powers of small drums.
+pub const POWER: Unit = unit("W", "mW", 1e3);
 /// Times of runs.
 pub const TIME: Unit = Unit {
     others: TIMES,
-    ..unit("s", "s", 1.0)
+    ..Unit::same("s")
 };
 /// Times of steps.
 pub const SHORT_TIME: Unit = Unit {
     others: TIMES,
     ..unit("s", "µs", 1e6)
 };
-const TIMES: &[(&str, Scale)] = &[
-    ("us", Scale::Over(1e6)),
-    ("µs", Scale::Over(1e6)),
-    ("ms", Scale::Over(1e3)),
-    ("min", Scale::Times(60.0)),
-    ("h", Scale::Times(3600.0)),
+const TIMES: &[(&str, Conversion)] = &[
+    ("us", Conversion::Over(1e6)),
+    ("µs", Conversion::Over(1e6)),
+    ("ms", Conversion::Over(1e3)),
+    ("min", Conversion::Times(60.0)),
+    ("h", Conversion::Times(3600.0)),
 ];
 
 impl Unit {
+    /// A unit that people read as it stands in files.
+    pub const fn same(si: &'static str) -> Self {
+        unit(si, si, 1.0)
+    }
+
+    /// `name` with the shown unit in brackets: `θ [°]`; a pure number has none.
+    pub fn beside(&self, name: &str) -> String {
+        match self.shown.name {
+            "" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        }
+    }
+
     /// The finite value [SI unit] that `text` states: a number alone is one in the SI unit, one
     /// with a unit is one in that. `None` where it states no such value.
     pub fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim();
-        let shown = (self.shown.name, &Scale::Over(self.shown.factor));
+        let shown = (self.shown.name, &Conversion::Over(self.shown.factor));
         let others = self.others.iter().map(|(name, scale)| (*name, scale));
-        let named = [shown, (self.si, &Scale::Over(1.0))].into_iter();
-        let with_unit = |(name, scale): (&str, &Scale)| {
+        let named = [shown, (self.si, &Conversion::Over(1.0))].into_iter();
+        let with_unit = |(name, scale): (&str, &Conversion)| {
             let number = text.strip_suffix(name)?.trim_end();
             Some(scale.in_si(finite(number)?))
         };

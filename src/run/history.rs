@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// The changes of a run, in order.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(into = "Changes", from = "Changes")]
+#[serde(into = "SavedChanges", from = "SavedChanges")]
 pub struct History {
     commands: Vec<StampedCommand>,
     /// For each command a hash of it and of all before it.
@@ -21,9 +21,9 @@ pub struct History {
 
 /// A history in a file: each command, and whether it is part of the change before it.
 #[derive(Serialize, Deserialize)]
-struct Changes(Vec<(StampedCommand, bool)>);
+struct SavedChanges(Vec<(StampedCommand, bool)>);
 
-impl From<History> for Changes {
+impl From<History> for SavedChanges {
     fn from(history: History) -> Self {
         let first = |index| history.changes.contains(&index);
         let commands = history.commands.iter().cloned().enumerate();
@@ -35,8 +35,8 @@ impl From<History> for Changes {
     }
 }
 
-impl From<Changes> for History {
-    fn from(changes: Changes) -> Self {
+impl From<SavedChanges> for History {
+    fn from(changes: SavedChanges) -> Self {
         let mut history = Self::default();
         for (command, joins) in changes.0 {
             history.push(command, joins);
@@ -49,7 +49,7 @@ impl FromIterator<StampedCommand> for History {
     /// Every command as a change of its own.
     fn from_iter<I: IntoIterator<Item = StampedCommand>>(commands: I) -> Self {
         let changes = commands.into_iter().map(|command| (command, false));
-        Changes(changes.collect()).into()
+        SavedChanges(changes.collect()).into()
     }
 }
 

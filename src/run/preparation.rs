@@ -21,11 +21,11 @@ pub struct Preparation {
     time_step: f64,
     threads: usize,
     beds: BedStore,
-    stage: Stage,
+    stage: PreparationStage,
     warnings: Vec<String>,
 }
 
-enum Stage {
+enum PreparationStage {
     Placing,
     Packing(Box<Packing>),
     Settling {
@@ -51,7 +51,7 @@ impl Preparation {
             time_step,
             threads,
             beds,
-            stage: Stage::Placing,
+            stage: PreparationStage::Placing,
             warnings: Vec::new(),
         }
     }
@@ -62,9 +62,9 @@ impl Preparation {
     /// The solver's [`Fault`] while the grains settle.
     pub fn advance(&mut self) -> Result<Prepared, Fault> {
         let done = match &mut self.stage {
-            Stage::Placing => return Ok(self.place()),
-            Stage::Packing(packing) => packing.advance(),
-            Stage::Settling { settling, .. } => settling.advance()?,
+            PreparationStage::Placing => return Ok(self.place()),
+            PreparationStage::Packing(packing) => packing.advance(),
+            PreparationStage::Settling { settling, .. } => settling.advance()?,
         };
         Ok(if done {
             self.finish()
@@ -76,18 +76,18 @@ impl Preparation {
     /// What is being done, for people.
     pub fn name(&self) -> &'static str {
         match self.stage {
-            Stage::Placing => "placing the grains",
-            Stage::Packing(_) => "cutting the grains",
-            Stage::Settling { .. } => "settling the bed",
+            PreparationStage::Placing => "placing the grains",
+            PreparationStage::Packing(_) => "cutting the grains",
+            PreparationStage::Settling { .. } => "settling the bed",
         }
     }
 
     /// How far it has come, 0 … 1.
     pub fn progress(&self) -> f32 {
         match &self.stage {
-            Stage::Placing => 0.0,
-            Stage::Packing(packing) => packing.progress(),
-            Stage::Settling { settling, .. } => settling.progress(),
+            PreparationStage::Placing => 0.0,
+            PreparationStage::Packing(packing) => packing.progress(),
+            PreparationStage::Settling { settling, .. } => settling.progress(),
         }
     }
 
@@ -98,7 +98,7 @@ impl Preparation {
 
     fn place(&mut self) -> Prepared {
         if let Some(packing) = Packing::new(&self.scene) {
-            self.stage = Stage::Packing(Box::new(packing));
+            self.stage = PreparationStage::Packing(Box::new(packing));
             return Prepared::NotYet;
         }
         let built = world::build(&self.scene, self.time_step);
@@ -118,18 +118,18 @@ impl Preparation {
             return self.ready(settled);
         }
         let settling = Box::new(Settling::new(built, step, self.threads));
-        self.stage = Stage::Settling { key, settling };
+        self.stage = PreparationStage::Settling { key, settling };
         Prepared::NotYet
     }
 
     fn finish(&mut self) -> Prepared {
-        match std::mem::replace(&mut self.stage, Stage::Placing) {
-            Stage::Placing => Prepared::NotYet,
-            Stage::Packing(packing) => {
+        match std::mem::replace(&mut self.stage, PreparationStage::Placing) {
+            PreparationStage::Placing => Prepared::NotYet,
+            PreparationStage::Packing(packing) => {
                 let built = world::build_packed(&self.scene, self.time_step, packing.finish());
                 self.ready(with_forces(built, self.threads))
             }
-            Stage::Settling { key, settling } => {
+            PreparationStage::Settling { key, settling } => {
                 let settled = settling.finish();
                 let kept = key.map_or(Ok(()), |key| self.beds.keep(key, &settled));
                 self.warnings.extend(kept.err());

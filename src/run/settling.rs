@@ -13,7 +13,7 @@
 use crate::measure::elastic_energy;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::solver::{Fault, Solver};
-use crate::world::{Clock, Motion, World};
+use crate::world::{Clock, WallMotion, World};
 use glam::DVec3;
 
 /// Share of its velocity that a grain keeps from one slice of the calming stage to the next.
@@ -42,7 +42,7 @@ pub struct Settling {
     solver: Solver,
     /// The scene's world before settling.
     built: World,
-    stage: Stage,
+    stage: SettlingStage,
     slice: u64,
     /// `Σ m g r` [J].
     energy_scale: f64,
@@ -54,7 +54,7 @@ pub struct Settling {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Stage {
+enum SettlingStage {
     Falling,
     Calming,
     Relaxing { since: u64 },
@@ -79,7 +79,7 @@ impl Settling {
             built,
             world,
             solver: Solver::new(threads),
-            stage: Stage::Falling,
+            stage: SettlingStage::Falling,
             progress: 0.0,
         }
     }
@@ -93,19 +93,21 @@ impl Settling {
         let step = self.world.clock.step;
         let agitation = self.world.kinetic_energy() / self.energy_scale;
         self.stage = match self.stage {
-            _ if step >= self.patience => Stage::AtRest,
-            Stage::Falling if step >= self.fall => Stage::Calming,
-            Stage::Calming if agitation < CREEPING => Stage::Relaxing { since: step },
-            Stage::Relaxing { since } if step - since < self.relaxation => self.stage,
-            Stage::Relaxing { .. } if agitation < QUIET => Stage::AtRest,
-            Stage::Relaxing { .. } => Stage::Calming,
+            _ if step >= self.patience => SettlingStage::AtRest,
+            SettlingStage::Falling if step >= self.fall => SettlingStage::Calming,
+            SettlingStage::Calming if agitation < CREEPING => {
+                SettlingStage::Relaxing { since: step }
+            }
+            SettlingStage::Relaxing { since } if step - since < self.relaxation => self.stage,
+            SettlingStage::Relaxing { .. } if agitation < QUIET => SettlingStage::AtRest,
+            SettlingStage::Relaxing { .. } => SettlingStage::Calming,
             unchanged => unchanged,
         };
-        if self.stage == Stage::Calming {
+        if self.stage == SettlingStage::Calming {
             self.calm();
         }
         self.progress = self.progress.max(self.estimate(agitation));
-        Ok(self.stage == Stage::AtRest)
+        Ok(self.stage == SettlingStage::AtRest)
     }
 
     /// How far settling has come, 0 … 1.
@@ -134,10 +136,12 @@ impl Settling {
             ((from / agitation.max(1e-300)).ln() / (from / to).ln()).clamp(0.0, 1.0) as f32
         };
         match self.stage {
-            Stage::Falling => 0.3 * (self.world.clock.step as f32 / self.fall as f32).min(1.0),
-            Stage::Calming => 0.3 + 0.5 * decades(1.0, CREEPING),
-            Stage::Relaxing { .. } => 0.8 + 0.2 * decades(CREEPING, QUIET),
-            Stage::AtRest => 1.0,
+            SettlingStage::Falling => {
+                0.3 * (self.world.clock.step as f32 / self.fall as f32).min(1.0)
+            }
+            SettlingStage::Calming => 0.3 + 0.5 * decades(1.0, CREEPING),
+            SettlingStage::Relaxing { .. } => 0.8 + 0.2 * decades(CREEPING, QUIET),
+            SettlingStage::AtRest => 1.0,
         }
     }
 }
@@ -153,7 +157,7 @@ pub fn standing(built: &World, time_step: f64) -> World {
         pair.wet_friction = pair.friction;
     }
     for wall in &mut world.container.walls {
-        wall.motion = Motion::default();
+        wall.motion = WallMotion::default();
     }
     world
 }

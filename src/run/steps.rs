@@ -9,12 +9,12 @@ use super::{Command, Parameter, StampedCommand};
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepTimes {
     /// Parts of one time step each, in order, the first from step 0 on.
-    parts: Vec<Part>,
+    parts: Vec<StepInterval>,
 }
 
 /// A time step and from when on it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
+struct StepInterval {
     step: u64,
     /// [s]
     time: f64,
@@ -25,7 +25,7 @@ struct Part {
 impl StepTimes {
     /// Of a run that began with steps of `time_step` [s] and was changed by `commands`.
     pub fn new(time_step: f64, commands: &[StampedCommand]) -> Self {
-        let first = Part {
+        let first = StepInterval {
             step: 0,
             time: 0.0,
             time_step,
@@ -34,7 +34,7 @@ impl StepTimes {
             Command::Set {
                 parameter: Parameter::TimeStep,
                 value,
-            } => Some(Part {
+            } => Some(StepInterval {
                 step: stamped.step,
                 time: stamped.time,
                 time_step: value.number(),
@@ -60,7 +60,7 @@ impl StepTimes {
     }
 
     /// The last part that `began`; the first one always has.
-    fn last(&self, began: impl Fn(&Part) -> bool) -> Part {
+    fn last(&self, began: impl Fn(&StepInterval) -> bool) -> StepInterval {
         let began = self.parts.partition_point(began);
         self.parts[began.max(1) - 1]
     }

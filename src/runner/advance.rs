@@ -64,7 +64,7 @@ pub enum Halt {
 
 /// A run that the caller moves by itself, without an app.
 pub struct DirectRun {
-    stage: Stage,
+    stage: RunStage,
     script: Vec<ScriptedCommand>,
     checkpoint: Option<Checkpoint>,
     /// Whether the script is all that was carried out in a recorded run.
@@ -75,7 +75,7 @@ pub struct DirectRun {
     is_warned: bool,
 }
 
-enum Stage {
+enum RunStage {
     Preparing(Box<Preparation>),
     Standing(Box<Run>),
 }
@@ -91,7 +91,7 @@ impl DirectRun {
         let advice = advise(&scene);
         let preparation = Preparation::new(scene, advice.time_step, threads, beds);
         Self {
-            stage: Stage::Preparing(Box::new(preparation)),
+            stage: RunStage::Preparing(Box::new(preparation)),
             script,
             checkpoint: None,
             is_record: false,
@@ -119,8 +119,8 @@ impl DirectRun {
     /// The run, once it stands at a state.
     pub fn run(&self) -> Option<&Run> {
         match &self.stage {
-            Stage::Standing(run) => Some(run),
-            Stage::Preparing(_) => None,
+            RunStage::Standing(run) => Some(run),
+            RunStage::Preparing(_) => None,
         }
     }
 
@@ -130,8 +130,8 @@ impl DirectRun {
     /// Itself, where it is still being prepared.
     pub fn into_run(self) -> Result<Run, Box<Self>> {
         match self.stage {
-            Stage::Standing(run) => Ok(*run),
-            Stage::Preparing(_) => Err(Box::new(self)),
+            RunStage::Standing(run) => Ok(*run),
+            RunStage::Preparing(_) => Err(Box::new(self)),
         }
     }
 
@@ -147,7 +147,7 @@ impl DirectRun {
         if let Some(checkpoint) = self.checkpoint.take() {
             run.resume(checkpoint);
         }
-        self.stage = Stage::Standing(Box::new(run));
+        self.stage = RunStage::Standing(Box::new(run));
         Ok(())
     }
 }
@@ -155,17 +155,17 @@ impl DirectRun {
 impl Advance for DirectRun {
     fn at(&self) -> At<'_> {
         match &self.stage {
-            Stage::Preparing(preparation) => At::Preparing {
+            RunStage::Preparing(preparation) => At::Preparing {
                 stage: preparation.name(),
                 share: preparation.progress().into(),
             },
-            Stage::Standing(run) => At::State(RunSoFar::of(run)),
+            RunStage::Standing(run) => At::State(RunSoFar::of(run)),
         }
     }
 
     fn advance(&mut self, goal: u64) -> Result<(), Halt> {
         match &mut self.stage {
-            Stage::Standing(run) => {
+            RunStage::Standing(run) => {
                 let from = run.world().clock.step;
                 let to = goal.min(from.saturating_add(self.pieces.steps()));
                 let started = Instant::now();
@@ -173,7 +173,7 @@ impl Advance for DirectRun {
                 self.pieces.fit(to.saturating_sub(from), started.elapsed());
                 Ok(())
             }
-            Stage::Preparing(preparation) => {
+            RunStage::Preparing(preparation) => {
                 let Prepared::Ready(run) = preparation.advance().map_err(Halt::Fault)? else {
                     return Ok(());
                 };

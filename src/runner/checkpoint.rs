@@ -30,7 +30,7 @@ pub struct Kept {
 }
 
 /// What became of looking for a checkpoint.
-pub enum Found {
+pub enum CheckpointLookup {
     /// It is there.
     Kept(Box<Kept>),
     /// There is none of this run.
@@ -76,17 +76,17 @@ impl CheckpointFile {
     }
 
     /// What is kept of the run.
-    pub fn read(&self) -> Found {
+    pub fn read(&self) -> CheckpointLookup {
         let bytes = match fs::read(&self.path) {
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Found::Nothing,
+            Err(error) if error.kind() == ErrorKind::NotFound => return CheckpointLookup::Nothing,
             Err(error) => return self.damaged(&error.to_string()),
         };
         let Some((found, rest)) = bytes.split_at_checked(blake3::OUT_LEN) else {
             return self.damaged("it was cut off");
         };
         if found != self.key.as_bytes() {
-            return Found::Nothing;
+            return CheckpointLookup::Nothing;
         }
         let Some((checksum, contents)) = rest.split_at_checked(blake3::OUT_LEN) else {
             return self.damaged("it was cut off");
@@ -95,13 +95,13 @@ impl CheckpointFile {
             return self.damaged("its checksum does not fit");
         }
         match postcard::from_bytes(contents) {
-            Ok(kept) => Found::Kept(Box::new(kept)),
+            Ok(kept) => CheckpointLookup::Kept(Box::new(kept)),
             Err(error) => self.damaged(&error.to_string()),
         }
     }
 
-    fn damaged(&self, reason: &str) -> Found {
-        Found::Damaged(format!(
+    fn damaged(&self, reason: &str) -> CheckpointLookup {
+        CheckpointLookup::Damaged(format!(
             "the checkpoint in {} cannot be used: {reason}; the run was begun anew",
             self.path.display()
         ))

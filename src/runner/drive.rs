@@ -3,7 +3,7 @@
 //! In: a [`Job`] and what moves its run. Out: the run's files and a [`Finished`]. On the way the
 //! loop hears whether to stop, tells how far the run has come, and holds at each output time.
 
-use super::checkpoint::{CheckpointFile, Found, Kept};
+use super::checkpoint::{CheckpointFile, CheckpointLookup, Kept};
 use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
 use crate::measure::Summary;
 use crate::output::{Ending, OutputFolder, Recorder, RunSoFar, Subject, Written};
@@ -86,12 +86,12 @@ impl Runner {
         let mut warnings = Vec::new();
         let (mut checkpoint, mut written) = (None, Written::default());
         match checkpoints.as_ref().map(CheckpointFile::read) {
-            Some(Found::Kept(kept)) => {
+            Some(CheckpointLookup::Kept(kept)) => {
                 written = kept.written;
                 checkpoint = Some(kept.checkpoint);
             }
-            Some(Found::Damaged(warning)) => warnings.push(warning),
-            Some(Found::Nothing) | None => {}
+            Some(CheckpointLookup::Damaged(warning)) => warnings.push(warning),
+            Some(CheckpointLookup::Nothing) | None => {}
         }
         let folder = OutputFolder::open(&job.out, &written.names())?;
         let subject = Subject {

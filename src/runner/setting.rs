@@ -24,11 +24,11 @@ pub fn apply_setting(
         return Ok(None);
     }
     let (parameter, value) = parameter_value(key, text).map_err(|reason| match reason {
-        Unfit::Key(reason) => {
+        SettingMistake::Key(reason) => {
             let known: Vec<String> = Scene::settings().map(|(known, _)| known).collect();
             refuse(format!("{reason}; or before a run: {}", known.join(", ")))
         }
-        Unfit::Value(reason) => refuse(reason),
+        SettingMistake::Value(reason) => refuse(reason),
     })?;
     Ok(Some(ScriptedCommand {
         step: Some(0),
@@ -47,22 +47,22 @@ pub fn compared_value(setting: &str) -> Result<(Parameter, Value), RunnerError> 
         return Err(refuse("expected KEY=VALUE, such as viscosity=1.41".into()));
     };
     parameter_value(key, text).map_err(|unfit| match unfit {
-        Unfit::Key(reason) | Unfit::Value(reason) => refuse(reason),
+        SettingMistake::Key(reason) | SettingMistake::Value(reason) => refuse(reason),
     })
 }
 
 /// What is wrong with a setting.
-enum Unfit {
+enum SettingMistake {
     Key(String),
     Value(String),
 }
 
-fn parameter_value(key: &str, text: &str) -> Result<(Parameter, Value), Unfit> {
-    let parameter = Parameter::try_from(key.to_owned()).map_err(Unfit::Key)?;
+fn parameter_value(key: &str, text: &str) -> Result<(Parameter, Value), SettingMistake> {
+    let parameter = Parameter::try_from(key.to_owned()).map_err(SettingMistake::Key)?;
     let row = parameter.row();
     let value = row.parse(text).ok_or_else(|| {
         let expected = row.kind.expected();
-        Unfit::Value(format!("`{text}` is no value; expected {expected}"))
+        SettingMistake::Value(format!("`{text}` is no value; expected {expected}"))
     })?;
     Ok((parameter, value))
 }

@@ -3,7 +3,7 @@
 use super::container::SceneContainer;
 use super::grains::SceneGrains;
 use super::materials::{PairOverride, SceneMaterial};
-use super::packing::StoredCells;
+use super::stored_cells::StoredCells;
 use crate::physics::{ContactLaw, Liquid};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! What was wrong with a scene, in words a person can act on.
 
-use super::outline::{Entry, Outline, line_of, shorten};
+use super::outline::{Outline, OutlineEntry, line_of, shorten};
 use std::fmt;
 
 /// A scene that cannot be used: where, what was found, what was expected, what to do.
@@ -85,10 +85,10 @@ impl SceneError {
         let exact = entry.filter(|e| e.path.starts_with(&problem.path));
         let value = exact.map(|e| outline.value(e));
         let fault = match (problem.fault, &value, exact) {
-            (Fault::Value(_), Some(written), Some(e)) if e.path == problem.path => {
+            (KeyFault::Value(_), Some(written), Some(e)) if e.path == problem.path => {
                 format!("is {written}")
             }
-            (Fault::Value(si), Some(written), _) if si != *written => {
+            (KeyFault::Value(si), Some(written), _) if si != *written => {
                 format!("is {written}, in SI units {si}")
             }
             (fault, ..) => fault.to_string(),
@@ -109,7 +109,7 @@ impl SceneError {
     }
 
     /// The mistake is in `entry`: its key, its value, its line.
-    pub(super) fn in_entry(mut self, outline: &Outline, entry: &Entry) -> Self {
+    pub(super) fn in_entry(mut self, outline: &Outline, entry: &OutlineEntry) -> Self {
         self.0.key = Some(entry.path.clone());
         self.0.value = Some(outline.value(entry));
         self.at_line(outline.text(), entry.start)
@@ -153,7 +153,7 @@ pub(crate) struct Problem {
     /// Path of the key.
     pub path: String,
     /// What is wrong.
-    pub fault: Fault,
+    pub fault: KeyFault,
     /// What was expected.
     pub expected: String,
     /// What to do where that is not obvious.
@@ -162,14 +162,14 @@ pub(crate) struct Problem {
 
 /// What is wrong with a key.
 #[derive(Debug)]
-pub(crate) enum Fault {
+pub(crate) enum KeyFault {
     /// It has this value, here in SI units.
     Value(String),
     /// Something else, a phrase of which the key is the subject.
     Other(String),
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for KeyFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Value(value) => write!(f, "is {value}"),
@@ -186,7 +186,7 @@ impl Problem {
     ) -> Self {
         Self {
             path: path.into(),
-            fault: Fault::Other(fault.into()),
+            fault: KeyFault::Other(fault.into()),
             expected: expected.into(),
             advice: None,
         }
@@ -199,7 +199,7 @@ impl Problem {
         expected: impl Into<String>,
     ) -> Self {
         Self {
-            fault: Fault::Value(value.to_string()),
+            fault: KeyFault::Value(value.to_string()),
             ..Self::new(path, "", expected)
         }
     }

@@ -1,8 +1,8 @@
 //! The grains of a scene: a filling of spheres, Voronoi cells, or a list.
 
 use super::container::{SceneContainer, volume};
-use super::packing::StoredCells;
 use super::shape::{SceneBody, SceneShape, sphere_radius};
+use super::stored_cells::StoredCells;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 

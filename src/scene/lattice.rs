@@ -5,7 +5,7 @@
 //! that fits has a lattice; one that does not has none. Nothing is random here.
 
 use super::SceneContainer;
-use super::mixture::SizeClass;
+use super::size_classes::SizeClass;
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -20,19 +20,19 @@ pub struct Lattice {
     pub cell: DVec3,
     /// For each size class the number of its grains along an edge of a cell.
     pub divisions: Vec<usize>,
-    region: Region,
+    region: CellRegion,
 }
 
 /// Which cells there are.
 #[derive(Clone, Debug)]
-enum Region {
+enum CellRegion {
     /// Cells whose centres are nearer than `reach` [m] to the axis.
     Drum { reach: f64, back: f64, depth: i64 },
     /// This number of cells along x, y and z from the corner `min`.
     Box { min: DVec3, counts: [i64; 3] },
 }
 
-impl Region {
+impl CellRegion {
     /// Whether there is any cell at all.
     fn has_room(&self) -> bool {
         match *self {
@@ -63,14 +63,14 @@ impl Lattice {
                 let depth = whole(width / pitch);
                 let cell = DVec3::new(pitch, pitch, width / depth as f64);
                 let back = -0.5 * width;
-                (Region::Drum { reach, back, depth }, cell)
+                (CellRegion::Drum { reach, back, depth }, cell)
             }
             SceneContainer::Box { min, max, .. } => {
                 let size = max - min;
                 let counts = size.to_array().map(|length| whole(length / pitch));
                 // Even room along the floor; as low as can be above it.
                 let cell = DVec3::new(size.x / counts[0] as f64, pitch, size.z / counts[2] as f64);
-                (Region::Box { min, counts }, cell)
+                (CellRegion::Box { min, counts }, cell)
             }
             SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
                 return None;
@@ -113,42 +113,42 @@ impl Lattice {
 
     fn rows(&self) -> RangeInclusive<i64> {
         match self.region {
-            Region::Drum { reach, .. } => {
+            CellRegion::Drum { reach, .. } => {
                 let rows = whole(reach / self.cell.y);
                 -rows..=rows
             }
-            Region::Box { counts, .. } => 0..=counts[1] - 1,
+            CellRegion::Box { counts, .. } => 0..=counts[1] - 1,
         }
     }
 
     fn columns(&self, row: i64) -> RangeInclusive<i64> {
         match self.region {
-            Region::Drum { reach, .. } => {
+            CellRegion::Drum { reach, .. } => {
                 let y = row as f64 * self.cell.y;
                 let half_chord = (reach * reach - y * y).max(0.0).sqrt();
                 let columns = whole(half_chord / self.cell.x);
                 -columns..=columns
             }
-            Region::Box { counts, .. } => 0..=counts[0] - 1,
+            CellRegion::Box { counts, .. } => 0..=counts[0] - 1,
         }
     }
 
     fn depth(&self) -> i64 {
         match self.region {
-            Region::Drum { depth, .. } => depth,
-            Region::Box { counts, .. } => counts[2],
+            CellRegion::Drum { depth, .. } => depth,
+            CellRegion::Box { counts, .. } => counts[2],
         }
     }
 
     fn centre(&self, column: i64, row: i64, slice: i64) -> DVec3 {
         let (column, row, slice) = (column as f64, row as f64, slice as f64);
         match self.region {
-            Region::Drum { back, .. } => DVec3::new(
+            CellRegion::Drum { back, .. } => DVec3::new(
                 column * self.cell.x,
                 row * self.cell.y,
                 back + (slice + 0.5) * self.cell.z,
             ),
-            Region::Box { min, .. } => {
+            CellRegion::Box { min, .. } => {
                 min + (DVec3::new(column, row, slice) + DVec3::splat(0.5)) * self.cell
             }
         }

@@ -9,11 +9,11 @@ use std::ops::Range;
 /// The keys of a file and their places.
 pub(super) struct Outline<'a> {
     text: &'a str,
-    entries: Vec<Entry>,
+    entries: Vec<OutlineEntry>,
 }
 
 /// A key, or an element of a list, with its value.
-pub(super) struct Entry {
+pub(super) struct OutlineEntry {
     /// Names of the keys that lead here, joined by dots; elements of lists as `[0]`.
     pub path: String,
     /// Where the key begins [byte].
@@ -38,7 +38,7 @@ impl<'a> Outline<'a> {
 
     /// The last entry called `path`; where there is none, the one that says it in another unit
     /// (`radius_mm` for `radius`), or else the nearest entry that would hold it.
-    pub fn find(&self, path: &str) -> Option<&Entry> {
+    pub fn find(&self, path: &str) -> Option<&OutlineEntry> {
         let named = |wanted: &dyn Fn(&str) -> bool| self.entries.iter().rfind(|e| wanted(&e.path));
         named(&|p| p == path)
             .or_else(|| {
@@ -52,21 +52,21 @@ impl<'a> Outline<'a> {
     }
 
     /// The innermost entry whose value goes on after the byte `at`.
-    pub fn holding(&self, at: usize) -> Option<&Entry> {
+    pub fn holding(&self, at: usize) -> Option<&OutlineEntry> {
         self.entries
             .iter()
             .rfind(|e| e.start <= at && at < e.value.end)
     }
 
     /// The innermost entry around the byte `at`, or that ends there.
-    pub fn around(&self, at: usize) -> Option<&Entry> {
+    pub fn around(&self, at: usize) -> Option<&OutlineEntry> {
         self.entries
             .iter()
             .rfind(|e| e.start <= at && at <= e.value.end)
     }
 
     /// The value of `entry` as written, on one line and not too long.
-    pub fn value(&self, entry: &Entry) -> String {
+    pub fn value(&self, entry: &OutlineEntry) -> String {
         let written = self.text.get(entry.value.clone()).unwrap_or_default();
         shorten(written, 60)
     }
@@ -134,7 +134,7 @@ struct Frame {
 struct Scan<'a> {
     text: &'a str,
     at: usize,
-    entries: Vec<Entry>,
+    entries: Vec<OutlineEntry>,
     frames: Vec<Frame>,
 }
 
@@ -207,7 +207,7 @@ impl<'a> Scan<'a> {
     fn open_entry(&mut self, path: String, start: usize) {
         let index = self.entries.len();
         let value = start..self.text.len();
-        self.entries.push(Entry { path, start, value });
+        self.entries.push(OutlineEntry { path, start, value });
         if let Some(frame) = self.frames.last_mut() {
             frame.current = Some(index);
         }

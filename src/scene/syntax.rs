@@ -4,7 +4,7 @@
 //! and says what belongs there. Values that can be read but make no sense are for [`super::check`].
 
 use super::error::{SceneError, one_of, suggestion};
-use super::outline::{Entry, Outline, byte_at};
+use super::outline::{Outline, OutlineEntry, byte_at};
 use crate::physics::ContactLaw;
 
 const WHOLE_NUMBER: &str = "a whole number of at least 0";
@@ -162,7 +162,7 @@ impl Finding<'_> {
         .at_line(self.outline.text(), self.at)
     }
 
-    fn error(&self, entry: Option<&Entry>, fault: String, expected: String) -> SceneError {
+    fn error(&self, entry: Option<&OutlineEntry>, fault: String, expected: String) -> SceneError {
         let error = SceneError::unreadable(self.file, fault, &expected);
         match entry {
             Some(entry) => error.in_entry(self.outline, entry),

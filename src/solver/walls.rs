@@ -4,7 +4,7 @@
 //! after the last one. Not here: the distance of a point from a wall, which is
 //! [`Surface::distance`] and, in lanes, the pair loop's.
 
-use crate::world::{Container, Motion, Surface};
+use crate::world::{Container, Surface, WallMotion};
 
 /// What a step reads of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct WallBody {
     /// Where it is.
     pub surface: Surface,
     /// How it moves.
-    pub motion: Motion,
+    pub motion: WallMotion,
 }
 
 /// The walls of a container, in its order.

@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How far a case has come, for others to see.
 #[derive(Default)]
-pub struct Share(AtomicU64);
+pub struct CaseProgress(AtomicU64);
 
-impl Share {
+impl CaseProgress {
     /// 0 … 1, and 1 only of a case that is over.
     pub fn get(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::Relaxed))
@@ -21,7 +21,7 @@ impl Share {
     }
 }
 
-impl Watch for &Share {
+impl Watch for &CaseProgress {
     fn preparing(&mut self, _share: f64, _stage: &str) {}
 
     fn running(&mut self, share: f64, _what: &dyn Fn() -> String) {
@@ -31,7 +31,7 @@ impl Watch for &Share {
 
 /// What became of a case.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct CaseResult {
     /// Which one.
     pub case: Case,
     /// How it ended.
@@ -48,7 +48,7 @@ pub struct Outcome {
     pub hash: String,
 }
 
-impl Outcome {
+impl CaseResult {
     /// Whether a column collapsed.
     pub fn is_column(&self) -> bool {
         self.results.entry(RunQuantity::AspectRatio).is_some()
@@ -81,9 +81,9 @@ impl Outcome {
 pub fn run(
     sweep: &Sweep,
     case: &Case,
-    mut share: &Share,
+    mut share: &CaseProgress,
     stop: &dyn Fn() -> bool,
-) -> Result<Option<Outcome>, RunnerError> {
+) -> Result<Option<CaseResult>, RunnerError> {
     let out = sweep.out.join(&case.name);
     let job = Job {
         threads: 1,
@@ -108,5 +108,5 @@ pub fn run(
     if ending != Ending::Interrupted {
         share.set(1.0);
     }
-    Ok(Some(Outcome::of(case, ending, results, view)))
+    Ok(Some(CaseResult::of(case, ending, results, view)))
 }

@@ -25,21 +25,21 @@ pub struct Plot {
     /// What stands over it.
     pub title: String,
     /// Across.
-    pub x: Axis,
+    pub x: ChartAxis,
     /// Upright.
-    pub y: Axis,
+    pub y: ChartAxis,
     /// What is drawn.
     pub lines: Vec<Line>,
 }
 
 /// An axis of a plot.
 #[derive(Clone)]
-pub struct Axis {
+pub struct ChartAxis {
     label: String,
     logarithmic: bool,
 }
 
-impl Axis {
+impl ChartAxis {
     /// Values at their places.
     pub fn linear(label: &str) -> Self {
         Self {
@@ -237,8 +237,8 @@ mod tests {
         Plot {
             file: "any.svg".into(),
             title: "Any".into(),
-            x: Axis::linear("t"),
-            y: Axis::logarithmic("Tg"),
+            x: ChartAxis::linear("t"),
+            y: ChartAxis::logarithmic("Tg"),
             lines: vec![Line::results("a", points.iter().copied())],
         }
     }

@@ -5,12 +5,13 @@
 //! the aspect ratio have one panel, a file of its own, for each ratio, as in the paper.
 
 use super::Sweep;
-use super::case::Outcome;
-use super::chart::{Axis, Line, Plot};
+use super::case::CaseResult;
+use super::chart::{ChartAxis, Line, Plot};
 use crate::measure::{
     CRITICAL_ASPECT_RATIO, Measure, PEAK_TIME_LAW, REST_TIME_LAW, RunQuantity, TALL_ASPECT_RATIO,
-    TALL_REST_TIME_LAW, Unit, cone_volume_law, contact_shares_law, run_out_law,
+    TALL_REST_TIME_LAW, cone_volume_law, contact_shares_law, run_out_law,
 };
+use crate::physics::units;
 
 /// The varied key that makes the points of a curve.
 const HEIGHT: &str = "height";
@@ -21,7 +22,7 @@ const LAWS_FROM: f64 = 0.4;
 const LAWS_TO: f64 = 25.0;
 
 /// Every plot of these outcomes.
-pub fn column_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
+pub fn column_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     let figures = Figures { sweep, outcomes };
     let mut plots = figures.courses();
     plots.extend(figures.panels("run-out-aspect", RunQuantity::RunOut, run_out_slopes));
@@ -33,12 +34,12 @@ pub fn column_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
 
 struct Figures<'a> {
     sweep: &'a Sweep,
-    outcomes: &'a [Outcome],
+    outcomes: &'a [CaseResult],
 }
 
 impl Figures<'_> {
     /// The values of a case but those of the keys `without`, as `mix=0.1 mu22=0.4`.
-    fn label(&self, outcome: &Outcome, without: &[&str]) -> String {
+    fn label(&self, outcome: &CaseResult, without: &[&str]) -> String {
         let varied = self.sweep.variations.iter().zip(&outcome.case.values);
         let kept = varied.filter(|(variation, _)| !without.contains(&variation.key.as_str()));
         let texts: Vec<String> = kept
@@ -55,10 +56,10 @@ impl Figures<'_> {
     /// occur.
     fn groups<'b>(
         &self,
-        outcomes: &[&'b Outcome],
+        outcomes: &[&'b CaseResult],
         without: &[&str],
-    ) -> Vec<(String, Vec<&'b Outcome>)> {
-        let mut groups: Vec<(String, Vec<&Outcome>)> = Vec::new();
+    ) -> Vec<(String, Vec<&'b CaseResult>)> {
+        let mut groups: Vec<(String, Vec<&CaseResult>)> = Vec::new();
         for &outcome in outcomes {
             let label = self.label(outcome, without);
             match groups.iter_mut().find(|(known, _)| *known == label) {
@@ -71,9 +72,14 @@ impl Figures<'_> {
 
     /// A line of the result `y` over the result `x` for each group of cases that differ in height
     /// alone.
-    fn lines(&self, outcomes: &[&Outcome], hidden: &[&str], [x, y]: [RunQuantity; 2]) -> Vec<Line> {
+    fn lines(
+        &self,
+        outcomes: &[&CaseResult],
+        hidden: &[&str],
+        [x, y]: [RunQuantity; 2],
+    ) -> Vec<Line> {
         let without: Vec<&str> = hidden.iter().copied().chain([HEIGHT]).collect();
-        let line = |(label, members): (String, Vec<&Outcome>)| {
+        let line = |(label, members): (String, Vec<&CaseResult>)| {
             let points = members
                 .iter()
                 .filter_map(|outcome| outcome.result(x).zip(outcome.result(y)));
@@ -86,10 +92,10 @@ impl Figures<'_> {
 
     /// The result `y` over the aspect ratio (Figs. 8, 9 and 12), one panel for each mixing ratio.
     fn panels(&self, file: &str, y: RunQuantity, laws: fn(&[Line]) -> Vec<Line>) -> Vec<Plot> {
-        let all: Vec<&Outcome> = self.outcomes.iter().collect();
+        let all: Vec<&CaseResult> = self.outcomes.iter().collect();
         let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
         let others: Vec<&str> = keys.filter(|key| *key != MIX).collect();
-        let panel = |(label, members): (String, Vec<&Outcome>)| {
+        let panel = |(label, members): (String, Vec<&CaseResult>)| {
             let mut lines = self.lines(&members, &[MIX], [RunQuantity::AspectRatio, y]);
             lines.extend(laws(&lines));
             Plot {
@@ -107,7 +113,7 @@ impl Figures<'_> {
     /// Run-out, volume of the cone and times over the effective aspect ratio (Figs. 11, 13, 14,
     /// 16).
     fn over_effective(&self) -> Vec<Plot> {
-        let all: Vec<&Outcome> = self.outcomes.iter().collect();
+        let all: Vec<&CaseResult> = self.outcomes.iter().collect();
         let plot = |file: &str, x: RunQuantity, y: RunQuantity, laws: Vec<Line>| {
             let mut lines = self.lines(&all, &[], [x, y]);
             lines.extend(laws);
@@ -160,7 +166,7 @@ impl Figures<'_> {
     /// Front and energy over time (Figs. 5 to 7): a plot of all heights for each group, or of all
     /// cases where the height is not varied.
     fn courses(&self) -> Vec<Plot> {
-        let all: Vec<&Outcome> = self.outcomes.iter().collect();
+        let all: Vec<&CaseResult> = self.outcomes.iter().collect();
         let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
         let others: Vec<&str> = keys.filter(|key| *key != HEIGHT).collect();
         let (together, hidden) = if self.varies(HEIGHT) {
@@ -168,19 +174,19 @@ impl Figures<'_> {
         } else {
             (vec![(String::new(), all)], Vec::new())
         };
-        let plot = |(label, members): &(String, Vec<&Outcome>),
+        let plot = |(label, members): &(String, Vec<&CaseResult>),
                     file: &str,
                     y: &str,
                     value: SampleValue| {
-            let line = |outcome: &&Outcome| {
+            let line = |outcome: &&CaseResult| {
                 let name = or(self.label(outcome, &hidden), "case");
                 Line::results(name, over_time(outcome, value))
             };
             Plot {
                 file: format!("courses/{}.svg", named(file, label)),
                 title: format!("{y} {label}"),
-                x: Axis::linear("time [s]"),
-                y: Axis::linear(y),
+                x: ChartAxis::linear("time [s]"),
+                y: ChartAxis::linear(y),
                 lines: members.iter().map(line).collect(),
             }
         };
@@ -200,29 +206,29 @@ impl Figures<'_> {
 }
 
 /// The axis of a result, by powers of ten and in the SI unit.
-fn axis(quantity: RunQuantity) -> Axis {
-    Axis::logarithmic(quantity.quantity().key)
+fn axis(quantity: RunQuantity) -> ChartAxis {
+    ChartAxis::logarithmic(quantity.quantity().key)
 }
 
 /// A number that each sample of a case gives, by the sample's index.
-type SampleValue = fn(&Outcome, usize) -> f64;
+type SampleValue = fn(&CaseResult, usize) -> f64;
 
-fn front(outcome: &Outcome, sample: usize) -> f64 {
+fn front(outcome: &CaseResult, sample: usize) -> f64 {
     1e3 * outcome.series.column(Measure::FrontRadius)[sample]
 }
 
-fn energy(outcome: &Outcome, sample: usize) -> f64 {
+fn energy(outcome: &CaseResult, sample: usize) -> f64 {
     let of = |measure: Measure| outcome.series.column(measure)[sample];
-    (of(Measure::TranslationalEnergy) + of(Measure::RotationalEnergy)) * Unit::ERG.factor
+    (of(Measure::TranslationalEnergy) + of(Measure::RotationalEnergy)) * units::ERG.shown.factor
 }
 
-fn over_time(outcome: &Outcome, value: SampleValue) -> Vec<(f64, f64)> {
+fn over_time(outcome: &CaseResult, value: SampleValue) -> Vec<(f64, f64)> {
     let times = outcome.series.time().iter().enumerate();
     times.map(|(k, time)| (*time, value(outcome, k))).collect()
 }
 
 /// Shares of the pairs of species over time, with those that chance gives (Fig. 10).
-fn shares(outcome: &Outcome) -> Plot {
+fn shares(outcome: &CaseResult) -> Plot {
     let name = &outcome.case.name;
     let end = outcome.series.time().last().copied().unwrap_or(0.0);
     let chance = contact_shares_law(outcome.result(RunQuantity::SecondShare).unwrap_or(0.0));
@@ -245,8 +251,8 @@ fn shares(outcome: &Outcome) -> Plot {
     Plot {
         file: format!("courses/{name}-contacts.svg"),
         title: format!("contact shares, {name}"),
-        x: Axis::linear("time [s]"),
-        y: Axis::linear("share of the touching pairs"),
+        x: ChartAxis::linear("time [s]"),
+        y: ChartAxis::linear("share of the touching pairs"),
         lines,
     }
 }
@@ -335,7 +341,7 @@ mod tests {
 
     /// A case of these varied values that follows the laws: `alpha` high, of the effective aspect
     /// ratio 1.2 times that.
-    fn outcome(values: &[&str], alpha: f64) -> Outcome {
+    fn outcome(values: &[&str], alpha: f64) -> CaseResult {
         let effective = 1.2 * alpha;
         let entries = [
             (RunQuantity::AspectRatio, alpha),
@@ -376,7 +382,7 @@ mod tests {
             value: Some(MeasuredValue::Number(value)),
             note: String::new(),
         };
-        Outcome {
+        CaseResult {
             case: Case {
                 name: values.join("_"),
                 values: values.iter().map(|&value| value.to_owned()).collect(),
@@ -471,7 +477,7 @@ mod tests {
     fn a_case_that_met_a_fault_or_never_began_is_no_point() {
         let sweep = sweep(&["height=1cm,5cm"]);
         let mut outcomes = [outcome(&["1cm"], 0.4), outcome(&["5cm"], 2.0)];
-        let drawn = |outcomes: &[Outcome]| {
+        let drawn = |outcomes: &[CaseResult]| {
             let plots: Vec<Plot> = plots(&sweep, outcomes).collect();
             of(&plots, "run-out.svg").lines[0].points.len()
         };

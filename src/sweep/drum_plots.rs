@@ -3,14 +3,14 @@
 //! velocity profiles. A sweep that varies no liquid has its results over what it does vary.
 
 use super::Sweep;
-use super::case::Outcome;
-use super::chart::{Axis, Line, Plot};
+use super::case::CaseResult;
+use super::chart::{ChartAxis, Line, Plot};
 use crate::measure::{Measure, NON_RIGID_TEMPERATURE, ResultKey, RunQuantity, drop_ratio_law};
 use crate::scene::SceneGrains;
 use std::collections::BTreeMap;
 
 /// Every plot of these outcomes.
-pub fn drum_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Vec<Plot> {
+pub fn drum_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     let over = Over::of(sweep, outcomes);
     let mut plots: Vec<Plot> = RESULTS
         .iter()
@@ -65,15 +65,15 @@ const RESULTS: [ResultPlot; 6] = [
 
 /// What results are plotted over.
 struct Over {
-    axis: Axis,
-    value: fn(&Outcome) -> Option<f64>,
+    axis: ChartAxis,
+    value: fn(&CaseResult) -> Option<f64>,
 }
 
 impl Over {
-    fn of(sweep: &Sweep, outcomes: &[Outcome]) -> Self {
+    fn of(sweep: &Sweep, outcomes: &[CaseResult]) -> Self {
         if outcomes.iter().any(|outcome| viscosity(outcome).is_some()) {
             return Self {
-                axis: Axis::logarithmic("viscosity η [mPa s] (dry at the left edge)"),
+                axis: ChartAxis::logarithmic("viscosity η [mPa s] (dry at the left edge)"),
                 value: |outcome| Some(viscosity(outcome).unwrap_or(DRY)),
             };
         }
@@ -82,20 +82,20 @@ impl Over {
             .first()
             .map_or("", |variation| &variation.key);
         Self {
-            axis: Axis::linear(key),
+            axis: ChartAxis::linear(key),
             value: |outcome| leading_number(outcome.case.values.first()?),
         }
     }
 
-    fn plot(&self, result: &ResultPlot, outcomes: &[Outcome]) -> Plot {
+    fn plot(&self, result: &ResultPlot, outcomes: &[CaseResult]) -> Plot {
         let label = result.key.quantity().axis();
         Plot {
             file: result.file.to_owned(),
             x: self.axis.clone(),
             y: if result.is_logarithmic {
-                Axis::logarithmic(&label)
+                ChartAxis::logarithmic(&label)
             } else {
-                Axis::linear(&label)
+                ChartAxis::linear(&label)
             },
             title: label,
             lines: by_radius(outcomes, |outcome| {
@@ -106,20 +106,20 @@ impl Over {
 }
 
 /// The result `key` of a case in the unit that people read.
-fn in_shown_unit(outcome: &Outcome, key: ResultKey) -> Option<f64> {
-    Some(key.quantity().unit.factor * outcome.result(key)?)
+fn in_shown_unit(outcome: &CaseResult, key: ResultKey) -> Option<f64> {
+    Some(key.quantity().unit.shown.factor * outcome.result(key)?)
 }
 
 /// Where dry drums stand on an axis of viscosities [mPa s].
 const DRY: f64 = 0.3;
 
 /// Viscosity of a case's liquid [mPa s].
-fn viscosity(outcome: &Outcome) -> Option<f64> {
+fn viscosity(outcome: &CaseResult) -> Option<f64> {
     Some(1e3 * outcome.case.scene.liquid.as_ref()?.viscosity)
 }
 
 /// Radius of a case's first species, half a lattice cell where it is one of Voronoi cells [mm].
-fn radius(outcome: &Outcome) -> f64 {
+fn radius(outcome: &CaseResult) -> f64 {
     match &outcome.case.scene.grains {
         SceneGrains::Fill { species, .. } => species.first().map_or(0.0, |kind| 1e3 * kind.radius),
         SceneGrains::Voronoi(cells) => 0.5e3 * cells.cell,
@@ -133,7 +133,10 @@ fn leading_number(text: &str) -> Option<f64> {
 }
 
 /// A line for each radius, through the points of its outcomes in the order of x.
-fn by_radius(outcomes: &[Outcome], point: impl Fn(&Outcome) -> Option<(f64, f64)>) -> Vec<Line> {
+fn by_radius(
+    outcomes: &[CaseResult],
+    point: impl Fn(&CaseResult) -> Option<(f64, f64)>,
+) -> Vec<Line> {
     let mut lines: BTreeMap<u64, Line> = BTreeMap::new();
     for outcome in outcomes {
         let radius = radius(outcome);
@@ -153,8 +156,8 @@ fn by_radius(outcomes: &[Outcome], point: impl Fn(&Outcome) -> Option<(f64, f64)
 }
 
 /// Wet over dry drop, with Eq. 23 (Fig. 5b).
-fn drop_ratios(outcomes: &[Outcome]) -> Option<Plot> {
-    let dry = |wet: &Outcome| {
+fn drop_ratios(outcomes: &[CaseResult]) -> Option<Plot> {
+    let dry = |wet: &CaseResult| {
         let mut dry = outcomes.iter().filter(|o| viscosity(o).is_none());
         dry.find(|o| radius(o) == radius(wet))?
             .result(RunQuantity::Drop)
@@ -174,15 +177,15 @@ fn drop_ratios(outcomes: &[Outcome]) -> Option<Plot> {
     let plot = Plot {
         file: "drop-ratio.svg".into(),
         title: "wet over dry drop".into(),
-        x: Axis::logarithmic("viscosity η [mPa s]"),
-        y: Axis::linear("Δθ wet / Δθ dry"),
+        x: ChartAxis::logarithmic("viscosity η [mPa s]"),
+        y: ChartAxis::linear("Δθ wet / Δθ dry"),
         lines,
     };
     plot.has_points().then_some(plot)
 }
 
 /// Non-rigid share and drop over √(1/Ga) (Fig. 7).
-fn over_galilei(outcomes: &[Outcome]) -> Vec<Plot> {
+fn over_galilei(outcomes: &[CaseResult]) -> Vec<Plot> {
     let across = RunQuantity::InverseRootGalilei;
     let plot = |file: &str, quantity: RunQuantity| {
         let mut lines = by_radius(outcomes, |outcome| {
@@ -203,8 +206,8 @@ fn over_galilei(outcomes: &[Outcome]) -> Vec<Plot> {
         Plot {
             file: file.into(),
             title: format!("{label} over {across}"),
-            x: Axis::logarithmic(&across),
-            y: Axis::linear(&label),
+            x: ChartAxis::logarithmic(&across),
+            y: ChartAxis::linear(&label),
             lines,
         }
     };
@@ -215,15 +218,15 @@ fn over_galilei(outcomes: &[Outcome]) -> Vec<Plot> {
 }
 
 /// Velocity over depth for each radius (Fig. 4e).
-fn profiles(outcomes: &[Outcome]) -> Vec<Plot> {
+fn profiles(outcomes: &[CaseResult]) -> Vec<Plot> {
     let mut plots: BTreeMap<u64, Plot> = BTreeMap::new();
     for outcome in outcomes {
         let radius = radius(outcome);
         let plot = plots.entry((1e6 * radius) as u64).or_insert_with(|| Plot {
             file: format!("velocity-profile-r{radius}mm.svg"),
             title: format!("flowing layer, r = {radius} mm"),
-            x: Axis::linear("depth d below the surface [mm]"),
-            y: Axis::linear("velocity along the surface, downhill [mm/s]"),
+            x: ChartAxis::linear("depth d below the surface [mm]"),
+            y: ChartAxis::linear("velocity along the surface, downhill [mm/s]"),
             lines: Vec::new(),
         });
         let profile = &outcome.flow;
@@ -242,10 +245,10 @@ fn profiles(outcomes: &[Outcome]) -> Vec<Plot> {
 }
 
 /// θ(t) and Tg(t) of a case (Fig. 3).
-fn courses(outcome: &Outcome) -> [Plot; 2] {
+fn courses(outcome: &CaseResult) -> [Plot; 2] {
     let name = &outcome.case.name;
     let points = |measure: Measure| {
-        let factor = measure.quantity().unit.factor;
+        let factor = measure.quantity().unit.shown.factor;
         let series = &outcome.series;
         let values = series.time().iter().zip(series.column(measure));
         values
@@ -271,15 +274,15 @@ fn courses(outcome: &Outcome) -> [Plot; 2] {
         Plot {
             file: format!("courses/{name}-angle.svg"),
             title: format!("surface angle, {name}"),
-            x: Axis::linear("time [s]"),
-            y: Axis::linear(&Measure::SurfaceAngle.quantity().axis()),
+            x: ChartAxis::linear("time [s]"),
+            y: ChartAxis::linear(&Measure::SurfaceAngle.quantity().axis()),
             lines: vec![curve(angle)],
         },
         Plot {
             file: format!("courses/{name}-temperature.svg"),
             title: format!("granular temperature, {name}"),
-            x: Axis::linear("time [s]"),
-            y: Axis::logarithmic(&Measure::GranularTemperature.quantity().axis()),
+            x: ChartAxis::linear("time [s]"),
+            y: ChartAxis::logarithmic(&Measure::GranularTemperature.quantity().axis()),
             lines: vec![curve(temperature), threshold],
         },
     ]

@@ -19,7 +19,7 @@ pub use plan::{Case, Sweep, Variation};
 
 use crate::output::Ending;
 use crate::runner::{RunnerError, Watch, exit, spoken};
-use case::{Outcome, Share};
+use case::{CaseProgress, CaseResult};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -37,7 +37,7 @@ pub enum SweepEnding {
 
 impl SweepEnding {
     /// That of a sweep of so many `cases` of which these `outcomes` are there.
-    fn of(outcomes: &[Outcome], cases: usize) -> Self {
+    fn of(outcomes: &[CaseResult], cases: usize) -> Self {
         let interrupted = (outcomes.iter()).any(|outcome| outcome.ending == Ending::Interrupted);
         let faults = (outcomes.iter()).filter(|outcome| outcome.ending.fault().is_some());
         match faults.count() {
@@ -80,7 +80,7 @@ pub fn run(
     watch: &mut dyn Watch,
 ) -> Result<Swept, RunnerError> {
     let cases = plan::cases(sweep)?;
-    let shares: Vec<Share> = cases.iter().map(|_| Share::default()).collect();
+    let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
     results_table::write_tables(sweep, &outcomes)?;
     plot_files::write_plots(sweep, &outcomes)?;
@@ -96,10 +96,10 @@ pub fn run(
 fn run_cases(
     sweep: &Sweep,
     cases: &[Case],
-    shares: &[Share],
+    shares: &[CaseProgress],
     interrupted: &AtomicBool,
     watch: &mut dyn Watch,
-) -> Result<Vec<Outcome>, RunnerError> {
+) -> Result<Vec<CaseResult>, RunnerError> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
     let next = AtomicUsize::new(0);
@@ -132,7 +132,12 @@ fn run_cases(
 }
 
 /// Tells how far the whole has come while it is `working`.
-fn follow(cases: &[Case], shares: &[Share], watch: &mut dyn Watch, working: &dyn Fn() -> bool) {
+fn follow(
+    cases: &[Case],
+    shares: &[CaseProgress],
+    watch: &mut dyn Watch,
+    working: &dyn Fn() -> bool,
+) {
     let all: f64 = cases.iter().map(Case::cost).sum();
     let started = Instant::now();
     let done = || -> f64 {

@@ -3,7 +3,7 @@
 //! In: what became of the cases. Out: one file for each plot that has points.
 
 use super::Sweep;
-use super::case::Outcome;
+use super::case::CaseResult;
 use super::chart::Plot;
 use super::column_plots::column_plots;
 use super::drum_plots::drum_plots;
@@ -15,7 +15,7 @@ use crate::runner::RunnerError;
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
+pub fn write_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), RunnerError> {
     for plot in plots(sweep, outcomes).filter(Plot::has_points) {
         let text = plot.draw().map_err(|reason| {
             RunnerError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
@@ -29,12 +29,12 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerErro
 
 /// Every plot of these outcomes. What a case came to before it met a fault is no result, nor is
 /// where one stood that was stopped before it began: they are in no plot.
-pub(super) fn plots(sweep: &Sweep, outcomes: &[Outcome]) -> impl Iterator<Item = Plot> {
+pub(super) fn plots(sweep: &Sweep, outcomes: &[CaseResult]) -> impl Iterator<Item = Plot> {
     let has_begun =
-        |outcome: &Outcome| outcome.series.time().last().is_some_and(|time| *time > 0.0);
-    let is_sound = |outcome: &&Outcome| outcome.ending.fault().is_none() && has_begun(outcome);
-    let sound: Vec<Outcome> = outcomes.iter().filter(is_sound).cloned().collect();
-    let plots = if sound.iter().any(Outcome::is_column) {
+        |outcome: &CaseResult| outcome.series.time().last().is_some_and(|time| *time > 0.0);
+    let is_sound = |outcome: &&CaseResult| outcome.ending.fault().is_none() && has_begun(outcome);
+    let sound: Vec<CaseResult> = outcomes.iter().filter(is_sound).cloned().collect();
+    let plots = if sound.iter().any(CaseResult::is_column) {
         column_plots(sweep, &sound)
     } else {
         drum_plots(sweep, &sound)

@@ -4,11 +4,12 @@
 //! suit drums or columns. Units and digits come from the registry of quantities.
 
 use super::Sweep;
-use super::case::Outcome;
+use super::case::CaseResult;
 use crate::measure::numeral::NOTHING;
-use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary, Unit};
+use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary};
 use crate::output::Ending;
 use crate::output::write_file;
+use crate::physics::{Unit, units};
 use crate::run::{Provenance, TABLES_METADATA};
 use crate::runner::RunnerError;
 
@@ -107,7 +108,7 @@ const COLLAPSE: &[TableColumn] = &[
     TableColumn::of_run("T_max", RunQuantity::DimensionlessPeakTime),
     TableColumn::of_run("T_f", RunQuantity::DimensionlessRestTime),
     TableColumn {
-        unit: Unit::ERG,
+        unit: units::ERG,
         ..TableColumn::of_run("peak energy", RunQuantity::PeakEnergy).with_digits(2)
     },
     TableColumn::of_samples("P11", Measure::FirstPairs),
@@ -120,8 +121,8 @@ const COLLAPSE: &[TableColumn] = &[
 ];
 
 /// The columns that suit what was run.
-fn columns(outcomes: &[Outcome]) -> &'static [TableColumn] {
-    if outcomes.iter().any(Outcome::is_column) {
+fn columns(outcomes: &[CaseResult]) -> &'static [TableColumn] {
+    if outcomes.iter().any(CaseResult::is_column) {
         COLLAPSE
     } else {
         DRUM
@@ -132,7 +133,7 @@ fn columns(outcomes: &[Outcome]) -> &'static [TableColumn] {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
+pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), RunnerError> {
     let columns = columns(outcomes);
     write_file(&sweep.out.join("table.csv"), |file| {
         let mut writer = csv::Writer::from_writer(file);
@@ -153,7 +154,7 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerErr
 }
 
 /// The table in Markdown.
-pub fn markdown(sweep: &Sweep, outcomes: &[Outcome]) -> String {
+pub fn markdown(sweep: &Sweep, outcomes: &[CaseResult]) -> String {
     let columns = columns(outcomes);
     let heads = heads(sweep, columns);
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
@@ -174,7 +175,7 @@ fn heads(sweep: &Sweep, columns: &[TableColumn]) -> Vec<String> {
     varied.chain(results).chain(fixed).collect()
 }
 
-fn cells(outcome: &Outcome, columns: &[TableColumn]) -> Vec<String> {
+fn cells(outcome: &CaseResult, columns: &[TableColumn]) -> Vec<String> {
     let values = outcome.case.values.iter().cloned();
     let results = columns.iter().map(|column| column.cell(&outcome.results));
     let ended = match &outcome.ending {

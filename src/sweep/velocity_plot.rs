@@ -2,7 +2,7 @@
 //! Kasper et al. 2021: colours for the speed, arrows for the direction, the drum's rim.
 
 use super::Sweep;
-use super::case::Outcome;
+use super::case::CaseResult;
 use crate::measure::VelocityMap;
 use crate::output::write_file;
 use crate::run::Provenance;
@@ -29,7 +29,7 @@ type DrawingResult = Result<(), Box<dyn std::error::Error>>;
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), RunnerError> {
+pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), RunnerError> {
     for outcome in outcomes {
         let Some(map) = &outcome.fastest else {
             continue;
@@ -48,7 +48,7 @@ pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[Outcome]) -> Result<(), R
     Ok(())
 }
 
-fn draw(text: &mut String, outcome: &Outcome, map: &VelocityMap) -> DrawingResult {
+fn draw(text: &mut String, outcome: &CaseResult, map: &VelocityMap) -> DrawingResult {
     let area = SVGBackend::with_string(text, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let (maps, bar) = area.split_horizontally(SIZE.0 - BAR);
@@ -77,7 +77,7 @@ fn draw(text: &mut String, outcome: &Outcome, map: &VelocityMap) -> DrawingResul
 }
 
 /// Half the width of what is shown [m]: the drum, or all points.
-fn half_width(outcome: &Outcome, map: &VelocityMap) -> f64 {
+fn half_width(outcome: &CaseResult, map: &VelocityMap) -> f64 {
     let furthest = map.points().map(|(place, _)| place.abs().max_element());
     let rim = match outcome.case.scene.container {
         SceneContainer::Drum { radius, .. } => radius,
@@ -116,7 +116,7 @@ fn draw_arrows(chart: &mut Chart, map: &VelocityMap, fastest: f64) -> DrawingRes
     Ok(())
 }
 
-fn draw_rim(chart: &mut Chart, outcome: &Outcome) -> DrawingResult {
+fn draw_rim(chart: &mut Chart, outcome: &CaseResult) -> DrawingResult {
     if let SceneContainer::Drum { radius, .. } = outcome.case.scene.container {
         let place = |k: i32| pixel(radius * DVec2::from_angle(f64::from(k).to_radians()));
         let rim: Vec<_> = (0..=360).map(place).collect();

@@ -3,7 +3,8 @@
 //! In: what two axes show, all samples of the runs. Out: the file, whole or not at all.
 
 use crate::files::write_whole;
-use crate::measure::{Measure, Series, Unit};
+use crate::measure::{Measure, Series};
+use crate::physics::{Unit, units};
 use crate::simulation::Provenance;
 use crate::sweep::chart;
 use crate::ui::words::number;
@@ -27,7 +28,7 @@ impl PlotAxis {
 
     /// The unit it is shown in.
     pub fn unit(self) -> Unit {
-        (self.0).map_or(Unit::TIME, |measure| measure.quantity().unit)
+        (self.0).map_or(units::TIME, |measure| measure.quantity().unit)
     }
 
     /// Name and unit: `Surface angle θ [°]`.
@@ -94,7 +95,7 @@ impl Export {
     }
 
     fn svg(&self) -> io::Result<String> {
-        let (fx, fy) = (self.x.unit().factor, self.y.unit().factor);
+        let (fx, fy) = (self.x.unit().shown.factor, self.y.unit().shown.factor);
         let line = |run: &ExportedRun| {
             let points = run.points.iter().map(|[x, y]| (x * fx, y * fy));
             let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
@@ -107,8 +108,8 @@ impl Export {
         let plot = chart::Plot {
             file: String::new(),
             title: format!("{} over {}", self.y.label(), self.x.label()),
-            x: chart::Axis::linear(&self.x.label()),
-            y: chart::Axis::linear(&self.y.label()),
+            x: chart::ChartAxis::linear(&self.x.label()),
+            y: chart::ChartAxis::linear(&self.y.label()),
             lines: self.runs.iter().map(line).collect(),
         };
         if !plot.has_points() {

@@ -7,7 +7,7 @@
 use crate::simulation::{Command, Simulation};
 use crate::ui::playback::{Way, allows, leap, play_or_pause, step_back, to_avalanche};
 use crate::ui::request::{Request, Sheet};
-use crate::view::{CameraRequest, Side};
+use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
 
 /// A key and what it does.
@@ -44,7 +44,7 @@ const fn shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::SHIFT, key)
 }
 
-const fn look_from(side: Side) -> KeyAction {
+const fn look_from(side: StandardView) -> KeyAction {
     KeyAction::Ask(Request::Camera(CameraRequest::From(side)))
 }
 
@@ -126,32 +126,32 @@ pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         keys: &[key(Key::Num1)],
         name: "Look from the front",
-        action: look_from(Side::Front),
+        action: look_from(StandardView::Front),
     },
     Shortcut {
         keys: &[key(Key::Num2)],
         name: "Look from the back",
-        action: look_from(Side::Back),
+        action: look_from(StandardView::Back),
     },
     Shortcut {
         keys: &[key(Key::Num3)],
         name: "Look from the left",
-        action: look_from(Side::Left),
+        action: look_from(StandardView::Left),
     },
     Shortcut {
         keys: &[key(Key::Num4)],
         name: "Look from the right",
-        action: look_from(Side::Right),
+        action: look_from(StandardView::Right),
     },
     Shortcut {
         keys: &[key(Key::Num5)],
         name: "Look from above",
-        action: look_from(Side::Above),
+        action: look_from(StandardView::Above),
     },
     Shortcut {
         keys: &[key(Key::Num6)],
         name: "Look from below",
-        action: look_from(Side::Below),
+        action: look_from(StandardView::Below),
     },
     // Before the plain keys, which would take them.
     Shortcut {

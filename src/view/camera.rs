@@ -5,7 +5,7 @@
 //! visible height, and where a point of the world lands in the picture. Nothing here knows of
 //! Bevy's camera entity; the rig does.
 
-use crate::view::settings::{CameraRequest, ProjectionKind, SAVED_VIEWS, Side};
+use crate::view::view_settings::{CameraRequest, ProjectionKind, SAVED_VIEWS, StandardView};
 use bevy::math::{EulerRot, Quat, Rect, Vec2, Vec3};
 use bevy::prelude::Resource;
 use bevy_egui::egui;
@@ -96,14 +96,14 @@ impl OrbitCamera {
     }
 
     /// Looks from one side, straight along an axis.
-    pub fn look_from(&mut self, side: Side) {
+    pub fn look_from(&mut self, side: StandardView) {
         (self.yaw, self.pitch) = match side {
-            Side::Front => (0.0, 0.0),
-            Side::Back => (PI, 0.0),
-            Side::Right => (FRAC_PI_2, 0.0),
-            Side::Left => (-FRAC_PI_2, 0.0),
-            Side::Above => (0.0, FRAC_PI_2),
-            Side::Below => (0.0, -FRAC_PI_2),
+            StandardView::Front => (0.0, 0.0),
+            StandardView::Back => (PI, 0.0),
+            StandardView::Right => (FRAC_PI_2, 0.0),
+            StandardView::Left => (-FRAC_PI_2, 0.0),
+            StandardView::Above => (0.0, FRAC_PI_2),
+            StandardView::Below => (0.0, -FRAC_PI_2),
         };
         self.fits = true;
     }
@@ -364,12 +364,12 @@ mod tests {
         let mut camera = OrbitCamera::default();
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         for (side, right, up) in [
-            (Side::Front, x, y),
-            (Side::Back, -x, y),
-            (Side::Right, -z, y),
-            (Side::Left, z, y),
-            (Side::Above, x, -z),
-            (Side::Below, x, z),
+            (StandardView::Front, x, y),
+            (StandardView::Back, -x, y),
+            (StandardView::Right, -z, y),
+            (StandardView::Left, z, y),
+            (StandardView::Above, x, -z),
+            (StandardView::Below, x, z),
         ] {
             camera.look_from(side);
             let rotation = camera.rotation();
@@ -401,7 +401,7 @@ mod tests {
         camera.zoom(200.0, Vec2::new(50.0, 20.0));
         let kept = camera.clone();
         camera.follow(CameraRequest::Save(1));
-        camera.follow(CameraRequest::From(Side::Above));
+        camera.follow(CameraRequest::From(StandardView::Above));
         camera.follow(CameraRequest::Recall(1));
         let pose = |c: &OrbitCamera| (c.focus, c.yaw, c.pitch, c.height, c.fits);
         assert_eq!(pose(&camera), pose(&kept));

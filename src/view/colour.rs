@@ -4,7 +4,7 @@
 //! it.
 
 use crate::measure::GrainQuantity;
-use crate::view::settings::{Background, ColourBy, ColourMap, ColourRange, Legend};
+use crate::view::view_settings::{Background, ColourBy, ColourMap, ColourRange, Legend};
 use crate::world::World;
 use bevy::color::{Color, ColorToComponents, LinearRgba};
 

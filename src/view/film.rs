@@ -70,14 +70,14 @@ struct Shot {
 }
 
 /// A film that is being written.
-pub struct Film {
+pub struct FilmWriter {
     shots: Option<Sender<Shot>>,
     waiting: Arc<AtomicUsize>,
     cancelled: Arc<AtomicBool>,
     writer: Option<JoinHandle<io::Result<()>>>,
 }
 
-impl Film {
+impl FilmWriter {
     /// Begins the film at `path`, which says where it came `from`.
     ///
     /// # Errors
@@ -159,7 +159,7 @@ impl Film {
     }
 }
 
-impl Drop for Film {
+impl Drop for FilmWriter {
     fn drop(&mut self) {
         self.cancel();
         // What is half written goes away with its thread.
@@ -374,7 +374,7 @@ mod tests {
     }
 
     fn film(path: &Path, kind: FilmKind, shots: u8) -> io::Result<()> {
-        let mut film = Film::begin(path.to_owned(), kind, origin())?;
+        let mut film = FilmWriter::begin(path.to_owned(), kind, origin())?;
         for shot in 0..shots {
             film.add(plain(40 * shot), URect::new(1, 1, 8, 7));
         }
@@ -422,7 +422,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for kind in [FilmKind::Gif, FilmKind::Pictures] {
             let path = folder.path().join("film");
-            let mut film = Film::begin(path.clone(), kind.clone(), origin()).unwrap();
+            let mut film = FilmWriter::begin(path.clone(), kind.clone(), origin()).unwrap();
             film.add(plain(1), URect::new(0, 0, 10, 8));
             film.cancel();
             assert!(film.outcome().is_err());

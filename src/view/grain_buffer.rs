@@ -8,8 +8,8 @@
 use crate::simulation::Half;
 use crate::view::colour;
 use crate::view::occlusion::Shadows;
-use crate::view::settings::{ColourBy, ColourMap, ColourRange, Cut, ViewSettings};
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems};
+use crate::view::view_settings::{ColourBy, ColourMap, ColourRange, Cut, ViewSettings};
 use crate::world::{Polyhedra, Polyhedron, World};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::prelude::*;

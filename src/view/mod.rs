@@ -18,7 +18,7 @@
 //! | `pick` | which grain a point of the picture shows |
 //! | `rig` | Bevy's cameras, which follow the orbiting eye |
 //! | `trace` | follows the grains that are traced |
-//! | `walls`, `wall_material`, `wall_meshes` | drum, box and planes as one-sided panes |
+//! | `container_walls`, `wall_material`, `wall_meshes` | drum, box and planes as one-sided panes |
 //! | `links` | force chains, liquid bridges, velocity arrows |
 //! | `spheres` | spheres as one draw, exact |
 //! | `polyhedron_meshes`, `facets` | polyhedra as a few draws of triangles; the surface of a rounded one |
@@ -29,12 +29,13 @@
 //! | `camera` | the orbiting eye, without Bevy's entities |
 //! | `colour` | every colour, the legend |
 //! | `shown_worlds` | the worlds in the picture |
-//! | `settings`, `trail` | what a person chose to see; the ways of chosen grains |
+//! | `view_settings`, `trail` | what a person chose to see; the ways of chosen grains |
 //! | `halves`, `scale` | the picture in parts; lengths and numbers in it |
 //! | `film`, `png` | films and pictures as files |
 
 mod camera;
 mod colour;
+mod container_walls;
 mod facets;
 mod film;
 mod framing;
@@ -50,22 +51,21 @@ mod polyhedron_meshes;
 mod quads;
 mod rig;
 mod scale;
-mod settings;
 mod shown_worlds;
 mod spheres;
 #[cfg(test)]
 mod test_worlds;
 mod trace;
 mod trail;
+mod view_settings;
 mod viewport;
 mod wall_material;
 mod wall_meshes;
-mod walls;
 
 pub use camera::{OrbitCamera, apply_response};
 pub(crate) use colour::round_up;
 pub use colour::{species_colour, trail_colour};
-pub use film::{FILM_RATE, Film, FilmKind};
+pub use film::{FILM_RATE, FilmKind, FilmWriter};
 pub use grain_buffer::GrainBuffer;
 pub use overlay::Caption;
 pub use plugin::ViewPlugin;
@@ -73,10 +73,10 @@ pub use png::{save_drawing, save_png};
 pub use polyhedron_meshes::Meshing;
 pub use rig::WorldCamera;
 pub use scale::ScaleBar;
-pub use settings::{
-    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, Legend, LinkScales,
-    ProjectionKind, SAVED_VIEWS, Side, ViewSettings,
-};
 pub use shown_worlds::{ShownWorlds, ViewSystems};
 pub use trail::Trail;
+pub use view_settings::{
+    Background, CameraRequest, ColourBy, ColourMap, ColourRange, CoordinateAxis, Cut, Legend,
+    LinkScales, ProjectionKind, SAVED_VIEWS, StandardView, ViewSettings,
+};
 pub use viewport::viewport_ui;

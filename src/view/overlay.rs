@@ -12,7 +12,7 @@ use crate::view::grain_buffer::CutPlanes;
 use crate::view::halves::BETWEEN;
 use crate::view::links::LinkKind;
 use crate::view::scale::{Prefixed, ScaleBar, length, short_number, with_unit};
-use crate::view::settings::{Axis, ColourMap, Legend, ViewSettings};
+use crate::view::view_settings::{ColourMap, CoordinateAxis, Legend, ViewSettings};
 use crate::world::{self, World};
 use bevy::color::{Color, ColorToPacked};
 use bevy::math::{Vec2, Vec3};
@@ -309,7 +309,7 @@ fn outlined(ink: &Ink, at: Pos2, text: &str, colour: Color32) {
 fn axes(ink: &Ink, at: Pos2, camera: &OrbitCamera) {
     const LENGTH: f32 = 30.0;
     let back = camera.rotation().inverse();
-    for axis in Axis::ALL {
+    for axis in CoordinateAxis::ALL {
         let seen = back * axis.unit().as_vec3();
         let tip = vec2(seen.x, -seen.y) * LENGTH;
         ink.painter.arrow(at, tip, Stroke::new(1.8, ink.text));

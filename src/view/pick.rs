@@ -6,7 +6,7 @@
 
 use crate::view::camera::OrbitCamera;
 use crate::view::grain_buffer::polyhedron;
-use crate::view::settings::{Cut, ProjectionKind, ViewSettings};
+use crate::view::view_settings::{Cut, ProjectionKind, ViewSettings};
 use crate::world::{Polyhedron, World};
 use bevy::math::Vec2;
 use glam::{DQuat, DVec3};
@@ -140,7 +140,7 @@ impl Ray {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::Axis;
+    use crate::view::CoordinateAxis;
     use crate::view::test_worlds::grains_in_a_row;
 
     /// Three spheres of radius 1 mm behind each other along z, the first nearest to the viewer.
@@ -166,7 +166,7 @@ mod tests {
         let world = behind_each_other();
         let beyond = |position| {
             Some(Cut::Beyond {
-                axis: Axis::Z,
+                axis: CoordinateAxis::Z,
                 position,
             })
         };

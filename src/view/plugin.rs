@@ -3,9 +3,9 @@
 //! In: Bevy's app. Out: its systems.
 
 use crate::view::camera::OrbitCamera;
-use crate::view::settings::ViewSettings;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, take_newest};
-use crate::view::{grain_buffer, links, polyhedron_meshes, rig, spheres, trace, walls};
+use crate::view::view_settings::ViewSettings;
+use crate::view::{container_walls, grain_buffer, links, polyhedron_meshes, rig, spheres, trace};
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::CameraUpdateSystems;
 use bevy::prelude::*;
@@ -35,7 +35,7 @@ impl Plugin for ViewPlugin {
                 grain_buffer::plugin,
                 spheres::plugin,
                 polyhedron_meshes::plugin,
-                walls::plugin,
+                container_walls::plugin,
                 links::plugin,
             ))
             .add_systems(Startup, rig::spawn)

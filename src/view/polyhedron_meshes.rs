@@ -10,8 +10,8 @@
 use crate::simulation::Half;
 use crate::view::facets::Facets;
 use crate::view::grain_buffer::{CutPlanes, Forms, GrainBuffer, polyhedron};
-use crate::view::settings::ViewSettings;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
+use crate::view::view_settings::ViewSettings;
 use crate::world::{Polyhedra, Polyhedron};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;

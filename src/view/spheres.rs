@@ -6,8 +6,8 @@
 use crate::simulation::Half;
 use crate::view::grain_buffer::{CutPlanes, Forms, GrainBuffer, polyhedron};
 use crate::view::quads::{self, quads};
-use crate::view::settings::ViewSettings;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
+use crate::view::view_settings::ViewSettings;
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::mesh::MeshVertexBufferLayoutRef;
@@ -75,7 +75,7 @@ impl Material for SphereMaterial {
 
 /// The entity that draws all spheres of one half of the picture.
 #[derive(Component)]
-struct Spheres {
+struct SphereImpostors {
     /// What its mesh was made of.
     forms: Forms,
     /// Whether there are any.
@@ -92,7 +92,7 @@ fn spawn(
         commands.spawn((
             half,
             layers(half),
-            Spheres {
+            SphereImpostors {
                 forms: Forms::default(),
                 any: false,
             },
@@ -114,7 +114,7 @@ fn update(
     grains: Res<GrainBuffer>,
     mut halves: Query<(
         &Half,
-        &mut Spheres,
+        &mut SphereImpostors,
         &mut Mesh3d,
         &MeshMaterial3d<SphereMaterial>,
         &mut Visibility,

@@ -3,9 +3,9 @@
 //! In: the worlds shown, which grains are traced. Out: their trails, in the view's settings.
 
 use crate::simulation::Half;
-use crate::view::settings::ViewSettings;
 use crate::view::shown_worlds::ShownWorlds;
 use crate::view::trail::Trail;
+use crate::view::view_settings::ViewSettings;
 use bevy::prelude::*;
 use std::collections::VecDeque;
 

@@ -9,7 +9,7 @@ use crate::view::camera::{OrbitCamera, apply_response};
 use crate::view::halves::parts;
 use crate::view::overlay::{Caption, PicturePart, overlay};
 use crate::view::pick::pick;
-use crate::view::settings::ViewSettings;
+use crate::view::view_settings::ViewSettings;
 use bevy::math::Vec2;
 use bevy_egui::egui::{Id, Response, Sense, Ui, WidgetInfo, WidgetType};
 

@@ -9,18 +9,18 @@
 //! | `app` | Bevy's app, built and run |
 //! | `screenshot_job`, `screenshot_subject` | takes pictures and films; what they are of |
 //! | `opening_comparison` | the second run that a window opens with |
-//! | `job` | what to open and how; why there may be no window |
+//! | `window_job` | what to open and how; why there may be no window |
 //! | `canvas` | an image to draw into where there is no display |
 //! | `environment` | what a window needs of the machine |
 
 mod app;
 pub mod canvas;
 pub mod environment;
-mod job;
 mod opening_comparison;
 mod screenshot_job;
 mod screenshot_subject;
+mod window_job;
 
 pub use app::run;
-pub use job::{Opened, PictureJob, WindowError, WindowJob};
 pub use screenshot_job::ScreenshotPlugin;
+pub use window_job::{Opened, PictureJob, WindowError, WindowJob};

@@ -5,7 +5,7 @@
 //! the picture is taken is the job's business.
 
 use crate::simulation::{Command, Half, LabCommand, Provenance, RunView, Simulation, Status};
-use crate::view::{FILM_RATE, Film, FilmKind, ViewSettings, save_png};
+use crate::view::{FILM_RATE, FilmKind, FilmWriter, ViewSettings, save_png};
 use crate::window::canvas::WARM_UP;
 use bevy::math::URect;
 use bevy::prelude::*;
@@ -43,7 +43,7 @@ enum PictureMoment {
 /// The pictures of a film: the run holds at each until it is taken, so that the film runs smoothly
 /// however slow the machine is.
 pub(super) struct FilmReel {
-    film: Film,
+    film: FilmWriter,
     path: PathBuf,
     pictures: usize,
     /// Steps from picture to picture.
@@ -200,7 +200,7 @@ impl FilmReel {
             .round()
             .max(1.0) as u64;
         let from = Provenance::of_scene(simulation.scene());
-        let film = Film::begin(path.clone(), kind, from)
+        let film = FilmWriter::begin(path.clone(), kind, from)
             .map_err(|reason| format!("{}: {reason}", path.display()))?;
         simulation.send(LabCommand::Hold(Some(step)));
         Ok(Self {

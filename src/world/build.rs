@@ -7,8 +7,8 @@
 
 use super::mixture::{assign_species, labelled, random};
 use super::{
-    Body, Clock, Container, Grains, Ledger, Motion, Packing, Polyhedra, Polyhedron, Rounded, Shape,
-    Species, SpeciesId, Surface, Wall, World,
+    Clock, Container, Grains, Ledger, Packing, PlacedPolyhedron, Polyhedra, Polyhedron, Rounded,
+    Shape, Species, SpeciesId, Surface, Wall, WallMotion, World,
 };
 use crate::physics::{Material, MaterialId, Materials, PairProperties};
 use crate::scene::{
@@ -186,7 +186,7 @@ fn drum_walls(radius: f64, width: f64, speed: f64, material: MaterialId) -> Vec<
         name: name.to_owned(),
         surface,
         material,
-        motion: Motion {
+        motion: WallMotion {
             velocity: DVec3::ZERO,
             spin: DVec3::new(0.0, 0.0, speed),
         },
@@ -203,13 +203,13 @@ fn column_walls(scene: &Scene, radius: f64, floor: &str, tube: Option<&SceneTube
             normal: DVec3::Y,
         },
         material: material_id(scene, floor),
-        motion: Motion::default(),
+        motion: WallMotion::default(),
     };
     let tube = tube.map(|tube| Wall {
         name: "tube".to_owned(),
         surface: Surface::Tube { radius, rim: 0.0 },
         material: material_id(scene, &tube.material),
-        motion: Motion {
+        motion: WallMotion {
             velocity: tube.speed * DVec3::Y,
             spin: DVec3::ZERO,
         },
@@ -230,7 +230,7 @@ fn box_walls(min: DVec3, max: DVec3, material: MaterialId) -> Vec<Wall> {
         name: name.to_owned(),
         surface: Surface::Plane { point, normal },
         material,
-        motion: Motion::default(),
+        motion: WallMotion::default(),
     })
     .into()
 }
@@ -243,7 +243,7 @@ fn wall(scene: &Scene, plane: &ScenePlane) -> Wall {
             normal: plane.normal,
         },
         material: material_id(scene, &plane.material),
-        motion: Motion {
+        motion: WallMotion {
             velocity: plane.velocity,
             spin: DVec3::ZERO,
         },
@@ -305,7 +305,7 @@ fn listed_polyhedra(
             shapes.push(shape_of(grain));
             (shapes.len() - 1) as u32
         });
-        bodies.push(Body {
+        bodies.push(PlacedPolyhedron {
             shape,
             position: grain.position,
             orientation: (grain.orientation * shapes[shape as usize].1).normalize(),
@@ -351,11 +351,11 @@ fn packed(
         .iter()
         .map(|kind| density(scene, &kind.material))
         .collect();
-    let bodies: Vec<Body> = cells
+    let bodies: Vec<PlacedPolyhedron> = cells
         .iter()
         .zip(labels)
         .enumerate()
-        .map(|(index, (cell, species))| Body {
+        .map(|(index, (cell, species))| PlacedPolyhedron {
             shape: index as u32,
             position: cell.position,
             orientation: cell.orientation,
@@ -374,7 +374,7 @@ fn packed(
     (species.collect(), grains, Some(polyhedra))
 }
 
-fn placed(shapes: Vec<Polyhedron>, bodies: &[Body]) -> (Grains, Polyhedra) {
+fn placed(shapes: Vec<Polyhedron>, bodies: &[PlacedPolyhedron]) -> (Grains, Polyhedra) {
     let mut grains = Grains::default();
     let mut polyhedra = Polyhedra::new(shapes);
     for body in bodies {
@@ -411,14 +411,14 @@ fn fill(scene: &Scene, count: usize, kinds: &[SceneSpecies]) -> (Vec<Species>, G
 }
 
 /// Where a grain of a filling begins.
-struct Place {
+struct FillingSite {
     position: DVec3,
     class: usize,
 }
 
 /// Places for all grains of `classes`, cell by cell from below, so that grains near in number are
 /// near in space.
-fn places(scene: &Scene, classes: &[SizeClass]) -> Vec<Place> {
+fn places(scene: &Scene, classes: &[SizeClass]) -> Vec<FillingSite> {
     let Some(lattice) = Lattice::for_filling(&scene.container, classes) else {
         return Vec::new();
     };
@@ -436,7 +436,7 @@ fn places(scene: &Scene, classes: &[SizeClass]) -> Vec<Place> {
         for site in block(lattice.divisions[class]).take(take) {
             let corner = cell - 0.5 * lattice.cell;
             let position = corner + (site + DVec3::splat(0.5)) * size + jitter(&mut rng, room);
-            places.push(Place { position, class });
+            places.push(FillingSite { position, class });
         }
     }
     places

@@ -55,7 +55,7 @@ pub struct Wall {
     /// What it is made of.
     pub material: MaterialId,
     /// How it moves.
-    pub motion: Motion,
+    pub motion: WallMotion,
 }
 
 /// Where a wall is.
@@ -85,14 +85,14 @@ pub enum Surface {
 
 /// The velocity field of a rigid body: `velocity + spin × x`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
+pub struct WallMotion {
     /// Velocity at the origin [m/s].
     pub velocity: DVec3,
     /// Angular velocity about the origin [rad/s].
     pub spin: DVec3,
 }
 
-impl Motion {
+impl WallMotion {
     /// Velocity at the point `x` [m/s].
     pub fn velocity_at(&self, x: DVec3) -> DVec3 {
         self.velocity + self.spin.cross(x)

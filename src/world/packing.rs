@@ -44,13 +44,13 @@ pub struct Packing {
 /// Where cells can be grains.
 struct Region {
     /// Radius and axis of a cylinder [m]; none where the whole box is filled.
-    cylinder: Option<(f64, Axis)>,
+    cylinder: Option<(f64, CylinderAxis)>,
     /// Planes of a prism inside of the cylinder; empty where cells may reach out of it.
     sides: Vec<HalfSpace>,
 }
 
 #[derive(Clone, Copy)]
-enum Axis {
+enum CylinderAxis {
     Y,
     Z,
 }
@@ -144,8 +144,8 @@ impl Packing {
 impl Region {
     fn of(container: &SceneContainer) -> Self {
         let cylinder = match container {
-            SceneContainer::Column { radius, .. } => Some((*radius, Axis::Y)),
-            SceneContainer::Drum { radius, .. } => Some((*radius, Axis::Z)),
+            SceneContainer::Column { radius, .. } => Some((*radius, CylinderAxis::Y)),
+            SceneContainer::Drum { radius, .. } => Some((*radius, CylinderAxis::Z)),
             _ => None,
         };
         let sides = cylinder.filter(|_| container.cuts_cells());
@@ -175,7 +175,7 @@ impl Region {
     }
 }
 
-impl Axis {
+impl CylinderAxis {
     /// The part of `x` at right angles to the axis.
     fn across(self, x: DVec3) -> DVec3 {
         match self {
@@ -194,7 +194,7 @@ impl Axis {
 }
 
 /// The sides of the regular prism whose edges lie in the cylinder of this radius.
-fn prism(radius: f64, axis: Axis) -> Vec<HalfSpace> {
+fn prism(radius: f64, axis: CylinderAxis) -> Vec<HalfSpace> {
     let (mut cosine, mut sine): (f64, f64) = (0.5, 0.75_f64.sqrt());
     for _ in 0..HALVINGS {
         let half = (0.5 * (1.0 + cosine)).sqrt();

@@ -62,7 +62,7 @@ pub enum Feature {
 
 /// A polyhedral grain to place: which shape, where, how it moves, and of what.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+pub struct PlacedPolyhedron {
     /// Index of its shape.
     pub shape: u32,
     /// Where its centroid is [m].
@@ -89,7 +89,7 @@ impl Polyhedra {
     }
 
     /// Adds `body` to these columns and to those of `grains`.
-    pub fn push(&mut self, grains: &mut Grains, body: &Body) {
+    pub fn push(&mut self, grains: &mut Grains, body: &PlacedPolyhedron) {
         let shape = &self.shapes[body.shape as usize];
         let mass = shape.volume * body.density;
         grains.push(

@@ -19,8 +19,8 @@ mod velocity_map;
 use glam::{DQuat, DVec3};
 use grainfall::physics::{ContactLaw, Material, MaterialId, Materials, PairProperties};
 use grainfall::world::{
-    Clock, Contact, Container, Feature, FeatureContact, Grains, Ledger, Motion, Partner, Polyhedra,
-    Polyhedron, Shape, Species, SpeciesId, Surface, Wall, World,
+    Clock, Contact, Container, Feature, FeatureContact, Grains, Ledger, Partner, Polyhedra,
+    Polyhedron, Shape, Species, SpeciesId, Surface, Wall, WallMotion, World,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -71,7 +71,7 @@ fn drum(radius: f64, width: f64, speed: f64) -> World {
         name: "rim".into(),
         surface: Surface::Cylinder { radius },
         material: STEEL,
-        motion: Motion::default(),
+        motion: WallMotion::default(),
     };
     let mut world = empty(Shape::Drum { radius, width }, vec![rim]);
     world.container.set_drum_speed(speed);
@@ -96,7 +96,7 @@ fn on_floor() -> World {
             normal: DVec3::Y,
         },
         material: STEEL,
-        motion: Motion::default(),
+        motion: WallMotion::default(),
     };
     empty(Shape::Planes, vec![floor])
 }

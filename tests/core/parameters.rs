@@ -2,8 +2,8 @@
 //! read.
 
 use grainfall::parameters::{
-    Arguments, Kind, Parameter, Settings, Value, Values, entries, live_parameters,
-    start_parameters, table_of_keys,
+    Kind, NameKind, Parameter, Settings, Value, Values, entries, live_parameters, start_parameters,
+    table_of_keys,
 };
 use grainfall::scene::{Scene, SceneGrains, built_in};
 use grainfall::simulation::{Command, ScriptedCommand, StampedCommand};
@@ -21,10 +21,10 @@ fn keys_lead_to_their_parameter_and_back() {
     for entry in entries() {
         let parameter = (entry.of)(["glass", "drum"]);
         assert_eq!(parameter.row().key, entry.row.key);
-        assert_eq!(parameter.arguments(), entry.arguments);
+        assert_eq!(parameter.name_kind(), entry.name_kind);
         let key = parameter.to_string();
         assert!(Parameter::of_key(&key).contains(&parameter), "{key}");
-        assert_eq!(key.split('.').count(), 1 + entry.arguments.count());
+        assert_eq!(key.split('.').count(), 1 + entry.name_kind.count());
         *keys.entry(entry.row.key).or_insert(0) += 1;
     }
     // The radius of a column and that of grains that fill a container: no scene has both.
@@ -249,5 +249,5 @@ fn pairs_are_named_in_the_order_of_the_scene() {
     let swapped = Parameter::Friction("drum".into(), "glass".into());
     let own = Parameter::Friction("glass".into(), "drum".into());
     assert_eq!(swapped.canonical(&world.materials), own);
-    assert_eq!(own.arguments(), Arguments::Pair);
+    assert_eq!(own.name_kind(), NameKind::Pair);
 }

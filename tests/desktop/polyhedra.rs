@@ -4,7 +4,7 @@
 use crate::view::{Photograph, SIZE, cosine, photograph, studio, world};
 use bevy::math::{Vec2, Vec3};
 use glam::{DQuat, DVec3};
-use grainfall::view::{Axis, Cut, ProjectionKind, Side, species_colour};
+use grainfall::view::{CoordinateAxis, Cut, ProjectionKind, StandardView, species_colour};
 use grainfall::world::{Polyhedra, Polyhedron, Shape, SpeciesId, Surface, World};
 use std::sync::Arc;
 
@@ -155,7 +155,7 @@ fn cubes_have_the_colours_of_their_species() {
     };
     let cubes = two_cubes();
     let photograph = photograph("cube-species", bodies(&cubes, cube()), |_, camera| {
-        camera.look_from(Side::Front);
+        camera.look_from(StandardView::Front);
     });
     for (at, _, species) in cubes {
         let seen = photograph.at(photograph.camera.project(at.as_vec3()).unwrap().0);
@@ -212,7 +212,7 @@ fn cubes_and_spheres_hide_each_other() {
     polyhedra.shapes = Arc::new([cube(), Polyhedron::sphere(HALF)]);
     polyhedra.shape[0] = 1;
     world.grains.radius[0] = HALF;
-    for (side, front) in [(Side::Front, 0), (Side::Back, 1)] {
+    for (side, front) in [(StandardView::Front, 0), (StandardView::Back, 1)] {
         let photograph = photograph("cube-sphere", world.clone(), |settings, camera| {
             camera.look_from(side);
             settings.projection = ProjectionKind::Orthographic;
@@ -238,9 +238,9 @@ fn section_of_a_cut_cube_is_a_flat_square() {
     };
     let list = [(DVec3::ZERO, DQuat::IDENTITY, 0)];
     let photograph = photograph("cube-section", bodies(&list, cube()), |settings, camera| {
-        camera.look_from(Side::Front);
+        camera.look_from(StandardView::Front);
         settings.cut = Some(Cut::Beyond {
-            axis: Axis::Z,
+            axis: CoordinateAxis::Z,
             position: 0.002,
         });
     });
@@ -369,7 +369,7 @@ fn tube_rises_and_shows_what_is_inside() {
     for rim in [0.0_f32, 0.03] {
         let world = column(f64::from(rim));
         let photograph = photograph(&format!("tube-{rim}"), world, |settings, camera| {
-            camera.look_from(Side::Front);
+            camera.look_from(StandardView::Front);
             settings.projection = ProjectionKind::Orthographic;
         });
         let at = |x: f32, y: f32| {

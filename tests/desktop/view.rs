@@ -18,16 +18,16 @@ use grainfall::scene::Scene;
 use grainfall::simulation::{Options, Simulation, SimulationPlugin, Status};
 use grainfall::ui::UiPlugin;
 use grainfall::view::{
-    Axis, Background, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind,
-    ShownWorlds, Side, ViewPlugin, ViewSettings, save_png, species_colour,
+    Background, ColourBy, ColourMap, ColourRange, CoordinateAxis, Cut, OrbitCamera, ProjectionKind,
+    ShownWorlds, StandardView, ViewPlugin, ViewSettings, save_png, species_colour,
 };
 use grainfall::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use grainfall::window::environment::adapters;
 use grainfall::world::{
-    Bridge, Clock, Contact, Container, Grains, Ledger, Motion, Partner, Shape, Species, SpeciesId,
-    Surface, Wall, World,
+    Bridge, Clock, Contact, Container, Grains, Ledger, Partner, Shape, Species, SpeciesId, Surface,
+    Wall, WallMotion, World,
 };
 use std::io::Write;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -221,7 +221,7 @@ pub fn world(shape: Shape, walls: Vec<Surface>) -> World {
                     name: "wall".to_owned(),
                     surface,
                     material: MaterialId(0),
-                    motion: Motion::default(),
+                    motion: WallMotion::default(),
                 })
                 .collect(),
             angle: 0.0,
@@ -349,9 +349,9 @@ fn cut_takes_the_right_half_away() {
     };
     let positions = five_grains().grains.position;
     let photograph = photograph("cut", five_grains(), |settings, camera| {
-        camera.look_from(Side::Front);
+        camera.look_from(StandardView::Front);
         settings.cut = Some(Cut::Beyond {
-            axis: Axis::X,
+            axis: CoordinateAxis::X,
             position: 0.0,
         });
     });
@@ -372,10 +372,10 @@ fn section_of_a_cut_grain_is_a_flat_disc() {
         return;
     };
     let photograph = photograph("section", five_grains(), |settings, camera| {
-        camera.look_from(Side::Front);
+        camera.look_from(StandardView::Front);
         settings.projection = ProjectionKind::Orthographic;
         settings.cut = Some(Cut::Beyond {
-            axis: Axis::Z,
+            axis: CoordinateAxis::Z,
             position: 0.0,
         });
     });
@@ -411,7 +411,7 @@ fn nearer_grains_hide_farther_ones_where_they_intersect() {
                 .grains
                 .push_sphere(DVec3::new(0.0, 0.0, z), 5e-3, 2500.0, SpeciesId(species));
         }
-        for (side, front) in [(Side::Front, 0), (Side::Back, 1)] {
+        for (side, front) in [(StandardView::Front, 0), (StandardView::Back, 1)] {
             let photograph = photograph("depth", world.clone(), |settings, camera| {
                 camera.look_from(side);
                 settings.projection = ProjectionKind::Orthographic;
@@ -487,7 +487,9 @@ fn mark_turns_with_the_drum() {
         let mut world = drum_of_grains();
         world.grains = Grains::default();
         world.container.angle = f64::from(angle);
-        let photograph = photograph("mark", world, |_, camera| camera.look_from(Side::Front));
+        let photograph = photograph("mark", world, |_, camera| {
+            camera.look_from(StandardView::Front)
+        });
         // Across the bold spoke on the back plate, halfway out: red exceeds blue only at the mark.
         let warmth = |azimuth: f32| {
             let (sin, cos) = azimuth.sin_cos();
@@ -545,7 +547,7 @@ fn force_is_a_bar_as_thick_as_it_is_large() {
             settings.grain_size = 0.2;
             settings.show_overlay = false;
             settings.projection = ProjectionKind::Orthographic;
-            camera.look_from(Side::Front);
+            camera.look_from(StandardView::Front);
         });
         let (middle, per_metre) = photograph.camera.project(Vec3::ZERO).unwrap();
         half_thickness(&photograph, middle) / per_metre
@@ -569,7 +571,7 @@ fn bridge_is_as_thick_as_its_volume_makes_it() {
             settings.show_bridges = bridges;
             settings.show_overlay = false;
             settings.projection = ProjectionKind::Orthographic;
-            camera.look_from(Side::Front);
+            camera.look_from(StandardView::Front);
         });
         let (middle, per_metre) = photograph.camera.project(Vec3::ZERO).unwrap();
         half_thickness(&photograph, middle) / per_metre
@@ -596,7 +598,7 @@ fn arrows_point_where_grains_go() {
         settings.show_velocities = true;
         settings.show_overlay = false;
         settings.projection = ProjectionKind::Orthographic;
-        camera.look_from(Side::Front);
+        camera.look_from(StandardView::Front);
         (camera.fits, camera.height) = (false, 0.06);
     });
     // 0.05 m/s is the reference: four radii long.

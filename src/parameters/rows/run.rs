@@ -1,7 +1,7 @@
 //! How a run goes: its steps, its length, its chances.
 
 use crate::parameters::Value;
-use crate::parameters::row::{InScene, InWorld, Kind, Place, Row};
+use crate::parameters::parameter_row::{InScene, InWorld, Kind, PanelSection, ParameterRow};
 use crate::parameters::value::Choice;
 use crate::physics::{limits, units};
 use crate::scene::TimeStep;
@@ -26,7 +26,7 @@ static AUTOMATIC: [Choice; 2] = [
     },
 ];
 
-pub static TIME_STEP: Row = Row {
+pub static TIME_STEP: ParameterRow = ParameterRow {
     key: "time-step",
     name: |_| "time step",
     symbol: "Δt",
@@ -61,7 +61,7 @@ pub static TIME_STEP: Row = Row {
     ..super::AT_START
 };
 
-pub static SEED: Row = Row {
+pub static SEED: ParameterRow = ParameterRow {
     key: "seed",
     name: |_| "seed",
     kind: Kind::Count,
@@ -80,7 +80,7 @@ pub static SEED: Row = Row {
     ..super::AT_START
 };
 
-pub static DURATION: Row = Row {
+pub static DURATION: ParameterRow = ParameterRow {
     key: "duration",
     name: |_| "duration",
     symbol: "t",
@@ -89,7 +89,7 @@ pub static DURATION: Row = Row {
     limits: Some(&limits::DURATION),
     description: "Simulated time of a run without a window.",
     slider: |_, _, _| limits::DURATION.least..=limits::DURATION.most,
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: |scene, _| Some(scene.duration.into()),
         write: |scene, _, value| {
@@ -100,7 +100,7 @@ pub static DURATION: Row = Row {
     ..super::AT_START
 };
 
-pub static OUTPUT_INTERVAL: Row = Row {
+pub static OUTPUT_INTERVAL: ParameterRow = ParameterRow {
     key: "output-interval",
     name: |_| "output interval",
     kind: Kind::Number(&units::TIME),
@@ -108,7 +108,7 @@ pub static OUTPUT_INTERVAL: Row = Row {
     limits: Some(&limits::DURATION),
     description: "Simulated time between two states that a run without a window writes.",
     slider: |_, _, _| limits::DURATION.least..=limits::DURATION.most,
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: |scene, _| Some(scene.output_interval.into()),
         write: |scene, _, value| {

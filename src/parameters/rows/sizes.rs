@@ -2,7 +2,7 @@
 
 use crate::geometry::spheres_volume;
 use crate::parameters::Value;
-use crate::parameters::row::{InScene, Kind, Place, Row};
+use crate::parameters::parameter_row::{InScene, Kind, PanelSection, ParameterRow};
 use crate::physics::limits;
 use crate::physics::units;
 use crate::scene::{Scene, SceneCells, SceneContainer, SceneGrains, count_of};
@@ -13,7 +13,7 @@ const MORE_GRAINS: f64 = 4.0;
 const RADIUS: &str = "a length such as `2mm`: of the column, or in a scene that fills its container with grains of one radius, of \
                       those";
 
-pub static GRAIN_COUNT: Row = Row {
+pub static GRAIN_COUNT: ParameterRow = ParameterRow {
     key: "count",
     name: |_| "number of grains",
     symbol: "N",
@@ -46,7 +46,7 @@ pub static GRAIN_COUNT: Row = Row {
     ..super::AT_START
 };
 
-pub static GRAIN_RADIUS: Row = Row {
+pub static GRAIN_RADIUS: ParameterRow = ParameterRow {
     key: "radius",
     name: |_| "grain radius",
     symbol: "r",
@@ -69,7 +69,7 @@ pub static GRAIN_RADIUS: Row = Row {
     ..super::AT_START
 };
 
-pub static CELL: Row = Row {
+pub static CELL: ParameterRow = ParameterRow {
     key: "cell",
     name: |_| "cell size",
     symbol: "d",
@@ -88,7 +88,7 @@ pub static CELL: Row = Row {
     ..super::AT_START
 };
 
-pub static ROUNDING: Row = Row {
+pub static ROUNDING: ParameterRow = ParameterRow {
     key: "rounding",
     name: |_| "rounding radius",
     symbol: "R_s",
@@ -107,7 +107,7 @@ pub static ROUNDING: Row = Row {
     ..super::AT_START
 };
 
-pub static SOLID_FRACTION: Row = Row {
+pub static SOLID_FRACTION: ParameterRow = ParameterRow {
     key: "solid-fraction",
     name: |_| "solid fraction",
     symbol: "φ_i",
@@ -125,14 +125,14 @@ pub static SOLID_FRACTION: Row = Row {
     ..super::AT_START
 };
 
-pub static MIX: Row = Row {
+pub static MIX: ParameterRow = ParameterRow {
     key: "mix",
     name: |_| "share of the second species",
     expected: "the share of the second species such as `0.3`, in a scene of Voronoi cells of two species",
     limits: Some(&limits::SHARE),
     slider: |_, _, _| 0.0..=1.0,
     description: "Share of the second of two species by number, from the start on.",
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: |scene, _| match cells(scene)?.species.as_slice() {
             [_, second] => Some(second.share.into()),
@@ -150,7 +150,7 @@ pub static MIX: Row = Row {
     ..super::AT_START
 };
 
-pub static DRUM_RADIUS: Row = Row {
+pub static DRUM_RADIUS: ParameterRow = ParameterRow {
     key: "drum-radius",
     name: |_| "drum radius",
     symbol: "R",
@@ -175,7 +175,7 @@ pub static DRUM_RADIUS: Row = Row {
     ..super::AT_START
 };
 
-pub static DRUM_WIDTH: Row = Row {
+pub static DRUM_WIDTH: ParameterRow = ParameterRow {
     key: "drum-width",
     name: |_| "drum width",
     symbol: "W",
@@ -200,7 +200,7 @@ pub static DRUM_WIDTH: Row = Row {
     ..super::AT_START
 };
 
-pub static COLUMN_RADIUS: Row = Row {
+pub static COLUMN_RADIUS: ParameterRow = ParameterRow {
     key: "radius",
     name: |_| "column radius",
     symbol: "R_i",
@@ -225,7 +225,7 @@ pub static COLUMN_RADIUS: Row = Row {
     ..super::AT_START
 };
 
-pub static COLUMN_HEIGHT: Row = Row {
+pub static COLUMN_HEIGHT: ParameterRow = ParameterRow {
     key: "height",
     name: |_| "column height",
     symbol: "H_i",

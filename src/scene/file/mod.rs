@@ -6,20 +6,20 @@
 //!
 //! What the keys mean stands in `scenes/README.md`.
 
-mod container;
-mod grains;
+mod container_keys;
+mod grains_keys;
 mod keys;
-mod liquid;
+mod liquid_keys;
 
-pub(crate) use grains::count_of;
+pub(crate) use grains_keys::count_of;
 
 use super::error::Problem;
 use super::{PairOverride, Scene, SceneMaterial, TimeStep};
 use crate::physics::{ContactLaw, FeatureRule};
-use container::ContainerFile;
+use container_keys::ContainerFile;
 use glam::DVec3;
-use grains::GrainsFile;
-use liquid::LiquidFile;
+use grains_keys::GrainsFile;
+use liquid_keys::LiquidFile;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;

@@ -11,7 +11,7 @@ use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::SHORTCUTS;
 use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::words::number;
-use crate::view::{Background, CameraRequest, ProjectionKind, Side, ViewSettings};
+use crate::view::{Background, CameraRequest, ProjectionKind, StandardView, ViewSettings};
 use bevy_egui::egui;
 
 /// Width of the View menu, in points: its longest entry fits.
@@ -103,7 +103,7 @@ fn view_ui(
     ui.set_width(VIEW_WIDTH);
     item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
     item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
-    for side in Side::ALL {
+    for side in StandardView::ALL {
         item_ui(
             ui,
             side.label(),

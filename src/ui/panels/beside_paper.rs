@@ -26,7 +26,7 @@ pub struct BesidePaper {
 
 /// One plot: a law, a threshold, and where the run stands. The horizontal axis is one of powers of
 /// ten.
-pub struct Comparison {
+pub struct PaperPlot {
     /// What tells it from the others.
     pub id: &'static str,
     /// What stands over it.
@@ -82,7 +82,7 @@ impl Panel for BesidePaper {
         let inverse_root = summary.value(RunQuantity::InverseRootGalilei);
         comparison_ui(
             ui,
-            Comparison {
+            PaperPlot {
                 id: "drop ratio",
                 title: "Wet over dry drop, over viscosity η [mPa s]",
                 law: law_over(-0.5..=3.4, |viscosity| drop_ratio_law(1e-3 * viscosity)),
@@ -95,7 +95,7 @@ impl Panel for BesidePaper {
         );
         comparison_ui(
             ui,
-            Comparison {
+            PaperPlot {
                 id: "flowing share",
                 title: "Non-rigid share ta/ts, over √(1/Ga)",
                 law: Vec::new(),
@@ -136,7 +136,7 @@ pub fn law_over(powers: std::ops::RangeInclusive<f64>, law: impl Fn(f64) -> f64)
 }
 
 /// Draws one comparison.
-pub fn comparison_ui(ui: &mut egui::Ui, shown: Comparison) {
+pub fn comparison_ui(ui: &mut egui::Ui, shown: PaperPlot) {
     let palette = Palette::of(ui.visuals());
     ui.label(RichText::new(shown.title).strong());
     Plot::new(shown.id)

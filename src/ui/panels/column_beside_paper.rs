@@ -5,12 +5,12 @@
 //! the column comes to rest.
 
 use crate::measure::{
-    CRITICAL_ASPECT_RATIO, Collapse, Column, REST_TIME_LAW, TALL_ASPECT_RATIO, TALL_REST_TIME_LAW,
-    cone_volume_law, run_out_law,
+    CRITICAL_ASPECT_RATIO, Collapse, InitialColumn, REST_TIME_LAW, TALL_ASPECT_RATIO,
+    TALL_REST_TIME_LAW, cone_volume_law, run_out_law,
 };
 use crate::simulation::Simulation;
 use crate::ui::panel::{Panel, is_column};
-use crate::ui::panels::beside_paper::{Comparison, comparison_ui, law_over};
+use crate::ui::panels::beside_paper::{PaperPlot, comparison_ui, law_over};
 use crate::ui::request::Request;
 use crate::ui::words::number;
 use crate::view::ViewSettings;
@@ -46,7 +46,7 @@ impl Panel for ColumnBesidePaper {
         _out: &mut Vec<Request>,
     ) {
         let run = simulation.half(view.focus);
-        let column = run.world().and_then(|world| Column::of(world));
+        let column = run.world().and_then(|world| InitialColumn::of(world));
         let collapse = Collapse::of(run.series());
         let Some((column, collapse)) = column.zip(collapse) else {
             ui.weak("The laws appear with the first sample.");
@@ -66,10 +66,10 @@ impl Panel for ColumnBesidePaper {
     }
 }
 
-fn comparisons(column: &Column, collapse: &Collapse) -> [Comparison; 3] {
+fn comparisons(column: &InitialColumn, collapse: &Collapse) -> [PaperPlot; 3] {
     let effective = column.effective_aspect_ratio();
     let place = effective.log10();
-    let comparison = |id, title, law_name, law: fn(f64) -> f64, value: Option<f64>| Comparison {
+    let comparison = |id, title, law_name, law: fn(f64) -> f64, value: Option<f64>| PaperPlot {
         id,
         title,
         law: law_over(POWERS, law),

@@ -105,7 +105,7 @@ impl Explorer {
     /// The curve of `series` in the units of the axes, with no more points than a plot shows.
     fn points(&self, series: &Series, columns: usize) -> Vec<[f64; 2]> {
         let (x, y) = self.axes();
-        let (fx, fy) = (x.unit().factor, y.unit().factor);
+        let (fx, fy) = (x.unit().shown.factor, y.unit().shown.factor);
         let (xs, ys) = (x.values(series), y.values(series));
         if self.over.is_none() {
             let end = series.time().last().copied().unwrap_or(0.0);
@@ -157,7 +157,7 @@ impl Explorer {
             &[]
         };
         let shown = moment_shown(simulation).filter(|_| over_time);
-        let units = [x.unit().shown, y.unit().shown];
+        let units = [x.unit().shown.name, y.unit().shown.name];
         // Another pair of quantities begins with bounds of its own.
         let name = format!("{} over {}", y.label(), x.label());
         ui.label(RichText::new(&name).strong());
@@ -177,7 +177,7 @@ impl Explorer {
         });
         let response = drawn.response;
         let latest = y.values(simulation.series()).last().copied();
-        let latest = latest.unwrap_or(f64::NAN) * y.unit().factor;
+        let latest = latest.unwrap_or(f64::NAN) * y.unit().shown.factor;
         response.widget_info(|| {
             let text = format!("{name}, now {}", number::short(latest));
             WidgetInfo::labeled(WidgetType::Image, true, text)

@@ -1,7 +1,7 @@
 //! Live parameters: a slider and a number for each, in the unit people think in; a change goes out
 //! as one command. In the laboratory also what acts from the next start on.
 
-use crate::parameters::{Choice, Kind, Parameter, ParameterInfo, Place, Value, Values};
+use crate::parameters::{Choice, Kind, PanelSection, Parameter, ParameterInfo, Value, Values};
 use crate::physics::{LIQUID_CASES, PAPER_VOLUME};
 use crate::scene::Scene;
 use crate::simulation::{Command, Half, Simulation};
@@ -55,16 +55,16 @@ impl Group {
     /// That of a live parameter.
     fn of(parameter: &Parameter, scene: &Scene) -> Option<Self> {
         let [a, b] = parameter.names();
-        match parameter.row().place {
-            Place::Drum => Some(Self::Drum),
-            Place::Gravity => Some(Self::Gravity),
-            Place::Mixture => Some(Self::Mixture),
-            Place::Liquid => Some(Self::Liquid),
-            Place::Contact if scene.has_grains_of(a) && scene.has_grains_of(b) => {
+        match parameter.row().section {
+            PanelSection::Drum => Some(Self::Drum),
+            PanelSection::Gravity => Some(Self::Gravity),
+            PanelSection::Mixture => Some(Self::Mixture),
+            PanelSection::Liquid => Some(Self::Liquid),
+            PanelSection::Contact if scene.has_grains_of(a) && scene.has_grains_of(b) => {
                 Some(Self::GrainGrain)
             }
-            Place::Contact => Some(Self::GrainWall),
-            Place::Start | Place::Nowhere => None,
+            PanelSection::Contact => Some(Self::GrainWall),
+            PanelSection::Start | PanelSection::Nowhere => None,
         }
     }
 }

@@ -8,8 +8,8 @@ use crate::ui::request::Request;
 use crate::ui::widgets::combo::combo_ui;
 use crate::ui::widgets::field::{Field, slip_ui};
 use crate::view::{
-    Axis, Background, CameraRequest, ColourBy, ColourMap, ColourRange, Cut, ProjectionKind,
-    SAVED_VIEWS, Side, ViewSettings,
+    Background, CameraRequest, ColourBy, ColourMap, ColourRange, CoordinateAxis, Cut,
+    ProjectionKind, SAVED_VIEWS, StandardView, ViewSettings,
 };
 use crate::world::{Shape, World};
 use bevy_egui::egui::{self, WidgetInfo, WidgetType};
@@ -194,7 +194,7 @@ fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
     let across = match view.cut {
         Some(Cut::Beyond { .. }) => view.cut,
         _ => Some(Cut::Beyond {
-            axis: Axis::Z,
+            axis: CoordinateAxis::Z,
             position: 0.0,
         }),
     };
@@ -212,7 +212,7 @@ fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
     let Some(Cut::Beyond { axis, position }) = &mut view.cut else {
         return;
     };
-    let axes = Axis::ALL.map(|axis| (axis, axis.label()));
+    let axes = CoordinateAxis::ALL.map(|axis| (axis, axis.label()));
     choices_ui(ui, "Beyond along", axis, &axes);
     let extent = world.map_or(-1.0..=1.0, |world| extent(world, *axis));
     let mut shown = *position * MILLIMETRES;
@@ -240,7 +240,7 @@ fn middle(world: &World) -> (f64, f64) {
 
 /// Where along `axis` there is something to cut [m]: the container, or where it is unbounded the
 /// grains.
-fn extent(world: &World, axis: Axis) -> RangeInclusive<f64> {
+fn extent(world: &World, axis: CoordinateAxis) -> RangeInclusive<f64> {
     let (low, high) = match world.container.shape {
         Shape::Drum { radius, width } => {
             let half = DVec3::new(radius, radius, 0.5 * width);
@@ -297,7 +297,7 @@ fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
 fn camera_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
     ui.label("Look from");
     ui.horizontal_wrapped(|ui| {
-        for side in Side::ALL {
+        for side in StandardView::ALL {
             let name = side.label();
             let short = name.split(' ').next().unwrap_or(name);
             let response = ui.button(short).on_hover_text(format!("Look from {name}"));

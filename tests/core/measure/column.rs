@@ -2,19 +2,19 @@
 
 use super::*;
 use grainfall::measure::{
-    CRITICAL_ASPECT_RATIO, Column, cone_volume_law, contact_shares_law, run_out_law,
+    CRITICAL_ASPECT_RATIO, InitialColumn, cone_volume_law, contact_shares_law, run_out_law,
 };
 use std::f64::consts::PI;
 
 /// A column of the paper's radius, as high as it is wide, of ten grains of which `second` are of
 /// the second species.
-fn mixture(frictions: [f64; 2], second: u16) -> Column {
+fn mixture(frictions: [f64; 2], second: u16) -> InitialColumn {
     let mut world = column(0.025, 0.025, frictions);
     for i in 0..10 {
         let kind = u16::from(i < second);
         put(&mut world, DVec3::Y * 0.002 * f64::from(i), 1e-3, kind);
     }
-    Column::of(&world).unwrap()
+    InitialColumn::of(&world).unwrap()
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn effective_aspect_ratio_is_that_of_the_papers_mixtures() {
 fn effective_aspect_ratio_follows_a_change_of_friction_and_of_the_floor() {
     let mut world = column(0.025, 0.05, [0.1, 0.4]);
     put(&mut world, DVec3::Y, 1e-3, 0);
-    let effective = |world: &World| Column::of(world).unwrap().effective_aspect_ratio();
+    let effective = |world: &World| InitialColumn::of(world).unwrap().effective_aspect_ratio();
     // 2 √(1/(0.4 + 0.2)), 2 √(1/(0.4 + 0.6)), 2 √(1/(0.2 + 0.6))
     assert_close(effective(&world), 2.0 / 0.6_f64.sqrt(), 1e-15);
     let (first, floor) = (MaterialId(0), MaterialId(2));
@@ -57,7 +57,7 @@ fn column_knows_its_scales() {
     for i in 0..1000 {
         put(&mut world, DVec3::Y * 0.001 * f64::from(i), 2.5e-3, 0);
     }
-    let column = Column::of(&world).unwrap();
+    let column = InitialColumn::of(&world).unwrap();
     assert_close(column.time_unit(), 0.05048, 5e-6);
     assert_close(column.aspect_ratio(), 2.0, 1e-15);
     // 1000 · 4/3 · 0.0025³ / (0.025² · 0.05) = 2/3, and the sum of a thousand volumes.
@@ -73,8 +73,8 @@ fn column_knows_its_scales() {
 fn other_containers_and_empty_columns_have_no_column() {
     let mut bare = on_floor();
     push(&mut bare, DVec3::Y, 1e-3);
-    assert_eq!(Column::of(&bare), None);
-    assert_eq!(Column::of(&column(0.025, 0.05, [0.1, 0.4])), None);
+    assert_eq!(InitialColumn::of(&bare), None);
+    assert_eq!(InitialColumn::of(&column(0.025, 0.05, [0.1, 0.4])), None);
 }
 
 #[test]
@@ -115,5 +115,9 @@ fn solid_fraction_of_a_cylinder_of_grains_is_theirs() {
     let mut world = column(0.01, 0.02, [0.1, 0.4]);
     put(&mut world, DVec3::Y * 0.005, 0.005, 1);
     let expected = 4.0 / 3.0 * PI * 0.005_f64.powi(3) / (PI * 0.01 * 0.01 * 0.02);
-    assert_close(Column::of(&world).unwrap().solid_fraction, expected, 1e-14);
+    assert_close(
+        InitialColumn::of(&world).unwrap().solid_fraction,
+        expected,
+        1e-14,
+    );
 }

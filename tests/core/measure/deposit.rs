@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::DQuat;
-use grainfall::measure::{Column, Deposit, DepositShape};
+use grainfall::measure::{Deposit, DepositShape, InitialColumn};
 use grainfall::world::{Polyhedra, Polyhedron};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -126,7 +126,7 @@ fn cone_of_grains_has_its_front_apex_slope_and_shape() {
     assert_close(profile.flat_radius(), 0.008, 3.3e-3);
     assert_eq!(profile.shape(front), DepositShape::Cone);
     // The cone's own volume over that of the column, within a layer of height and half a grain of radius.
-    let column = Column::of(&world).unwrap();
+    let column = InitialColumn::of(&world).unwrap();
     let ratio = column.cone_volume_ratio(front, deposit.height());
     let expected = 0.08 * 0.08 * 0.048 / 3.0 / (0.025 * 0.025 * 0.05);
     assert_close(ratio / expected, 1.0, 0.08);

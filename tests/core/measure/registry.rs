@@ -26,9 +26,13 @@ fn every_row_is_complete() {
             !row.label().is_empty() && !row.unit.si.is_empty(),
             "{row:?}"
         );
-        assert!(row.unit.factor > 0.0, "{row:?}");
+        assert!(row.unit.shown.factor > 0.0, "{row:?}");
         // A pure number has no unit for people, and nothing else has none.
-        assert_eq!(row.unit.si == "1", row.unit.shown.is_empty(), "{row:?}");
+        assert_eq!(
+            row.unit.si == "1",
+            row.unit.shown.name.is_empty(),
+            "{row:?}"
+        );
         if let Format::Choice(words) = row.format {
             assert!(words.len() > 1, "{row:?}");
         }

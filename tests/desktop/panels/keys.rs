@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use grainfall::simulation::Command;
 use grainfall::ui::Request;
-use grainfall::view::{CameraRequest, Side};
+use grainfall::view::{CameraRequest, StandardView};
 
 #[test]
 fn keys_ask_for_what_the_sheet_of_shortcuts_says() {
@@ -18,7 +18,10 @@ fn keys_ask_for_what_the_sheet_of_shortcuts_says() {
         (Key::ArrowRight, Request::Command(Command::Step(1))),
         (Key::R, Request::Command(Command::Reset)),
         (Key::F, Request::Camera(CameraRequest::Fit)),
-        (Key::Num5, Request::Camera(CameraRequest::From(Side::Above))),
+        (
+            Key::Num5,
+            Request::Camera(CameraRequest::From(StandardView::Above)),
+        ),
     ];
     for (key, request) in cases {
         harness.state_mut().asked.clear();

@@ -1,8 +1,8 @@
 //! What moves the grains and what they are a mixture of: drum, gravity, shares.
 
 use crate::measure::elastic_energy;
+use crate::parameters::parameter_row::{ANY, InWorld, Kind, PanelSection, ParameterRow, preset};
 use crate::parameters::relabel;
-use crate::parameters::row::{ANY, InWorld, Kind, Place, Row, preset};
 use crate::physics::limits;
 use crate::physics::units::{self, TURNING};
 use crate::scene::{Scene, SceneContainer};
@@ -14,7 +14,7 @@ const FASTEST_DRUM: f64 = 10.0 / TURNING.shown.factor;
 /// Strongest gravity a slider offers [m/s²].
 const STRONGEST_GRAVITY: f64 = 20.0;
 
-pub static DRUM_SPEED: Row = Row {
+pub static DRUM_SPEED: ParameterRow = ParameterRow {
     key: "drum-speed",
     name: |_| "drum speed",
     symbol: "Ω",
@@ -31,7 +31,7 @@ pub static DRUM_SPEED: Row = Row {
     ],
     description: "How fast the drum turns; positive is anticlockwise as you see it.",
     equation: |_| "v = Ω × r on rim and end plates",
-    place: Place::Drum,
+    section: PanelSection::Drum,
     is_basic: |_, _| true,
     exists: |scene, _| matches!(scene.container, SceneContainer::Drum { .. }),
     in_world: Some(InWorld {
@@ -41,7 +41,7 @@ pub static DRUM_SPEED: Row = Row {
     ..ANY
 };
 
-pub static GRAVITY: Row = Row {
+pub static GRAVITY: ParameterRow = ParameterRow {
     key: "gravity",
     name: |_| "gravity",
     symbol: "g",
@@ -56,7 +56,7 @@ pub static GRAVITY: Row = Row {
     ],
     description: "Strength of gravity; its direction stays.",
     equation: |_| "F = m g",
-    place: Place::Gravity,
+    section: PanelSection::Gravity,
     is_basic: |scene, _| !matches!(scene.container, SceneContainer::Drum { .. }),
     in_world: Some(InWorld {
         read: |world, _| Some(world.gravity.length().into()),
@@ -65,7 +65,7 @@ pub static GRAVITY: Row = Row {
     ..ANY
 };
 
-pub static SHARE: Row = Row {
+pub static SHARE: ParameterRow = ParameterRow {
     key: "share",
     name: |_| "share",
     symbol: "P",
@@ -78,7 +78,7 @@ pub static SHARE: Row = Row {
     presets: &[preset("none", 0.0), preset("half", 0.5), preset("all", 1.0)],
     description: "Share of the grains by number; the next species of the same size gives or takes the difference.",
     equation: |_| "P_a = N_a / N; μ_p = Σ P_a P_b μ_ab, Eqs. 4.1 and 4.2 of Man et al. 2023",
-    place: Place::Mixture,
+    section: PanelSection::Mixture,
     is_basic: |scene, [species, _]| scene.species().last().is_some_and(|last| last.0 == species),
     rank: 1,
     exists: |scene, [species, _]| partners(scene, species).len() > 1,

@@ -1,12 +1,12 @@
 //! How two materials meet.
 
 use crate::parameters::Names;
-use crate::parameters::row::{ANY, InWorld, Place, Row, preset};
+use crate::parameters::parameter_row::{ANY, InWorld, PanelSection, ParameterRow, preset};
 use crate::physics::{PairProperties, limits};
 use crate::scene::{Scene, SceneGrains};
 use crate::world::World;
 
-pub static WET_FRICTION: Row = Row {
+pub static WET_FRICTION: ParameterRow = ParameterRow {
     key: "wet-friction",
     name: |_| "wet friction",
     symbol: "μ_w",
@@ -33,7 +33,7 @@ pub static WET_FRICTION: Row = Row {
     ..PAIR
 };
 
-pub static FRICTION: Row = Row {
+pub static FRICTION: ParameterRow = ParameterRow {
     key: "friction",
     name: |scene| {
         if scene.liquid.is_some() {
@@ -64,7 +64,7 @@ pub static FRICTION: Row = Row {
     ..PAIR
 };
 
-pub static ROLLING_FRICTION: Row = Row {
+pub static ROLLING_FRICTION: ParameterRow = ParameterRow {
     key: "rolling-friction",
     name: |_| "rolling friction",
     symbol: "μ_R",
@@ -83,7 +83,7 @@ pub static ROLLING_FRICTION: Row = Row {
     ..PAIR
 };
 
-pub static RESTITUTION: Row = Row {
+pub static RESTITUTION: ParameterRow = ParameterRow {
     key: "restitution",
     name: |_| "restitution",
     symbol: "e",
@@ -108,8 +108,8 @@ pub static RESTITUTION: Row = Row {
 };
 
 /// What these rows have in common.
-const PAIR: Row = Row {
-    place: Place::Contact,
+const PAIR: ParameterRow = ParameterRow {
+    section: PanelSection::Contact,
     acts: |scene, [a, b]| can_meet(scene, a, b),
     ..ANY
 };

@@ -15,7 +15,7 @@ use std::ops::RangeInclusive;
 pub type Names<'a> = [&'a str; 2];
 
 /// All that is known of a parameter.
-pub struct Row {
+pub struct ParameterRow {
     /// The key of `--set` and of command lists, without the names it is about.
     pub key: &'static str,
     /// What people call it in a scene, without the names it is about.
@@ -43,7 +43,7 @@ pub struct Row {
     /// it does not.
     pub equation: fn(&Scene) -> &'static str,
     /// Where panels show it.
-    pub place: Place,
+    pub section: PanelSection,
     /// Whether it is one of the few that matter most in a scene.
     pub is_basic: fn(&Scene, Names) -> bool,
     /// How soon it is proposed where two runs are to be compared: 0 is first, among those that
@@ -110,7 +110,7 @@ pub enum Scale {
 
 /// Where panels show a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum PanelSection {
     /// Among what a liquid is.
     Liquid,
     /// Among how bodies meet, under the names of their materials.
@@ -142,7 +142,7 @@ pub(super) const fn preset(name: &'static str, value: f64) -> Preset {
 }
 
 /// What rows have in common: they take this from here and say what is their own.
-pub(super) const ANY: Row = Row {
+pub(super) const ANY: ParameterRow = ParameterRow {
     key: "",
     name: |_| "",
     short_name: "",
@@ -155,7 +155,7 @@ pub(super) const ANY: Row = Row {
     presets: &[],
     description: "",
     equation: |_| "",
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     is_basic: |_, _| false,
     rank: 3,
     is_of_liquid: false,
@@ -166,11 +166,11 @@ pub(super) const ANY: Row = Row {
     in_world: None,
 };
 
-impl Row {
+impl ParameterRow {
     /// Whether it acts at once, also while a run goes on, and is shown so; others act from the next
     /// start on. The time step is shown among these, though a command can change it on the way.
     pub fn is_live(&self) -> bool {
-        self.in_world.is_some() && self.place != Place::Start
+        self.in_world.is_some() && self.section != PanelSection::Start
     }
 
     /// What `--set` takes before a run, in words.

@@ -1,7 +1,7 @@
 //! What bodies are made of, and springs between them, from the start on.
 
 use crate::parameters::Value;
-use crate::parameters::row::{InScene, Kind, Place, Row};
+use crate::parameters::parameter_row::{InScene, Kind, PanelSection, ParameterRow};
 use crate::parameters::value::Choice;
 use crate::physics::{ContactLaw, FeatureRule, limits, units};
 use crate::scene::{PairOverride, Scene, SceneContainer, SceneMaterial};
@@ -9,7 +9,7 @@ use crate::scene::{PairOverride, Scene, SceneContainer, SceneMaterial};
 /// How far from the scene's value sliders of materials go, as a factor.
 const REACH: f64 = 10.0;
 
-pub static DENSITY: Row = Row {
+pub static DENSITY: ParameterRow = ParameterRow {
     key: "density",
     name: |_| "density",
     symbol: "ρ",
@@ -31,7 +31,7 @@ pub static DENSITY: Row = Row {
     ..super::AT_START
 };
 
-pub static YOUNGS_MODULUS: Row = Row {
+pub static YOUNGS_MODULUS: ParameterRow = ParameterRow {
     key: "youngs-modulus",
     name: |_| "Young's modulus",
     symbol: "E",
@@ -51,7 +51,7 @@ pub static YOUNGS_MODULUS: Row = Row {
     ..super::AT_START
 };
 
-pub static POISSON_RATIO: Row = Row {
+pub static POISSON_RATIO: ParameterRow = ParameterRow {
     key: "poisson-ratio",
     name: |_| "Poisson's ratio",
     symbol: "ν",
@@ -70,7 +70,7 @@ pub static POISSON_RATIO: Row = Row {
     ..super::AT_START
 };
 
-pub static FIRST_FRICTION: Row = Row {
+pub static FIRST_FRICTION: ParameterRow = ParameterRow {
     key: "mu11",
     name: |_| "friction of the first species",
     symbol: "μ_11",
@@ -78,7 +78,7 @@ pub static FIRST_FRICTION: Row = Row {
     limits: Some(&limits::FRICTION),
     slider: |_, _, _| 0.0..=1.0,
     description: "Friction of two grains of the first species, from the start on.",
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: |scene, _| own_friction(scene, 0),
         write: |scene, _, value| set_friction(scene, 0, value.number()),
@@ -86,7 +86,7 @@ pub static FIRST_FRICTION: Row = Row {
     ..super::AT_START
 };
 
-pub static SECOND_FRICTION: Row = Row {
+pub static SECOND_FRICTION: ParameterRow = ParameterRow {
     key: "mu22",
     name: |_| "friction of the second species",
     symbol: "μ_22",
@@ -94,7 +94,7 @@ pub static SECOND_FRICTION: Row = Row {
     limits: Some(&limits::FRICTION),
     slider: |_, _, _| 0.0..=1.0,
     description: "Friction of two grains of the second species, from the start on.",
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: |scene, _| own_friction(scene, 1),
         write: |scene, _, value| set_friction(scene, 1, value.number()),
@@ -102,7 +102,7 @@ pub static SECOND_FRICTION: Row = Row {
     ..super::AT_START
 };
 
-pub static WALL_FRICTION: Row = Row {
+pub static WALL_FRICTION: ParameterRow = ParameterRow {
     key: "mu-wall",
     name: |_| "friction on the container",
     symbol: "μ",
@@ -110,7 +110,7 @@ pub static WALL_FRICTION: Row = Row {
     limits: Some(&limits::FRICTION),
     slider: |_, _, _| 0.0..=1.0,
     description: "Friction of grains of every species on the container, from the start on.",
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: wall_friction,
         write: |scene, _, value| set_wall_friction(scene, value.number()),
@@ -118,7 +118,7 @@ pub static WALL_FRICTION: Row = Row {
     ..super::AT_START
 };
 
-pub static NORMAL_STIFFNESS: Row = Row {
+pub static NORMAL_STIFFNESS: ParameterRow = ParameterRow {
     key: "normal-stiffness",
     name: |_| "normal stiffness",
     symbol: "K_n",
@@ -147,13 +147,13 @@ static FEATURE_RULES: [Choice; 2] = [
     },
 ];
 
-pub static FEATURES: Row = Row {
+pub static FEATURES: ParameterRow = ParameterRow {
     key: "features",
     name: |_| "contacts of two polyhedra",
     kind: Kind::Choice(&FEATURE_RULES),
     expected: "`full` or `shared`, in a scene of polyhedra",
     description: "How two polyhedra that touch in several places meet: each pair of features by itself, or all together.",
-    place: Place::Nowhere,
+    section: PanelSection::Nowhere,
     in_scene: Some(InScene {
         read: |scene, _| match scene.law {
             ContactLaw::Hooke { features, .. } if scene.is_polyhedral() => {

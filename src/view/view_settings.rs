@@ -210,13 +210,13 @@ pub enum ColourRange {
 /// A direction along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
-pub enum Axis {
+pub enum CoordinateAxis {
     X,
     Y,
     Z,
 }
 
-impl Axis {
+impl CoordinateAxis {
     /// All three.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
@@ -245,7 +245,7 @@ pub enum Cut {
     /// Everything beyond a plane.
     Beyond {
         /// Normal of the plane, pointing to the side that is cut away.
-        axis: Axis,
+        axis: CoordinateAxis,
         /// Where along the axis [m].
         position: f64,
     },
@@ -286,7 +286,7 @@ pub enum CameraRequest {
     /// Keep the direction, move so that everything fits.
     Fit,
     /// Look from this side, and move so that everything fits.
-    From(Side),
+    From(StandardView),
     /// Keep the present view under this number, below [`SAVED_VIEWS`].
     Save(usize),
     /// The view that was kept under this number, if one was.
@@ -313,7 +313,7 @@ pub struct LinkScales {
 
 /// The six sides that one can look from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Side {
+pub enum StandardView {
     /// From +x.
     Right,
     /// From −x.
@@ -328,7 +328,7 @@ pub enum Side {
     Back,
 }
 
-impl Side {
+impl StandardView {
     /// All of them, in the order of a menu.
     pub const ALL: [Self; 6] = [
         Self::Front,

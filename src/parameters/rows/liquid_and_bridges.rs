@@ -1,7 +1,9 @@
 //! The liquid: what it is and how its bridges act.
 
 use crate::parameters::Value;
-use crate::parameters::row::{ANY, InScene, InWorld, Kind, Place, Preset, Row, Scale, preset};
+use crate::parameters::parameter_row::{
+    ANY, InScene, InWorld, Kind, PanelSection, ParameterRow, Preset, Scale, preset,
+};
 use crate::parameters::value::Choice;
 use crate::physics::units::{self, ANGLE};
 use crate::physics::{BridgeLaw, LIQUID_CASES, Liquid, LiquidCase, PAPER_VOLUME, limits};
@@ -14,7 +16,7 @@ const STRONGEST_TENSION: f64 = 0.15;
 /// Largest contact angle a slider offers [rad], 80°.
 const LARGEST_CONTACT_ANGLE: f64 = 80.0 / ANGLE.shown.factor;
 
-pub static VISCOSITY: Row = Row {
+pub static VISCOSITY: ParameterRow = ParameterRow {
     key: "viscosity",
     name: |_| "viscosity",
     symbol: "η",
@@ -34,7 +36,7 @@ pub static VISCOSITY: Row = Row {
     ..OF_LIQUID
 };
 
-pub static SURFACE_TENSION: Row = Row {
+pub static SURFACE_TENSION: ParameterRow = ParameterRow {
     key: "surface-tension",
     name: |_| "surface tension",
     symbol: "γ",
@@ -53,7 +55,7 @@ pub static SURFACE_TENSION: Row = Row {
     ..OF_LIQUID
 };
 
-pub static CONTACT_ANGLE: Row = Row {
+pub static CONTACT_ANGLE: ParameterRow = ParameterRow {
     key: "contact-angle",
     name: |_| "contact angle",
     symbol: "α",
@@ -69,7 +71,7 @@ pub static CONTACT_ANGLE: Row = Row {
     ..OF_LIQUID
 };
 
-pub static VOLUME: Row = Row {
+pub static VOLUME: ParameterRow = ParameterRow {
     key: "liquid-volume",
     name: |_| "liquid",
     symbol: "V_l",
@@ -101,7 +103,7 @@ pub static BRIDGE_LAWS: [Choice; 2] = [
     },
 ];
 
-pub static BRIDGE_LAW: Row = Row {
+pub static BRIDGE_LAW: ParameterRow = ParameterRow {
     key: "bridge-law",
     name: |_| "bridge law",
     short_name: "Bridges",
@@ -159,7 +161,7 @@ static LIQUIDS: [Choice; 8] = {
     ]
 };
 
-pub static CASE: Row = Row {
+pub static CASE: ParameterRow = ParameterRow {
     key: "liquid",
     name: |_| "liquid of Table 1",
     kind: Kind::Choice(&LIQUIDS),
@@ -199,8 +201,8 @@ static CASES: [Preset; 7] = {
 };
 
 /// What these rows have in common.
-const OF_LIQUID: Row = Row {
-    place: Place::Liquid,
+const OF_LIQUID: ParameterRow = ParameterRow {
+    section: PanelSection::Liquid,
     is_of_liquid: true,
     exists: |scene, _| scene.liquid.is_some(),
     ..ANY

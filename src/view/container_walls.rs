@@ -7,8 +7,8 @@
 use crate::simulation::Half;
 use crate::view::colour::{Scheme, round_up};
 use crate::view::framing::{HOOP_BREADTH, expected_front, grain_box, ring_distance, surroundings};
-use crate::view::settings::ViewSettings;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
+use crate::view::view_settings::ViewSettings;
 use crate::view::wall_material::{NEVER_FADED, Pattern, SHADER, WallLook, WallMaterial};
 use crate::view::wall_meshes::{Builder, disc, edges, rim, ring, tube};
 use crate::world::{Container, Shape, Surface, World};
