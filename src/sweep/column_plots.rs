@@ -7,20 +7,16 @@
 use super::Sweep;
 use super::case::CaseResult;
 use super::chart::{ChartAxis, Line, Plot};
-use crate::measure::{
-    CRITICAL_ASPECT_RATIO, Measure, PEAK_TIME_LAW, REST_TIME_LAW, RunQuantity, TALL_ASPECT_RATIO,
-    TALL_REST_TIME_LAW, cone_volume_law, contact_shares_law, run_out_law,
+use super::column_laws::{
+    cone_volume_line, height_slopes, peak_time_line, rest_time_lines, run_out_line, run_out_slopes,
 };
+use crate::measure::{Measure, RunQuantity, contact_shares_law};
 use crate::physics::units;
 
 /// The varied key that makes the points of a curve.
 const HEIGHT: &str = "height";
 /// The varied key that makes the panels of a figure.
 const MIX: &str = "mix";
-/// Part of the axis of effective aspect ratios in which the laws are drawn.
-const LAWS_FROM: f64 = 0.4;
-const LAWS_TO: f64 = 25.0;
-
 /// Every plot of these outcomes.
 pub fn column_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     let figures = Figures { sweep, outcomes };
@@ -125,22 +121,6 @@ impl Figures<'_> {
                 lines,
             }
         };
-        let run_out = || {
-            let name = "α_eff^1.35, α_eff^0.5 above 3.5";
-            Line::law(name, LAWS_FROM, LAWS_TO, run_out_law)
-        };
-        let cone = Line::law(
-            "1.2 α_eff^0.9, 7.5 α_eff^−0.6 above 3.5 (Eq. 4.4)",
-            LAWS_FROM,
-            LAWS_TO,
-            cone_volume_law,
-        );
-        let root =
-            |name, factor, from, to| Line::law(name, from, to, move |x| factor * f64::sqrt(x));
-        let (break_at, tall) = (CRITICAL_ASPECT_RATIO, TALL_ASPECT_RATIO);
-        let peak = root("0.92 √α_eff", PEAK_TIME_LAW, LAWS_FROM, LAWS_TO);
-        let short = root("4.5 √α_eff below 3.5", REST_TIME_LAW, LAWS_FROM, break_at);
-        let high = root("3.0 √α_eff above 13", TALL_REST_TIME_LAW, tall, LAWS_TO);
         let effective = RunQuantity::EffectiveAspectRatio;
         let packed = RunQuantity::PackedAspectRatio;
         let volume = RunQuantity::RelativeConeVolume;
@@ -149,7 +129,12 @@ impl Figures<'_> {
             RunQuantity::DimensionlessRestTime,
         );
         vec![
-            plot("run-out", effective, RunQuantity::RunOut, vec![run_out()]),
+            plot(
+                "run-out",
+                effective,
+                RunQuantity::RunOut,
+                vec![run_out_line()],
+            ),
             plot("run-out-packed", packed, RunQuantity::RunOut, Vec::new()),
             plot(
                 "cone-volume",
@@ -157,9 +142,14 @@ impl Figures<'_> {
                 RunQuantity::ConeVolume,
                 Vec::new(),
             ),
-            plot("cone-volume-ratio", effective, volume, vec![cone]),
-            plot("peak-time", effective, peak_time, vec![peak]),
-            plot("rest-time", effective, rest_time, vec![short, high]),
+            plot(
+                "cone-volume-ratio",
+                effective,
+                volume,
+                vec![cone_volume_line()],
+            ),
+            plot("peak-time", effective, peak_time, vec![peak_time_line()]),
+            plot("rest-time", effective, rest_time, rest_time_lines()),
         ]
     }
 
@@ -257,40 +247,6 @@ fn shares(outcome: &CaseResult) -> Plot {
     }
 }
 
-/// ℛ ∝ α and ∝ α^0.5 (Fig. 8).
-fn run_out_slopes(lines: &[Line]) -> Vec<Line> {
-    slopes(lines, [("∝ α", 1.0), ("∝ α^0.5", 0.5)])
-}
-
-/// `H_∞ ∝ α` and `∝ α^−0.25` (Fig. 12).
-fn height_slopes(lines: &[Line]) -> Vec<Line> {
-    slopes(lines, [("∝ α", 1.0), ("∝ α^−0.25", -0.25)])
-}
-
-/// A power law through the lowest column's point and one through the highest one's, each over a
-/// third of the range between.
-fn slopes(lines: &[Line], [low, high]: [(&str, f64); 2]) -> Vec<Line> {
-    let points = || lines.iter().flat_map(|line| &line.points);
-    let first = points().min_by(|a, b| a.0.total_cmp(&b.0));
-    let last = points().max_by(|a, b| a.0.total_cmp(&b.0));
-    let (Some(&first), Some(&last)) = (first, last) else {
-        return Vec::new();
-    };
-    if last.0 <= first.0 {
-        return Vec::new();
-    }
-    let third = (last.0 / first.0).cbrt();
-    let through = |(name, exponent): (&str, f64), point: (f64, f64), from: f64, to: f64| {
-        Line::law(name, from, to, move |x| {
-            point.1 * (x / point.0).powf(exponent)
-        })
-    };
-    vec![
-        through(low, first, first.0, first.0 * third),
-        through(high, last, last.0 / third, last.0),
-    ]
-}
-
 /// A file's name with what tells it from the others of its kind.
 fn named(file: &str, label: &str) -> String {
     let label = label.replace(['/', '\\'], "-").replace(' ', "_");
@@ -314,7 +270,10 @@ mod tests {
     use super::super::plot_files::plots;
     use super::super::{Case, Variation};
     use super::*;
-    use crate::measure::{FlowProfile, MeasuredValue, Sample, Series, Summary, SummaryEntry};
+    use crate::measure::{
+        FlowProfile, MeasuredValue, PEAK_TIME_LAW, REST_TIME_LAW, Sample, Series, Summary,
+        SummaryEntry, cone_volume_law, run_out_law,
+    };
     use crate::output::Ending;
     use crate::run::BedStore;
     use crate::scene::Scene;
@@ -339,11 +298,12 @@ mod tests {
         }
     }
 
-    /// A case of these varied values that follows the laws: `alpha` high, of the effective aspect
-    /// ratio 1.2 times that.
-    fn outcome(values: &[&str], alpha: f64) -> CaseResult {
+    /// The results of a column `alpha` high, of the effective aspect ratio 1.2 times that, as the
+    /// laws have them.
+    fn results(alpha: f64) -> Summary {
         let effective = 1.2 * alpha;
-        let entries = [
+        let root = effective.sqrt();
+        let numbers = [
             (RunQuantity::AspectRatio, alpha),
             (RunQuantity::EffectiveAspectRatio, effective),
             (RunQuantity::PackedAspectRatio, 0.8_f64.sqrt() * effective),
@@ -351,37 +311,42 @@ mod tests {
             (RunQuantity::RelativeHeight, alpha.min(0.8)),
             (RunQuantity::ConeVolume, 1e-5 * alpha),
             (RunQuantity::RelativeConeVolume, cone_volume_law(effective)),
-            (
-                RunQuantity::DimensionlessPeakTime,
-                PEAK_TIME_LAW * effective.sqrt(),
-            ),
-            (
-                RunQuantity::DimensionlessRestTime,
-                REST_TIME_LAW * effective.sqrt(),
-            ),
+            (RunQuantity::DimensionlessPeakTime, PEAK_TIME_LAW * root),
+            (RunQuantity::DimensionlessRestTime, REST_TIME_LAW * root),
             (RunQuantity::SecondShare, 0.3),
         ];
-        let mut series = Series::default();
-        for step in 0..30 {
-            let time = step as f64 * 0.02;
-            let mut sample = [f64::NAN; Measure::COUNT];
-            sample[Measure::FrontRadius as usize] = 0.025 + 0.1 * time;
-            sample[Measure::TranslationalEnergy as usize] = 1e-6 * time;
-            sample[Measure::RotationalEnergy as usize] = 1e-7 * time;
-            sample[Measure::FirstPairs as usize] = 0.48;
-            sample[Measure::MixedPairs as usize] = 0.43;
-            sample[Measure::SecondPairs as usize] = 0.09;
-            series.push(Sample {
-                step,
-                time,
-                values: sample,
-            });
-        }
         let entry = |(quantity, value): (RunQuantity, f64)| SummaryEntry {
             key: quantity.into(),
             value: Some(MeasuredValue::Number(value)),
             note: String::new(),
         };
+        Summary {
+            from: 0.0,
+            to: 0.58,
+            samples: 30,
+            entries: numbers.into_iter().map(entry).collect(),
+        }
+    }
+
+    /// Thirty samples of a front that spreads evenly.
+    fn samples() -> Series {
+        let mut series = Series::default();
+        for step in 0..30 {
+            let time = step as f64 * 0.02;
+            let mut values = [f64::NAN; Measure::COUNT];
+            values[Measure::FrontRadius as usize] = 0.025 + 0.1 * time;
+            values[Measure::TranslationalEnergy as usize] = 1e-6 * time;
+            values[Measure::RotationalEnergy as usize] = 1e-7 * time;
+            values[Measure::FirstPairs as usize] = 0.48;
+            values[Measure::MixedPairs as usize] = 0.43;
+            values[Measure::SecondPairs as usize] = 0.09;
+            series.push(Sample { step, time, values });
+        }
+        series
+    }
+
+    /// A case of these varied values that follows the laws, `alpha` high.
+    fn outcome(values: &[&str], alpha: f64) -> CaseResult {
         CaseResult {
             case: Case {
                 name: values.join("_"),
@@ -391,13 +356,8 @@ mod tests {
                 time_step: 1e-6,
             },
             ending: Ending::Done,
-            results: Summary {
-                from: 0.0,
-                to: 0.58,
-                samples: 30,
-                entries: entries.into_iter().map(entry).collect(),
-            },
-            series,
+            results: results(alpha),
+            series: samples(),
             flow: FlowProfile::default(),
             fastest: None,
             hash: "0".repeat(32),

@@ -8,6 +8,7 @@
 
 mod case;
 pub(crate) mod chart;
+mod column_laws;
 mod column_plots;
 mod drum_plots;
 mod plan;
