@@ -2,9 +2,16 @@
 //!
 //! In: centres and radii. Out: for each sphere those of higher number that are near it, in order.
 //! Spheres are sorted into cubic cells at least one interaction length wide, so that only 27 cells
-//! have to be looked at for each. Used for grains and for the spheres round polyhedra.
+//! have to be looked at for each. Where sizes differ much there is a grid for each level of size,
+//! and a sphere looks for its like and for larger ones alone: a cell of the largest would hold all
+//! the small ones there are. Used for grains and for the spheres round polyhedra.
 
 use super::row::{Row, length_squared, sub};
+
+/// How many times smaller than the largest spheres of its level the smallest are, at most.
+const LEVEL: f64 = 4.0;
+/// Levels of size at most; the last one holds all that are smaller.
+const MOST_LEVELS: usize = 16;
 
 /// Calls `visit` with the number of every sphere (centre and radius [m]) and those of higher number
 /// whose surfaces are nearer to its own than `skin` [m], in order.
@@ -14,19 +21,99 @@ pub fn for_each_near(
     mut visit: impl FnMut(u32, &[u32]),
 ) {
     let spheres: Vec<Row> = spheres.collect();
-    let grid = CellGrid::new(&spheres, skin);
+    let levels = Levels::of(&spheres);
+    let grids = levels.grids(&spheres, skin);
+    let unequal = levels.unequal_pairs(&spheres, &grids, skin);
+    let mut unequal = unequal.iter().peekable();
     let mut near = Vec::new();
     for (i, sphere) in (0..).zip(&spheres) {
         near.clear();
-        grid.for_near(sphere, |j| {
-            let other = &spheres[j as usize];
-            let reach = sphere[3] + other[3] + skin;
-            if j > i && length_squared(sub(*other, *sphere)) < reach * reach {
+        grids[levels.level(i)].for_near(sphere, |j| {
+            if j > i && are_near(sphere, &spheres[j as usize], skin) {
                 near.push(j);
             }
         });
+        while let Some((_, j)) = unequal.next_if(|(low, _)| *low == i) {
+            near.push(*j);
+        }
         near.sort_unstable();
         visit(i, &near);
+    }
+}
+
+/// Whether the surfaces of two spheres are nearer to each other than `skin` [m].
+fn are_near(sphere: &Row, other: &Row, skin: f64) -> bool {
+    let reach = sphere[3] + other[3] + skin;
+    length_squared(sub(*other, *sphere)) < reach * reach
+}
+
+/// Which level of size each sphere is of, the largest first.
+struct Levels {
+    /// The level of each; empty where all are of one.
+    level: Vec<u8>,
+    /// How many there are.
+    number: usize,
+}
+
+impl Levels {
+    fn of(spheres: &[Row]) -> Self {
+        let radii = || spheres.iter().map(|sphere| sphere[3]);
+        let largest = radii().fold(0.0, f64::max);
+        if radii().all(|radius| LEVEL * radius >= largest) {
+            return Self {
+                level: Vec::new(),
+                number: 1,
+            };
+        }
+        let level = |radius: f64| {
+            let (mut level, mut least) = (0, largest / LEVEL);
+            while radius < least && level + 1 < MOST_LEVELS {
+                level += 1;
+                least /= LEVEL;
+            }
+            level as u8
+        };
+        let level: Vec<u8> = radii().map(level).collect();
+        Self {
+            number: 1 + usize::from(level.iter().copied().max().unwrap_or(0)),
+            level,
+        }
+    }
+
+    /// The level of the sphere of number `i`.
+    fn level(&self, i: u32) -> usize {
+        self.level
+            .get(i as usize)
+            .map_or(0, |level| usize::from(*level))
+    }
+
+    /// A grid for each level.
+    fn grids(&self, spheres: &[Row], skin: f64) -> Vec<CellGrid> {
+        let numbers = 0..spheres.len() as u32;
+        let of_level = |level| numbers.clone().filter(move |i| self.level(*i) == level);
+        (0..self.number)
+            .map(|level| CellGrid::new(spheres, of_level(level).collect(), skin))
+            .collect()
+    }
+
+    /// The pairs of spheres of different levels that are nearer to each other than `skin` [m], the
+    /// lower number first, in order.
+    fn unequal_pairs(&self, spheres: &[Row], grids: &[CellGrid], skin: f64) -> Vec<(u32, u32)> {
+        let mut pairs = Vec::new();
+        if self.number == 1 {
+            return pairs;
+        }
+        for (i, sphere) in (0..).zip(spheres) {
+            for larger in &grids[..self.level(i)] {
+                larger.for_near(sphere, |j| {
+                    if are_near(sphere, &spheres[j as usize], skin) {
+                        pairs.push((i.min(j), i.max(j)));
+                    }
+                });
+            }
+        }
+        pairs.sort_unstable();
+        pairs
     }
 }
 
@@ -45,12 +132,13 @@ struct CellGrid {
 }
 
 impl CellGrid {
-    /// A grid of `spheres`, for pairs whose surfaces are `skin` apart at most [m].
-    fn new(spheres: &[Row], skin: f64) -> Self {
+    /// A grid of those of the `spheres` that have these `numbers`, for pairs of them, or of one of
+    /// them and a smaller sphere, whose surfaces are `skin` apart at most [m].
+    fn new(spheres: &[Row], numbers: Vec<u32>, skin: f64) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
         let mut radius: f64 = 0.0;
-        for sphere in spheres {
+        for sphere in numbers.iter().map(|i| &spheres[*i as usize]) {
             for axis in 0..3 {
                 low[axis] = low[axis].min(sphere[axis]);
                 high[axis] = high[axis].max(sphere[axis]);
@@ -58,7 +146,7 @@ impl CellGrid {
             radius = radius.max(sphere[3]);
         }
         let mut size = 2.0 * radius + skin;
-        let limit = 8 * spheres.len() + 64;
+        let limit = 8 * numbers.len() + 64;
         let count = |size: f64| [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / size).max(0.0));
         // Spheres scattered far apart would need a grid larger than memory: wider cells are still
         // right.
@@ -73,14 +161,14 @@ impl CellGrid {
             first: Vec::new(),
             members: Vec::new(),
         };
-        grid.fill(spheres);
+        grid.fill(spheres, &numbers);
         grid
     }
 
-    /// Sorts the spheres by their cells.
-    fn fill(&mut self, spheres: &[Row]) {
-        let cell_of = |sphere: &Row| self.index(self.cell(sphere));
-        let cells: Vec<usize> = spheres.iter().map(cell_of).collect();
+    /// Sorts the spheres of these numbers by their cells.
+    fn fill(&mut self, spheres: &[Row], numbers: &[u32]) {
+        let cell_of = |i: &u32| self.index(self.cell(&spheres[*i as usize]));
+        let cells: Vec<usize> = numbers.iter().map(cell_of).collect();
         self.first = vec![0; self.cells.iter().product::<usize>() + 1];
         for &cell in &cells {
             self.first[cell + 1] += 1;
@@ -90,8 +178,8 @@ impl CellGrid {
         }
         let mut next = self.first.clone();
         self.members = vec![0; cells.len()];
-        for (i, &cell) in cells.iter().enumerate() {
-            self.members[next[cell] as usize] = i as u32;
+        for (&i, &cell) in numbers.iter().zip(&cells) {
+            self.members[next[cell] as usize] = i;
             next[cell] += 1;
         }
     }
@@ -142,11 +230,37 @@ mod tests {
     #[test]
     fn search_finds_the_pairs_that_a_look_at_all_of_them_finds() {
         let numbers = scattered(400 * 4);
-        let spheres: Vec<Row> = numbers
-            .chunks(4)
-            .map(|x| [x[0], 3.0 * x[1], 0.2 * x[2], 0.02 + 0.03 * x[3]])
+        let sphere = |x: &[f64], radius| [x[0], 3.0 * x[1], 0.2 * x[2], radius];
+        let alike = numbers.chunks(4).map(|x| sphere(x, 0.02 + 0.03 * x[3]));
+        compare(&alike.collect::<Vec<Row>>(), 0.01);
+        // Radii over four decades, small ones in most places.
+        let size = |x: f64| 0.3 * x * x * x * x * x * x * x * x + 3e-5;
+        let unlike = numbers.chunks(4).map(|x| sphere(x, size(x[3])));
+        compare(&unlike.collect::<Vec<Row>>(), 0.01);
+    }
+
+    #[test]
+    fn small_spheres_round_a_large_one_are_not_all_looked_at_for_each_other() {
+        let numbers = scattered(20_000 * 3);
+        let mut spheres: Vec<Row> = numbers
+            .chunks(3)
+            .map(|x| [x[0], x[1], x[2], 1e-3])
             .collect();
-        let skin = 0.01;
+        spheres.push([0.5, 0.5, 0.5, 1.0]);
+        let levels = Levels::of(&spheres);
+        let grids = levels.grids(&spheres, 1e-3);
+        let mut looks = 0;
+        for (i, sphere) in (0..).zip(&spheres) {
+            for grid in &grids[..=levels.level(i)] {
+                grid.for_near(sphere, |_| looks += 1);
+            }
+        }
+        // With cells for the large one there are 4e8.
+        assert!(looks < 1_000_000, "{looks}");
+    }
+
+    /// Compares what the search finds with all pairs.
+    fn compare(spheres: &[Row], skin: f64) {
         let mut found = Vec::new();
         for_each_near(spheres.iter().copied(), skin, |i, near| {
             found.extend(near.iter().map(|j| (i, *j)));
@@ -157,7 +271,7 @@ mod tests {
         };
         let all = (0..400).flat_map(|i| (i + 1..400).map(move |j| (i, j)));
         let expected: Vec<(u32, u32)> = all.filter(|(i, j)| near(*i, *j)).collect();
-        assert!(expected.len() > 200, "{}", expected.len());
+        assert!(expected.len() > 100, "{}", expected.len());
         assert_eq!(found, expected);
     }
 }
