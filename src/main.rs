@@ -14,8 +14,10 @@ use grainfall::runner::compared_value;
 use grainfall::runner::{
     Job, RunnerError, Verdict, apply_setting, available_threads, exit, read_commands,
 };
-use grainfall::scene::{Scene, StoredCells, built_in};
-use grainfall::simulation::{BedStore, Options, RunRecord, ScriptedCommand, Session, make_bed};
+use grainfall::scene::{Scene, StoredCells, built_in, take_packings_from_anywhere};
+use grainfall::simulation::{
+    BedStore, Estimate, Options, RunRecord, ScriptedCommand, Session, make_bed,
+};
 use grainfall::sweep::{Sweep, Variation};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
@@ -40,11 +42,40 @@ struct Arguments {
     /// Folder for the files of a run without a window [default: out/<scene>]
     #[arg(long, value_name = "DIR", requires = "no_render")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    allowed: Allowed,
     #[cfg(feature = "desktop")]
     #[command(flatten)]
     picture: PictureArguments,
     #[command(subcommand)]
     task: Option<Task>,
+}
+
+/// What a person allows that no file can.
+#[derive(Args)]
+struct Allowed {
+    /// Take packings from where a scene or a record says, not only from the folder that it is in
+    #[arg(long, global = true)]
+    packings_anywhere: bool,
+    /// Start what asks for more memory than is free, too
+    #[arg(long, global = true)]
+    beyond_memory: bool,
+}
+
+impl Allowed {
+    /// Says what `at_once` runs of `scene` take, before they begin.
+    ///
+    /// # Errors
+    /// When that is more memory than there is, and nobody asked for it.
+    fn begin(&self, scene: &Scene, at_once: usize) -> Result<(), RunnerError> {
+        let estimate = Estimate::of(scene).side_by_side(at_once);
+        if !self.beyond_memory {
+            let fits = estimate.fits_into_memory();
+            fits.map_err(|error| RunnerError::Input(error.to_string()))?;
+        }
+        eprintln!("{estimate}");
+        Ok(())
+    }
 }
 
 /// A picture that the program takes by itself.
@@ -196,12 +227,16 @@ fn main() -> ExitCode {
 }
 
 fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
+    let allowed = arguments.allowed;
+    if allowed.packings_anywhere {
+        take_packings_from_anywhere();
+    }
     match arguments.task {
         Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
         Some(Task::Verify { file, threads }) => return verify(&file, threads),
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
         Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
-        Some(task @ Task::Sweep { .. }) => return run_sweep(task),
+        Some(task @ Task::Sweep { .. }) => return run_sweep(task, &allowed),
         None => {}
     }
     let what = arguments.what;
@@ -236,6 +271,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         script,
         ..Job::new(name, scene, out)
     };
+    allowed.begin(&job.scene, 1)?;
     let ending = headless::run(&job, &*interruption()?)?;
     Ok(ending.exit_code())
 }
@@ -374,7 +410,7 @@ fn interruption() -> Result<Arc<AtomicBool>, RunnerError> {
     Ok(flag)
 }
 
-fn run_sweep(task: Task) -> Result<u8, RunnerError> {
+fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
     let Task::Sweep {
         scene: name,
         vary,
@@ -400,6 +436,7 @@ fn run_sweep(task: Task) -> Result<u8, RunnerError> {
         jobs: threads(jobs),
         beds: BedStore::user(),
     };
+    allowed.begin(&sweep.scene, sweep.jobs)?;
     let ending = headless::run_sweep(&sweep, &*interruption()?)?;
     Ok(ending.exit_code())
 }

@@ -5,6 +5,9 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
+/// Largest size of a body that is taken from a file, in SI units.
+const LARGEST: f64 = 1e12;
+
 /// A convex core and the radius by which it is rounded: the body is all that lies within `rounding`
 /// of the core.
 ///
@@ -86,6 +89,41 @@ impl Polyhedron {
         farthest.fold(0.0, f64::max) + self.rounding
     }
 
+    /// Whether it is a sphere that a world can hold.
+    pub fn is_sound_sphere(&self) -> bool {
+        self.vertices == [DVec3::ZERO]
+            && self.edges.is_empty()
+            && self.faces.is_empty()
+            && self.has_sound_sizes()
+    }
+
+    /// Whether it has a core that a world can hold: finite, its edges and faces between corners
+    /// that exist.
+    pub fn is_sound_core(&self) -> bool {
+        let exists = |&v: &u16| usize::from(v) < self.vertices.len();
+        let is_edge = |&[a, b]: &[u16; 2]| exists(&a) && exists(&b) && a != b;
+        let is_face = |face: &Vec<u16>| {
+            (3..=self.vertices.len()).contains(&face.len()) && face.iter().all(exists)
+        };
+        (4..=usize::from(u16::MAX)).contains(&self.vertices.len())
+            && self
+                .vertices
+                .iter()
+                .all(|x| x.abs().max_element() <= LARGEST)
+            && self.edges.iter().all(is_edge)
+            && self.faces.iter().all(is_face)
+            && self.vertices.len() + self.faces.len() == self.edges.len() + 2
+            && self.has_sound_sizes()
+    }
+
+    /// Whether its sizes are positive and not absurd.
+    fn has_sound_sizes(&self) -> bool {
+        let positive = |x: f64| x > 0.0 && x <= LARGEST;
+        positive(self.rounding)
+            && positive(self.volume)
+            && self.gyration.to_array().into_iter().all(positive)
+    }
+
     /// Mean of the principal moments of inertia over the mass [m²].
     pub fn mean_gyration(&self) -> f64 {
         self.gyration.element_sum() / 3.0
@@ -93,25 +131,9 @@ impl Polyhedron {
 }
 
 impl Rounded {
-    /// Whether it is a body that a world can hold, as one from a file may not be: finite, of
-    /// positive size, its edges and faces between corners that exist.
+    /// Whether it is a body that a world can hold, as one from a file may not be.
     pub fn is_sound(&self) -> bool {
-        let shape = &self.shape;
-        let exists = |&v: &u16| usize::from(v) < shape.vertices.len();
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        shape.vertices.len() >= 4
-            && shape.vertices.iter().all(|x| x.is_finite())
-            && shape.edges.iter().flatten().all(exists)
-            && shape
-                .faces
-                .iter()
-                .all(|face| face.len() >= 3 && face.iter().all(exists))
-            && shape.vertices.len() + shape.faces.len() == shape.edges.len() + 2
-            && positive(shape.rounding)
-            && positive(shape.volume)
-            && shape.gyration.to_array().into_iter().all(positive)
-            && self.position.is_finite()
-            && self.orientation.is_normalized()
+        self.shape.is_sound_core() && self.position.is_finite() && self.orientation.is_normalized()
     }
 
     /// Corners of the core in place [m].

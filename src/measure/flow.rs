@@ -38,6 +38,12 @@ struct FastMoment {
 }
 
 impl FlowHistory {
+    /// Whether its profiles and maps are of the lengths that they say, as a file may not.
+    pub fn is_whole(&self) -> bool {
+        self.seconds.iter().all(FlowProfile::is_whole)
+            && self.fastest.iter().all(|moment| moment.map.is_whole())
+    }
+
     /// Adds the state `world` with its `sample` and surface, where the bed flows.
     pub fn add(&mut self, world: &World, sample: &Sample, line: &SurfaceLine) {
         let temperature = sample.value(Measure::GranularTemperature);
@@ -109,6 +115,15 @@ pub struct FlowProfile {
 }
 
 impl FlowProfile {
+    fn is_whole(&self) -> bool {
+        let depths = self.depth.len();
+        (depths == 0 || depths == DEPTHS)
+            && self.samples.len() == depths
+            && self.sums.len() == depths
+            // Averages add them up: as many as an hour has at most.
+            && self.samples.iter().all(|count| *count < 1 << 18)
+    }
+
     fn merge(&mut self, other: &Self) {
         if self.depth.is_empty() {
             self.clone_from(other);

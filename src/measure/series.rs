@@ -4,7 +4,8 @@ use super::sample::Sample;
 use super::sampled_quantity::Measure;
 use serde::{Deserialize, Serialize};
 
-/// Samples in order of time, column by column.
+/// Samples in order of time, column by column. All of a run are kept, so that any part of it can
+/// be plotted and averaged: some 20 kB for a simulated second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     steps: Vec<u64>,
@@ -31,6 +32,16 @@ impl Series {
         for (column, value) in self.columns.iter_mut().zip(sample.values) {
             column.push(value);
         }
+    }
+
+    /// Whether its columns are of one length and its samples in order, as a file may not say.
+    pub fn is_whole(&self) -> bool {
+        let len = self.len();
+        self.steps.len() == len
+            && self.columns.iter().all(|column| column.len() == len)
+            && self.steps.is_sorted()
+            && self.time.is_sorted()
+            && self.time.iter().all(|time| time.is_finite())
     }
 
     /// Number of samples.

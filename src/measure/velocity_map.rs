@@ -37,6 +37,18 @@ struct KernelSums {
 }
 
 impl VelocityMap {
+    /// Whether it is a grid of whole rows, as a file may not say.
+    pub fn is_whole(&self) -> bool {
+        let most = MOST_POINTS as usize + 2;
+        (1..=most).contains(&self.columns)
+            && self.velocity.len().is_multiple_of(self.columns)
+            && self.rows() <= most
+            && self.time.is_finite()
+            && self.corner.is_finite()
+            && self.spacing.is_finite()
+            && self.spacing > 0.0
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.velocity.len() / self.columns.max(1)

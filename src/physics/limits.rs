@@ -119,6 +119,9 @@ pub const GRAINS: Limits = between(
     "between 1 and 1000000 grains, which take about 2 kB of memory each",
 );
 
+/// Polyhedra that a scene may have: up to 20 kB each in memory.
+pub const MOST_POLYHEDRA: usize = 200_000;
+
 #[cfg(test)]
 mod tests {
     use super::*;

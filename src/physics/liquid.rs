@@ -64,6 +64,14 @@ pub enum SmallestGap {
     OfEffectiveRadius(f64),
 }
 
+impl SmallestGap {
+    /// It in its own unit.
+    pub fn share(self) -> f64 {
+        let (Self::OfRadii(share) | Self::OfEffectiveRadius(share)) = self;
+        share
+    }
+}
+
 /// Gap in the capillary force of grains that touch or nearly do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CapillaryGap {

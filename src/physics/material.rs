@@ -81,6 +81,17 @@ impl Materials {
         Self { list, pairs }
     }
 
+    /// Whether there are materials, and properties for each pair of them, as a file may not say.
+    pub fn is_whole(&self) -> bool {
+        let count = self.list.len();
+        (1..=usize::from(u16::MAX)).contains(&count) && self.pairs.len() == count * (count + 1) / 2
+    }
+
+    /// How all pairs meet.
+    pub fn pairs(&self) -> impl Iterator<Item = &PairProperties> {
+        self.pairs.iter()
+    }
+
     /// The materials in order of their index.
     pub fn list(&self) -> &[Material] {
         &self.list

@@ -7,11 +7,10 @@
 //! anew. Keeping one may fail, a run never does.
 
 use super::settling::{standing, start};
-use crate::files::write_whole;
+use crate::files::{read_whole, write_whole};
 use crate::world::{Contact, Partner, World};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io;
 use std::path::PathBuf;
 
@@ -19,6 +18,8 @@ use std::path::PathBuf;
 /// are then stale.
 const FORMAT: u32 = 4;
 const MAGIC: &[u8; 12] = b"grainfallbed";
+/// Largest file that is read [bytes]: the bed of as many grains as a scene may have.
+const LARGEST_FILE: u64 = 1 << 30;
 /// Bytes before the contents: magic, format, key, checksum.
 const HEADER: usize = MAGIC.len() + 4 + 2 * blake3::OUT_LEN;
 
@@ -130,7 +131,9 @@ impl BedStore {
     /// scene's world before settling.
     pub fn find(&self, key: BedKey, built: &World) -> Option<World> {
         let shipped = SHIPPED.iter().filter(|_| self.shipped);
-        let kept = self.path(key).and_then(|path| fs::read(path).ok());
+        let kept = self
+            .path(key)
+            .and_then(|path| read_whole(&path, LARGEST_FILE).ok());
         shipped
             .copied()
             .chain(kept.as_deref())
@@ -188,7 +191,9 @@ fn decode(bytes: &[u8], key: BedKey, built: &World) -> Result<World, Unfit> {
     if !bed.fits(built) {
         return Err(Unfit::Contents);
     }
-    Ok(bed.laid_into(built))
+    let world = bed.laid_into(built);
+    world.check().map_err(|_| Unfit::Contents)?;
+    Ok(world)
 }
 
 impl Bed {

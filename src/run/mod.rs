@@ -10,12 +10,14 @@
 //! |---|---|
 //! | `session` | all branches of a run in one file |
 //! | `timeline` | all branches of a run: seek, branch, undo |
+//! | `soundness` | whether what a file kept of a run is what a run can be |
 //! | `archive`, `keyframes` | a timeline as a file keeps it; states along all branches |
 //! | `past`, `undo` | what is told of a timeline; what can be taken back |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero; where beds are kept |
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
 //! | `snapshot` | where a run stood, in memory or in a file |
+//! | `estimate` | what a scene asks of a machine, before any work |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
@@ -28,6 +30,7 @@ mod bed;
 mod branch;
 mod check;
 mod command;
+mod estimate;
 mod history;
 mod keyframes;
 mod past;
@@ -41,6 +44,7 @@ mod session;
 mod settling;
 mod shared;
 mod snapshot;
+mod soundness;
 mod steps;
 mod timeline;
 mod trajectory;
@@ -55,6 +59,7 @@ pub use branch::Branch;
 pub use check::CommandError;
 pub(crate) use check::check;
 pub use command::{Command, StampedCommand};
+pub use estimate::{BeyondMemory, Estimate};
 pub use history::{History, Moment};
 pub use past::Past;
 pub use pieces::Pieces;

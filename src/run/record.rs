@@ -91,6 +91,13 @@ impl RunRecord {
         self.fingerprint.as_ref().map(drop).ok_or_else(missing)
     }
 
+    /// It with the fingerprint of what it states.
+    #[must_use]
+    pub fn sealed(mut self) -> Self {
+        self.fingerprint = self.own_fingerprint();
+        self
+    }
+
     /// Whether it is as the program wrote it.
     pub fn is_genuine(&self) -> bool {
         self.fingerprint.is_some() && self.fingerprint == self.own_fingerprint()

@@ -11,12 +11,11 @@ use super::archive::Archive;
 use super::record::{RunRecord, VERSION};
 use super::script::ScriptedCommand;
 use super::timeline::Timeline;
-use crate::files::write_whole;
+use crate::files::{open_regular, read_whole, write_whole};
 use crate::geometry::Rounded;
-use crate::scene::{HeldCells, Scene, StoredCells};
+use crate::scene::{HeldCells, Scene, StoredCells, within_folders};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -24,6 +23,9 @@ use std::path::{Path, PathBuf};
 const MARK: &str = "grainfall session";
 /// Raised whenever what follows the second line is laid out otherwise.
 const LAYOUT: &str = "2";
+
+/// Largest file that is read [bytes]: a day of a drum with all its branches has less.
+const LARGEST_FILE: u64 = 4 << 30;
 
 /// Extension of a session's file.
 pub const SESSION_EXTENSION: &str = "grainfall";
@@ -77,6 +79,10 @@ enum Reason {
          the run with --commands"
     )]
     Damaged(&'static str),
+    #[error(
+        "is damaged, or was not written by this program: {0}. Open another copy of it, and none of a stranger's"
+    )]
+    Unsound(String),
 }
 
 impl Session {
@@ -105,7 +111,7 @@ impl Session {
     pub fn is_at(path: &Path) -> bool {
         // What cannot be read says nothing; whoever opens it is told why.
         let mut start = [0; MARK.len()];
-        let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+        let read = open_regular(path).and_then(|mut file| file.read_exact(&mut start));
         read.is_ok() && start == *MARK.as_bytes()
     }
 
@@ -114,7 +120,7 @@ impl Session {
     /// # Errors
     /// When the file cannot be read, is no session, is damaged or of another version.
     pub fn read(path: &Path) -> Result<Self, SessionError> {
-        let bytes = fs::read(path).map_err(Reason::Unreadable);
+        let bytes = read_whole(path, LARGEST_FILE).map_err(Reason::Unreadable);
         let read = bytes.and_then(|bytes| Self::decode(&bytes));
         read.map_err(|reason| SessionError {
             path: path.to_owned(),
@@ -193,11 +199,20 @@ impl Session {
         let rest: Rest<Archive, Vec<Rounded>> = postcard::from_bytes(rest)
             .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
         let _held = rest.cells.and_then(HeldCells::hold);
-        let record: RunRecord = of_json(second)?;
-        let original = rest.original.as_deref().map(of_json::<Scene>).transpose()?;
+        // The grains of its scene are in it: no other file is opened.
+        let record: RunRecord = within_folders(&[], || of_json(second))?;
+        let original = rest.original.as_deref();
+        let original = within_folders(&[], || original.map(of_json::<Scene>).transpose())?;
+        for scene in [Some(&record.scene), original.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            scene.check().map_err(|e| Reason::Scene(e.to_string()))?;
+        }
         let archive = rest.archive;
+        archive.check(&record.scene).map_err(Reason::Unsound)?;
         let hash = archive.shown().map(|world| world.hash().to_string());
-        if !archive.is_whole() || !record.is_genuine() || hash != record.state_hash {
+        if !record.is_genuine() || hash != record.state_hash {
             return Err(Reason::Damaged(
                 "the state in it has another hash than it states",
             ));
@@ -234,4 +249,149 @@ fn first_line(bytes: &[u8]) -> Option<(&str, &[u8])> {
     // A line that is no text is none that this program wrote; the caller says so.
     let line = std::str::from_utf8(&bytes[..end]).ok()?;
     Some((line, &bytes[end + 1..]))
+}
+
+#[cfg(test)]
+#[path = "../../tests/fuzz/byte_mutator.rs"]
+mod byte_mutator;
+
+#[cfg(test)]
+mod tests {
+    //! Forged sessions: the states in them are other than any that was saved, and everything that
+    //! vouches for them says that they are right. `FUZZ_SECONDS=60` forges for a minute.
+
+    use super::*;
+    use crate::run::{BedStore, Command, Parameter, Preparation, Prepared, Run};
+    use crate::solver::advise;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Arc;
+    use std::time::{Duration, Instant};
+
+    /// A session of `scene` after some steps, a change, a step back and another.
+    fn session(scene: &Scene) -> Session {
+        let shared = Arc::new(scene.clone());
+        let step = advise(scene).time_step;
+        let mut preparation = Preparation::new(shared, step, 1, BedStore::none());
+        let run: Run = loop {
+            if let Prepared::Ready(run) = preparation.advance().unwrap() {
+                break *run;
+            }
+        };
+        let mut timeline = Timeline::new(run, 1 << 24);
+        let gravity = |value: f64| Command::Set {
+            parameter: Parameter::Gravity,
+            value: value.into(),
+        };
+        timeline.advance_to(300).unwrap();
+        timeline.change(gravity(5.0), false).unwrap();
+        timeline.advance_to(600).unwrap();
+        timeline.seek(400);
+        while timeline.destination().is_some() {
+            timeline.advance_to(400).unwrap();
+        }
+        timeline.change(gravity(7.0), false).unwrap();
+        timeline.advance_to(500).unwrap();
+        Session::of("a session", &timeline)
+    }
+
+    fn sessions() -> Vec<Session> {
+        let scene = |name: &str, settings: &[(&str, &str)]| {
+            let mut scene = Scene::open(name).unwrap();
+            let set = |(key, value): &(&str, &str)| scene.set(key, value).unwrap();
+            settings.iter().for_each(set);
+            scene
+        };
+        let mut drum = scene("small-drum", &[("count", "30"), ("radius", "4mm")]);
+        drum.liquid = Scene::open("water-drum").unwrap().liquid;
+        let column = scene("small-column", &[("radius", "7mm"), ("height", "7mm")]);
+        [drum, column, scene("two-grains", &[])]
+            .iter()
+            .map(session)
+            .collect()
+    }
+
+    /// `session` with other states, and with the hash and the fingerprint of these.
+    fn forged(session: &Session, rng: &mut ChaCha8Rng) -> Option<Session> {
+        let bytes = postcard::to_stdvec(&session.archive).unwrap();
+        let archive: Archive = postcard::from_bytes(&byte_mutator::bytes(&bytes, rng)).ok()?;
+        let mut record = session.record.clone();
+        // A forger's program may fail where this one must not.
+        let hash = || Some(archive.shown()?.hash().to_string());
+        record.state_hash = catch_unwind(AssertUnwindSafe(hash)).ok()?;
+        Some(Session {
+            record: record.sealed(),
+            archive,
+            original: None,
+        })
+    }
+
+    /// What a person does with a session.
+    fn use_up(session: Session) {
+        let mut timeline = session.into_timeline(1, 1 << 24);
+        let few_steps = |timeline: &mut Timeline| {
+            let step = timeline.run().world().clock.step;
+            // A fault is a fair end of an odd state.
+            let _ = timeline.advance_to(step + 3);
+            let _ = (
+                timeline.run().advice(),
+                timeline.past(),
+                timeline.progress(),
+            );
+        };
+        few_steps(&mut timeline);
+        timeline.undo();
+        few_steps(&mut timeline);
+        timeline.redo();
+        timeline.take_up(0);
+        few_steps(&mut timeline);
+        timeline.seek(0);
+        few_steps(&mut timeline);
+        timeline.reset();
+        few_steps(&mut timeline);
+    }
+
+    #[test]
+    fn forged_sessions_are_refused_or_can_be_gone_on_with() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.grainfall");
+        let sessions = sessions();
+        let seconds = std::env::var("FUZZ_SECONDS").ok();
+        let seconds = seconds.and_then(|seconds| seconds.parse().ok());
+        let time = Duration::from_secs(seconds.unwrap_or(1));
+        let (started, mut counts) = (Instant::now(), [0_u32; 4]);
+        let mut failures = Vec::new();
+        for number in 0.. {
+            let mut rng = ChaCha8Rng::seed_from_u64(7);
+            rng.set_stream(number);
+            let session = &sessions[rng.random_range(0..sessions.len())];
+            counts[0] += 1;
+            if let Some(forged) = forged(session, &mut rng) {
+                counts[1] += 1;
+                forged.write(&path).unwrap();
+                let begun = Instant::now();
+                let used = catch_unwind(AssertUnwindSafe(|| {
+                    let read = Session::read(&path);
+                    read.is_ok_and(|session| {
+                        use_up(session);
+                        true
+                    })
+                }));
+                match used {
+                    Ok(accepted) => counts[2] += u32::from(accepted),
+                    Err(_) => failures.push(number),
+                }
+                counts[3] += u32::from(begun.elapsed() > Duration::from_secs(10));
+            }
+            if started.elapsed() > time || failures.len() > 20 {
+                break;
+            }
+        }
+        let [made, forged, accepted, slow] = counts;
+        println!("{made} forgeries, {forged} written, {accepted} accepted, {slow} slow");
+        assert!(failures.is_empty(), "forgeries {failures:?} panic");
+        assert_eq!(slow, 0);
+        assert!(accepted > 0 && accepted < forged, "{accepted} of {forged}");
+    }
 }

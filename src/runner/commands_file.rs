@@ -5,11 +5,15 @@
 //! again. Out: the list, or an error that says where it is wrong.
 
 use super::RunnerError;
+use crate::files::read_whole;
 use crate::run::{ScriptedCommand, Session};
 use ron::extensions::Extensions;
 use serde::Deserialize;
-use std::fs;
+use std::io;
 use std::path::Path;
+
+/// Largest file that is read [bytes]: a record may be one.
+const LARGEST_FILE: u64 = 256 << 20;
 
 /// What a JSON file may be.
 #[derive(Deserialize)]
@@ -34,8 +38,9 @@ pub fn read_commands(path: &Path) -> Result<Vec<ScriptedCommand>, RunnerError> {
         let session = Session::read(path).map_err(|e| RunnerError::Input(e.to_string()))?;
         return Ok(session.into_record().commands);
     }
-    let text =
-        fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
+    let text = read_whole(path, LARGEST_FILE)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other))
+        .map_err(|error| refuse(format!("cannot be read: {error}")))?;
     let json = path
         .extension()
         .is_some_and(|extension| extension == "json");

@@ -5,13 +5,17 @@
 
 use super::drive::{End, drive};
 use super::{DirectRun, RunnerError, Watch, exit};
+use crate::files::read_whole;
 use crate::output::Ending;
 use crate::run::{BedStore, RunRecord, Session, VERSION};
+use crate::scene::within_folders;
 use crate::solver::Fault;
 use crate::world::StateHash;
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Largest record that is read [bytes]: one of a scene with as many listed grains as a file holds.
+const LARGEST_FILE: u64 = 256 << 20;
 
 /// What became of computing a stated state again.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,10 +58,12 @@ impl RunRecord {
                 "{name}: {reason}; expected a run's summary.json, or a session or a list of changes saved in the window"
             ))
         };
-        let text =
-            fs::read_to_string(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
-        let record: Self =
-            serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
+        let bytes = read_whole(path, LARGEST_FILE)
+            .map_err(|error| refuse(format!("cannot be read: {error}")))?;
+        // A packing lies where the program is called, as when the record was made, or beside it.
+        let folders = [Path::new("."), path.parent().unwrap_or(Path::new("."))];
+        let record: Self = within_folders(&folders, || serde_json::from_slice(&bytes))
+            .map_err(|error| refuse(error.to_string()))?;
         if record.program != "grainfall" || record.state_hash.is_none() {
             return Err(refuse("states no state to come to".into()));
         }
@@ -68,6 +74,7 @@ impl RunRecord {
                 record.version
             )));
         }
+        record.check().map_err(refuse)?;
         Ok(record)
     }
 

@@ -74,6 +74,23 @@ impl SceneContainer {
     pub fn cuts_cells(&self) -> bool {
         matches!(self, Self::Drum { .. } | Self::Column { tube: Some(_), .. })
     }
+
+    /// Lower and upper corner of the box whose lattice the Voronoi cells of a bed in it come from
+    /// [m]; none of an open container.
+    pub fn cells_box(&self) -> Option<(DVec3, DVec3)> {
+        match *self {
+            Self::Column { radius, height, .. } => Some((
+                DVec3::new(-radius, 0.0, -radius),
+                DVec3::new(radius, height, radius),
+            )),
+            Self::Drum { radius, width, .. } => {
+                let corner = DVec3::new(radius, radius, 0.5 * width);
+                Some((-corner, corner))
+            }
+            Self::Box { min, max, .. } => Some((min, max)),
+            Self::Nothing | Self::Planes(_) => None,
+        }
+    }
 }
 
 /// Volume of a container that can be filled [m³].

@@ -3,6 +3,12 @@
 use super::outline::{Outline, OutlineEntry, line_of, shorten};
 use std::fmt;
 
+/// Characters of a part of a message at most: whatever a file holds, its mistake is told in a few
+/// lines.
+const LONGEST: usize = 600;
+/// Characters of what was expected at most: every key there is may be named.
+const LONGEST_LIST: usize = 2000;
+
 /// A scene that cannot be used: where, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
@@ -131,14 +137,14 @@ impl fmt::Display for Mistake {
         }
         f.write_str(": ")?;
         if let Some(key) = &self.key {
-            write!(f, "`{key}` ")?;
+            write!(f, "`{}` ", shorten(key, LONGEST))?;
         }
-        f.write_str(&self.fault)?;
+        f.write_str(&shorten(&self.fault, LONGEST))?;
         if !self.expected.is_empty() {
-            write!(f, "; expected {}", self.expected)?;
+            write!(f, "; expected {}", shorten(&self.expected, LONGEST_LIST))?;
         }
         if let Some(advice) = &self.advice {
-            write!(f, ". {advice}")?;
+            write!(f, ". {}", shorten(advice, LONGEST))?;
         }
         if let Some((line, written)) = &self.line {
             write!(f, "\n  {line} | {written}")?;

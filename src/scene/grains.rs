@@ -138,6 +138,14 @@ impl SceneCells {
         })
     }
 
+    /// Lattice cells in the box round `container`, whatever part of it the bed takes.
+    pub fn lattice_size(&self, container: &SceneContainer) -> f64 {
+        container.cells_box().map_or(0.0, |(min, max)| {
+            let counts = lattice_counts(max - min, self.cell);
+            counts.map(|count| count as f64).iter().product()
+        })
+    }
+
     /// Lattice cells that the bed takes.
     pub fn cell_count(&self, container: &SceneContainer) -> usize {
         let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
@@ -153,6 +161,13 @@ impl SceneCells {
         let volume = bed_volume(container).unwrap_or(0.0) * self.bulk_fraction;
         (volume / self.cell_volume() * self.solid_fraction).round() as usize
     }
+}
+
+/// Lattice cells along each edge of a box of this `extent` [m] that come nearest to the `size` [m].
+pub fn lattice_counts(extent: DVec3, size: f64) -> [i64; 3] {
+    extent
+        .to_array()
+        .map(|length| ((length / size).round() as i64).max(1))
 }
 
 /// Volume that Voronoi cells can fill [m³]; none of an open container.

@@ -28,9 +28,12 @@ pub use description::{Scene, TimeStep};
 pub use error::SceneError;
 pub(crate) use error::{Problem, one_of, suggestion};
 pub(crate) use file::count_of;
+pub(crate) use grains::lattice_counts;
 pub use grains::{SceneCellSpecies, SceneCells, SceneGrain, SceneGrains, SceneSpecies};
 pub use lattice::Lattice;
 pub use materials::{PairOverride, SceneMaterial};
 pub use shape::{SceneBody, SceneShape};
 pub use size_classes::{SizeClass, size_classes, species_counts};
-pub use stored_cells::{HeldCells, PackingError, StoredCells};
+pub use stored_cells::{
+    HeldCells, PackingError, StoredCells, take_packings_from_anywhere, within_folders,
+};

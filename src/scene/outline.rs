@@ -6,6 +6,11 @@
 
 use std::ops::Range;
 
+/// How deep brackets are followed. No scene nests so deep, and the RON reader refuses to.
+const DEEPEST: usize = 64;
+/// Bytes of a name that paths hold at most: a path is kept for each entry.
+const LONGEST_NAME: usize = 200;
+
 /// The keys of a file and their places.
 pub(super) struct Outline<'a> {
     text: &'a str,
@@ -153,7 +158,9 @@ impl<'a> Scan<'a> {
         let mut previous = None;
         let mut end = 0;
         let mut next = self.token();
-        while let Some((token, range)) = next {
+        while let Some((token, range)) = next
+            && self.frames.len() < DEEPEST
+        {
             next = self.token();
             let is_key = matches!(next, Some((Token::Colon, _)));
             match token {
@@ -188,6 +195,7 @@ impl<'a> Scan<'a> {
         let Some(frame) = self.frames.last() else {
             return;
         };
+        let name = &name[..name.floor_char_boundary(LONGEST_NAME)];
         let path = match frame.path.as_str() {
             "" => name.to_owned(),
             parent => format!("{parent}.{name}"),
@@ -400,6 +408,17 @@ Scene(
     fn a_key_in_another_unit_and_the_holder_of_a_missing_key_stand_in() {
         assert_eq!(value("container.radius"), "60.5");
         assert_eq!(value("materials.glass.friction"), "(density: 2500)");
+    }
+
+    #[test]
+    fn brackets_without_end_and_endless_names_take_no_memory() {
+        let brackets = format!("(title: {}", "[".repeat(400_000));
+        assert!(Outline::new(&brackets).entries.len() <= 2 * DEEPEST);
+        let name = "n".repeat(1 << 20);
+        let names = format!("({name}: ({}))", "a: 1, ".repeat(1000));
+        let paths = Outline::new(&names).entries;
+        assert_eq!(paths.len(), 1001);
+        assert!(paths.iter().all(|entry| entry.path.len() < 1000));
     }
 
     #[test]

@@ -5,8 +5,8 @@ use super::description::Scene;
 use super::error::{self, SceneError};
 use super::file::SceneFile;
 use super::syntax;
+use crate::files::read_whole;
 use ron::extensions::Extensions;
-use std::io::Read;
 use std::path::Path;
 
 /// Largest scene file that is read [bytes]: room for about half a million listed grains.
@@ -95,17 +95,8 @@ fn folder_of(file: &str) -> &Path {
 /// Text of the file at `path`, which errors call `name`.
 fn read(path: &Path, name: &str) -> Result<String, SceneError> {
     let refuse = |fault: String| SceneError::unreadable(name, fault, "a scene file in RON");
-    if path.is_dir() {
-        return Err(refuse("this is a folder".to_owned()));
-    }
-    let unreadable = |error: std::io::Error| refuse(format!("cannot be read: {error}"));
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
-    // One byte more than allowed tells a file that is too large, even where its size is not known beforehand.
-    let read = file.take(LARGEST_FILE + 1).read_to_end(&mut bytes);
-    if read.map_err(unreadable)? as u64 > LARGEST_FILE {
-        return Err(refuse("is larger than 64 MiB".to_owned()));
-    }
+    let bytes = read_whole(path, LARGEST_FILE)
+        .map_err(|error| refuse(format!("cannot be read: {error}")))?;
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();

@@ -5,11 +5,19 @@
 //! bytes, or the grains. A file that is damaged, of another version or holds absurd grains is
 //! refused. A scene that was kept names file and checksum; where the file is gone, the same grains
 //! are taken from [`HeldCells`].
+//!
+//! Which files are opened is not for a file to say: a scene's packing lies in the scene's folder
+//! or below it, and a record's in the folders that its reader names ([`within_folders`]), unless
+//! the person at the machine said otherwise ([`take_packings_from_anywhere`]).
 
+use crate::files::read_whole;
 use crate::geometry::Rounded;
+use crate::physics::limits::MOST_POLYHEDRA;
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 /// Raised whenever the file's layout changes.
@@ -17,6 +25,43 @@ const FORMAT: u32 = 1;
 const MAGIC: &[u8; 12] = b"grainfallpac";
 /// Bytes before the contents: magic, format, checksum.
 const HEADER: usize = MAGIC.len() + 4 + blake3::OUT_LEN;
+
+/// Largest file that is read [bytes]: room for as many polyhedra as a scene may have.
+const LARGEST_FILE: u64 = 512 << 20;
+
+/// Whether packings are taken from anywhere.
+static ANYWHERE: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// The folders that packings may lie in while a record is read; none where it does not matter.
+    static FOLDERS: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
+}
+
+/// From now on packings are taken from wherever a scene or a record says they are: for a person
+/// who asked for it on the command line.
+pub fn take_packings_from_anywhere() {
+    ANYWHERE.store(true, Ordering::Relaxed);
+}
+
+/// Does `read`, which reads a scene that somebody else may have written: the packing that it names
+/// is then opened only where it lies in one of these `folders` or below; where there are none, it
+/// has to be at hand.
+pub fn within_folders<T>(folders: &[&Path], read: impl FnOnce() -> T) -> T {
+    let folders = folders.iter().map(|folder| (*folder).to_owned()).collect();
+    let before = FOLDERS.replace(Some(folders));
+    let done = read();
+    FOLDERS.set(before);
+    done
+}
+
+/// Whether the file at `path` lies in `folder` or below it, wherever links lead.
+fn lies_in(folder: &Path, path: &Path) -> bool {
+    let here = Path::new(".");
+    let folder = Some(folder).filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(here).canonicalize();
+    // What is not there lies nowhere; reading it says so.
+    matches!((folder, path.canonicalize()), (Ok(folder), Ok(path)) if path.starts_with(&folder))
+}
 
 /// Grains that a file holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,18 +90,37 @@ pub enum PackingError {
     /// Its contents are not what was written.
     #[error("is damaged")]
     Damaged,
+    /// It lies elsewhere than the files that a scene may name.
+    #[error(
+        "is not opened: it does not lie in the folder of the file that names it. Move it there, or allow it \
+             with --packings-anywhere"
+    )]
+    Elsewhere,
     /// Its contents are not those that a scene was read with.
     #[error("holds other grains than before")]
     Changed,
 }
 
 impl StoredCells {
+    /// The grains in the file that a scene in `folder` calls `name`.
+    ///
+    /// # Errors
+    /// As [`StoredCells::read`], and when it lies elsewhere than in that folder or below it.
+    pub fn beside(folder: &Path, name: &Path) -> Result<Self, PackingError> {
+        let path = folder.join(name);
+        let is_allowed = ANYWHERE.load(Ordering::Relaxed) || lies_in(folder, &path);
+        if path.exists() && !is_allowed {
+            return Err(PackingError::Elsewhere);
+        }
+        Self::read(&path)
+    }
+
     /// The grains in the file at `path`.
     ///
     /// # Errors
     /// When it cannot be read or is no whole packing.
     pub fn read(path: &Path) -> Result<Self, PackingError> {
-        let bytes = std::fs::read(path)?;
+        let bytes = read_whole(path, LARGEST_FILE)?;
         let (header, contents) = bytes.split_at_checked(HEADER).ok_or(PackingError::Other)?;
         let (identity, checksum) = header.split_at(MAGIC.len() + 4);
         if identity != [&MAGIC[..], &FORMAT.to_le_bytes()[..]].concat() {
@@ -104,7 +168,7 @@ impl StoredCells {
 
 /// Whether a scene can be made of `grains`.
 fn are_sound(grains: &[Rounded]) -> bool {
-    !grains.is_empty() && grains.iter().all(Rounded::is_sound)
+    (1..=MOST_POLYHEDRA).contains(&grains.len()) && grains.iter().all(Rounded::is_sound)
 }
 
 /// The checksum of a file's `contents`, as scenes name it.
@@ -158,6 +222,18 @@ struct Lost {
     reason: PackingError,
 }
 
+/// Whether the file at `path` may be opened for what is being read.
+fn is_within_reach(path: &Path) -> bool {
+    ANYWHERE.load(Ordering::Relaxed)
+        || FOLDERS.with_borrow(|folders| {
+            (folders.as_ref()).is_none_or(|folders| {
+                // What is not there is told as such, where some folder could have held it.
+                let is_missing = !folders.is_empty() && !path.exists();
+                is_missing || folders.iter().any(|folder| lies_in(folder, path))
+            })
+        })
+}
+
 impl TryFrom<Reference> for StoredCells {
     type Error = Lost;
 
@@ -167,15 +243,17 @@ impl TryFrom<Reference> for StoredCells {
             file: std::path::absolute(&reference.file).unwrap_or(reference.file.clone()),
             reason,
         };
-        let reason = match Self::read(&reference.file) {
-            Ok(stored) if stored.reference.checksum == reference.checksum => return Ok(stored),
-            Ok(_) => PackingError::Changed,
-            Err(error) => error,
-        };
         let at_hand = held().get(&reference.checksum).and_then(Weak::upgrade);
-        match at_hand {
-            Some(grains) => Ok(Self { reference, grains }),
-            None => Err(lost(reason)),
+        if let Some(grains) = at_hand {
+            return Ok(Self { reference, grains });
+        }
+        if !is_within_reach(&reference.file) {
+            return Err(lost(PackingError::Elsewhere));
+        }
+        match Self::read(&reference.file) {
+            Ok(stored) if stored.reference.checksum == reference.checksum => Ok(stored),
+            Ok(_) => Err(lost(PackingError::Changed)),
+            Err(error) => Err(lost(error)),
         }
     }
 }

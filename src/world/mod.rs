@@ -15,6 +15,7 @@ mod memory;
 mod mixture;
 mod packing;
 mod polyhedra;
+mod soundness;
 mod voronoi;
 mod wetting;
 
@@ -28,6 +29,7 @@ pub use ledger::Ledger;
 pub use mixture::{label_order, set_share};
 pub use packing::Packing;
 pub use polyhedra::{Feature, FeatureContact, PlacedPolyhedron, Polyhedra};
+pub use soundness::Unsound;
 pub use voronoi::{Boundary, Tessellation};
 pub use wetting::Bridge;
 
@@ -103,7 +105,7 @@ impl Clock {
         let steps = ((time - self.origin_time) / self.time_step - 1e-9)
             .ceil()
             .max(0.0);
-        (self.origin_step + steps as u64).max(self.step)
+        self.origin_step.saturating_add(steps as u64).max(self.step)
     }
 
     /// Changes the length of a step [s] from now on.

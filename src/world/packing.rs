@@ -65,7 +65,7 @@ impl Packing {
         if cells.packing.is_some() {
             return None;
         }
-        let (min, max) = lattice_box(&scene.container)?;
+        let (min, max) = scene.container.cells_box()?;
         let region = Region::of(&scene.container);
         let tessellation = Tessellation::new(min, max, cells.cell, Boundary::Walls, scene.seed);
         let margin = MARGIN * tessellation.largest_distance();
@@ -212,22 +212,6 @@ fn prism(radius: f64, axis: CylinderAxis) -> Vec<HalfSpace> {
             }
         })
         .collect()
-}
-
-/// The box whose lattice the cells of a bed in `container` come from.
-fn lattice_box(container: &SceneContainer) -> Option<(DVec3, DVec3)> {
-    match *container {
-        SceneContainer::Column { radius, height, .. } => Some((
-            DVec3::new(-radius, 0.0, -radius),
-            DVec3::new(radius, height, radius),
-        )),
-        SceneContainer::Drum { radius, width, .. } => {
-            let corner = DVec3::new(radius, radius, 0.5 * width);
-            Some((-corner, corner))
-        }
-        SceneContainer::Box { min, max, .. } => Some((min, max)),
-        SceneContainer::Nothing | SceneContainer::Planes(_) => None,
-    }
 }
 
 /// Leaves the `count` grains whose centroids are lowest, in their order.

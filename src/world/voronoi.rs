@@ -8,6 +8,7 @@
 
 use super::mixture::random;
 use crate::geometry::Solid;
+use crate::scene::lattice_counts;
 use glam::DVec3;
 use meshless_voronoi::{Dimensionality, VoronoiIntegrator};
 use rand::RngExt;
@@ -107,11 +108,4 @@ impl Tessellation {
         });
         solids.collect()
     }
-}
-
-/// Lattice cells along each edge of a box of this `extent` [m] that come nearest to the `size` [m].
-pub fn lattice_counts(extent: DVec3, size: f64) -> [i64; 3] {
-    extent
-        .to_array()
-        .map(|length| ((length / size).round() as i64).max(1))
 }

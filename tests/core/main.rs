@@ -8,6 +8,7 @@
 
 mod architecture;
 mod comparison;
+mod doors;
 #[cfg(feature = "headless")]
 mod headless;
 mod measure;

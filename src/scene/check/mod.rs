@@ -30,7 +30,7 @@ use super::description::{Scene, TimeStep};
 use super::error::Problem;
 use super::grains::SceneGrains;
 use crate::physics::limits;
-use crate::physics::{ContactLaw, Liquid, SmallestGap};
+use crate::physics::{ContactLaw, Liquid};
 use material_values::{check_materials, check_pairs};
 use values::{Checked, vector, within};
 
@@ -116,10 +116,11 @@ fn check_liquid(liquid: &Liquid) -> Checked {
     within(&limits::LIQUID_VOLUME, liquid.volume, || {
         "liquid.volume".to_owned()
     })?;
-    let (SmallestGap::OfRadii(gap) | SmallestGap::OfEffectiveRadius(gap)) = liquid.law.viscous_gap;
-    within(&limits::SMALLEST_GAP, gap, || {
-        "liquid.law.viscous_gap".to_owned()
-    })
+    within(
+        &limits::SMALLEST_GAP,
+        liquid.law.viscous_gap.share(),
+        || "liquid.law.viscous_gap".to_owned(),
+    )
 }
 
 fn check_law(law: ContactLaw) -> Checked {

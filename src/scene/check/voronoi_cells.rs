@@ -3,18 +3,19 @@
 
 use super::clearance::{DEEPEST_ROUNDING, clearance, is_beside_column};
 use super::values::{Checked, fraction, within};
-use crate::physics::limits;
+use crate::physics::limits::{self, MOST_POLYHEDRA};
 use crate::scene::Scene;
 use crate::scene::container::{SceneContainer, volume};
 use crate::scene::error::Problem;
 use crate::scene::grains::SceneCells;
 use crate::scene::stored_cells::StoredCells;
 
-/// Polyhedra a scene may have: up to 20 kB each in memory.
-const MOST_POLYHEDRA: usize = 200_000;
-
 /// Voronoi cells that are made to choose the grains from, in numbers of [`MOST_POLYHEDRA`].
 const CELLS_PER_GRAIN: usize = 2;
+/// Points that are scattered over the box round the container, one in each cell of its lattice.
+const MOST_POINTS: f64 = 2e6;
+/// Volume of the box round a cylinder over the cylinder's, and room for whole numbers of cells.
+const ROUND_BOX: f64 = 1.5;
 
 impl Scene {
     pub(super) fn check_cells(&self, cells: &SceneCells) -> Checked {
@@ -85,8 +86,13 @@ impl Scene {
             cells.cell_count(&self.container),
             cells.grain_count(&self.container),
         );
-        if (1..=MOST_POLYHEDRA).contains(&grains) && all <= CELLS_PER_GRAIN * MOST_POLYHEDRA {
-            return Ok(());
+        // A lattice has one cell along each edge at least: in a thin box far more than its volume
+        // holds, and what is not taken away of them becomes grains.
+        let points = cells.lattice_size(&self.container);
+        let all = all.max((points * cells.bulk_fraction / ROUND_BOX) as usize);
+        let are_few = (1..=MOST_POLYHEDRA).contains(&grains);
+        if are_few && all <= CELLS_PER_GRAIN * MOST_POLYHEDRA {
+            return check_lattice(points);
         }
         Err(Problem::new(
             "grains",
@@ -139,4 +145,18 @@ fn no_rolling(path: String, value: f64) -> Problem {
         value,
         "0, or nothing: polyhedra do not roll as spheres do and have no rolling friction",
     )
+}
+
+/// Refuses a lattice of so many cells that scattering a point in each fills the memory, however
+/// few of them the bed takes.
+fn check_lattice(points: f64) -> Checked {
+    if points <= MOST_POINTS {
+        return Ok(());
+    }
+    Err(Problem::new(
+        "grains",
+        format!("are Voronoi cells of a lattice of {points:.0} cells"),
+        format!("at most {MOST_POINTS:.0} cells in the box round the container"),
+    )
+    .advise("Take larger cells or a smaller container"))
 }

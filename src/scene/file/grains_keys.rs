@@ -176,7 +176,7 @@ impl SpeciesFile {
 impl CellsFile {
     fn into_cells(self, container: &SceneContainer, folder: &Path) -> Result<SceneCells, Problem> {
         if let Some(file) = &self.packing {
-            let packing = StoredCells::read(&folder.join(file)).map_err(|error| {
+            let packing = StoredCells::beside(folder, file).map_err(|error| {
                 Problem::new(
                     "grains.packing",
                     format!("names {}, which {error}", file.display()),
