@@ -11,6 +11,7 @@ mod drum;
 mod faults;
 mod golden;
 mod impact;
+mod liggghts;
 mod pair_forces;
 mod polyhedra;
 mod published;
