@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 /// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds
 /// are then stale.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 const MAGIC: &[u8; 12] = b"grainfallbed";
 /// Largest file that is read [bytes]: the bed of as many grains as a scene may have.
 const LARGEST_FILE: u64 = 1 << 30;
@@ -60,6 +60,7 @@ struct BedContact {
     partner: Partner,
     spring: Vec3,
     stiffness: f32,
+    rolling: Vec3,
     force: Vec3,
 }
 
@@ -247,6 +248,7 @@ impl BedContact {
             partner: contact.partner,
             spring: contact.spring.as_vec3(),
             stiffness: contact.stiffness as f32,
+            rolling: contact.rolling.as_vec3(),
             force: contact.force.as_vec3(),
         }
     }
@@ -257,6 +259,7 @@ impl BedContact {
             partner: self.partner,
             spring: self.spring.as_dvec3(),
             stiffness: self.stiffness.into(),
+            rolling: self.rolling.as_dvec3(),
             force: self.force.as_dvec3(),
             touching: true,
             bridge: None,
@@ -274,6 +277,7 @@ impl BedContact {
             && (self.grain as usize) < grains
             && self.spring.is_finite()
             && self.stiffness.is_finite()
+            && self.rolling.is_finite()
             && self.force.is_finite()
     }
 }

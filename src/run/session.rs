@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 /// What the first line begins with.
 const MARK: &str = "grainfall session";
 /// Raised whenever what follows the second line is laid out otherwise.
-const LAYOUT: &str = "2";
+const LAYOUT: &str = "3";
 
 /// Largest file that is read [bytes]: a day of a drum with all its branches has less.
 const LARGEST_FILE: u64 = 4 << 30;

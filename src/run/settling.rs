@@ -186,6 +186,7 @@ pub fn start(settled: World, built: &World) -> World {
     on_grains.for_each(round);
     for contact in &mut world.contacts {
         round(&mut contact.spring);
+        round(&mut contact.rolling);
         round(&mut contact.force);
         contact.stiffness = f64::from(contact.stiffness as f32);
     }

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Raised whenever the file is laid out otherwise.
-const LAYOUT: u32 = 2;
+const LAYOUT: u32 = 3;
 /// Wall-clock time between two checkpoints.
 const CHECKPOINT_TIME: Duration = Duration::from_secs(20);
 

@@ -6,7 +6,7 @@
 //! dashpot, which is the contact law's.
 
 use super::row::Row;
-use crate::lanes::{Lanes, Quad, Rows, WIDEST, dot, minus, plus, times};
+use crate::lanes::{Lanes, Rows, WIDEST, dot, minus, plus, times};
 
 /// A spring that nothing has pulled, as memory holds it.
 pub const UNLOADED: Row = [0.0; 4];
@@ -22,16 +22,6 @@ pub struct Springs<N: Lanes> {
     pub slides: N::Mask,
     /// Energy that the springs lost [J].
     pub lost: N,
-}
-
-impl<N: Lanes> Springs<N> {
-    /// Puts the springs back into memory.
-    #[inline(always)]
-    pub fn store(&self, springs: &mut [Row]) {
-        for (row, new) in springs.iter_mut().zip(self.rows) {
-            *row = new.row();
-        }
-    }
 }
 
 /// Updates the springs `old` (with the stiffness of the last update) by what has `slipped`, turns

@@ -5,14 +5,11 @@
 //! the solver applied, to rounding. The loop saw velocities half a step ago; they follow from those
 //! of now and the sum of the forces. Until the next step, a parameter that was just changed shows
 //! in the terms but not in the force applied.
-//!
-//! Not here: the rolling torque to the last digit. It depends on the torque of one step before,
-//! which nobody keeps; the one of now stands for it.
 
 use super::lanes::{Lanes, One, Row};
 use super::law::{
     BridgeConstants, FilmConstants, Law, LawUser, NormalContact, PairConstants, Pairing,
-    attraction, contributions, drag, normal_contact, rolling_gain,
+    attraction, contributions, drag, normal_contact,
 };
 use crate::physics::{BridgeLaw, ContactLaw, CoulombBound, Liquid};
 use crate::world::{Contact, Feature, Partner, World};
@@ -122,9 +119,6 @@ struct Meeting {
     overlap: f64,
     approach: f64,
     slip: DVec3,
-    /// Relative spin that rolling friction works against [rad/s], and how much of it a unit of
-    /// torque stops.
-    rolling: (DVec3, f64),
 }
 
 impl Meeting {
@@ -133,7 +127,6 @@ impl Meeting {
         let i = contact.grain as usize;
         let (x, radius) = (grains.position[i], grains.radius[i]);
         let (velocity, spin) = half_a_step_ago(world, i);
-        let (free, compliance) = free_spin(world, i, spin);
         match contact.partner {
             Partner::Grain(j) => {
                 let j = j as usize;
@@ -142,13 +135,11 @@ impl Meeting {
                 let overlap = radius + grains.radius[j] - apart.length();
                 let half = 0.5 * overlap.max(0.0);
                 let (partner_velocity, partner_spin) = half_a_step_ago(world, j);
-                let (partner_free, partner_compliance) = free_spin(world, j, partner_spin);
                 let turning = spin * (radius - half) + partner_spin * (grains.radius[j] - half);
                 Self::new(
                     (normal, x + normal * (radius - half), overlap),
                     velocity - partner_velocity,
                     turning,
-                    (free - partner_free, compliance + partner_compliance),
                 )
             }
             Partner::Wall(w) => {
@@ -161,18 +152,12 @@ impl Meeting {
                     (normal, point, overlap),
                     velocity - wall.motion.velocity_at(point),
                     spin * arm,
-                    (free - wall.motion.spin, compliance),
                 )
             }
         }
     }
 
-    fn new(
-        (normal, point, overlap): (DVec3, DVec3, f64),
-        velocity: DVec3,
-        turning: DVec3,
-        rolling: (DVec3, f64),
-    ) -> Self {
+    fn new((normal, point, overlap): (DVec3, DVec3, f64), velocity: DVec3, turning: DVec3) -> Self {
         let approach = velocity.dot(normal);
         Self {
             normal,
@@ -180,7 +165,6 @@ impl Meeting {
             overlap,
             approach,
             slip: velocity - normal * approach + turning.cross(normal),
-            rolling,
         }
     }
 
@@ -224,29 +208,16 @@ impl Meeting {
             capillary: normal * pull,
             viscous_normal: -normal * resistance,
             viscous_tangential: contact.bridge.as_ref().map_or(DVec3::ZERO, |b| b.drag),
-            rolling: self.rolling_torque(pair.constants.contact[1] * elastic),
+            rolling: contact.rolling,
         }
-    }
-
-    /// Torque of rolling friction of at most `cap` [N m].
-    fn rolling_torque(&self, cap: f64) -> DVec3 {
-        let (spin, compliance) = self.rolling;
-        let (zero, unit) = (one(0.0), one(1.0));
-        let gain = rolling_gain(one(cap), one(compliance), one(spin.length()), zero, unit);
-        -(spin - self.normal * spin.dot(self.normal)) * gain.get()
     }
 }
 
-/// Spin that grain `i` would have after the step without rolling friction, from its spin half a
-/// step ago [rad/s], and how much of it a unit of torque stops [1/(N m s)].
-fn free_spin(world: &World, i: usize, spin: DVec3) -> (DVec3, f64) {
-    let grains = &world.grains;
-    let compliance = world.clock.time_step / grains.inertia[i];
+/// Time step and number of partners over the moment of inertia of grain `i` [1/(N m s)].
+fn compliance(world: &World, i: u32) -> f64 {
+    let (grains, i) = (&world.grains, i as usize);
     let partners = grains.contact_count[i] + grains.open_bridges[i];
-    (
-        spin + grains.torque[i] * compliance,
-        compliance * f64::from(partners.max(1)),
-    )
+    world.clock.time_step / grains.inertia[i] * f64::from(partners.max(1))
 }
 
 fn one(x: f64) -> One {
@@ -372,15 +343,14 @@ impl Film {
         liquid: &Liquid,
         volume: f64,
     ) -> Self {
-        let compliance = |i: u32| free_spin(world, i as usize, DVec3::ZERO).1;
         let partner = match contact.partner {
-            Partner::Grain(j) => compliance(j),
+            Partner::Grain(j) => compliance(world, j),
             Partner::Wall(_) => 0.0,
         };
         let constants = FilmConstants::of(pairing, liquid);
         Self {
             bridge: BridgeConstants::of(liquid, pairing.radii, volume),
-            mobility: (compliance(contact.grain) + partner) * constants.viscous[3],
+            mobility: (compliance(world, contact.grain) + partner) * constants.viscous[3],
             constants,
         }
     }

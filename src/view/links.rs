@@ -447,6 +447,7 @@ mod tests {
             partner: Partner::Grain(1),
             spring: DVec3::ZERO,
             stiffness: 0.0,
+            rolling: DVec3::ZERO,
             force,
             touching: true,
             bridge: None,

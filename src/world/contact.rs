@@ -26,6 +26,8 @@ pub struct Contact {
     pub spring: DVec3,
     /// Stiffness `k_t` with which the spring was last stretched [N/m].
     pub stiffness: f64,
+    /// Torque of rolling friction on the grain at the last force evaluation [N m].
+    pub rolling: DVec3,
     /// Force on the grain at the last force evaluation [N].
     pub force: DVec3,
     /// Whether the two touched then.

@@ -76,6 +76,9 @@ fn hash_contact(contact: &Contact, number: &mut impl FnMut(f64)) {
         Partner::Wall(w) => number(-1.0 - f64::from(w)),
     }
     vectors(number, [contact.spring]);
+    if contact.rolling != DVec3::ZERO {
+        vectors(number, [contact.rolling]);
+    }
     if let Some(bridge) = &contact.bridge {
         numbers(
             number,

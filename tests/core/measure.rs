@@ -160,6 +160,7 @@ fn touch(world: &mut World, grain: u32, partner: Partner, spring: DVec3) {
         partner,
         spring,
         stiffness: 0.0,
+        rolling: DVec3::ZERO,
         force: DVec3::ZERO,
         touching: true,
         bridge: None,

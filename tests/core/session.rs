@@ -141,7 +141,7 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
         bytes.extend_from_slice(whole.strip_prefix(from.as_bytes()).unwrap());
         bytes
     };
-    let other = format!("grainfall session 2 {VERSION}");
+    let other = format!("grainfall session 3 {VERSION}");
     let cases: [(Vec<u8>, [&str; 2]); 8] = [
         (
             whole[..whole.len() - 1].to_vec(),
@@ -155,7 +155,7 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
             ["of another build", "--commands"],
         ),
         (
-            renamed(&other, "grainfall session 2 0.0.7"),
+            renamed(&other, "grainfall session 3 0.0.7"),
             ["saved by Grainfall 0.0.7", "Open it with Grainfall 0.0.7"],
         ),
         (
@@ -234,7 +234,7 @@ fn state_is_checked_by_its_hash() {
     let mut bytes = whole[body..].to_vec();
     bytes[at - body] ^= 1;
     let head = format!(
-        "grainfall session 2 {VERSION} {}\n",
+        "grainfall session 3 {VERSION} {}\n",
         blake3::hash(&bytes).to_hex()
     );
     fs::write(&path, [head.as_bytes(), &bytes].concat()).unwrap();

@@ -515,6 +515,7 @@ fn pair(force: f64) -> World {
         partner: Partner::Grain(1),
         spring: DVec3::ZERO,
         stiffness: 0.0,
+        rolling: DVec3::ZERO,
         force: DVec3::new(-force, 0.0, 0.0),
         touching: true,
         bridge: Some(Box::new(Bridge {

@@ -156,6 +156,7 @@ impl Kernel for Polyhedra {
                 partner: partner(pair, count),
                 spring: DVec3::ZERO,
                 stiffness: 0.0,
+                rolling: DVec3::ZERO,
                 force: vector(force.force),
                 touching: true,
                 bridge: None,

@@ -1,13 +1,13 @@
 //! The pair loop: geometry, contact law, sliding and rolling friction of every listed pair.
 //!
-//! In: bodies, listed pairs with their constants and tangential springs. Out: forces, torques and
-//! exchanged energy per pair, new springs. Pairs are computed in lanes and each writes rows of its
+//! In: bodies, listed pairs with their constants and histories. Out: forces, torques and exchanged
+//! energy per pair, new histories. Pairs are computed in lanes and each writes rows of its
 //! own; nothing is summed here, so the order of work never shows.
 
 use super::super::tangential::update;
 use super::super::walls::WallBody;
 use super::bridges::{BridgeColumns, BridgeEffect, BridgeGroup, Encounter, LiquidForce, Wetting};
-use super::rows::{Body, ContactForce, GROUP, Pair};
+use super::rows::{Body, ContactForce, GROUP, History, Pair};
 use crate::lanes::{
     Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
 };
@@ -255,17 +255,20 @@ fn own_constants<N: Lanes>(
     )
 }
 
-/// Torque of rolling friction on the grains, at most `cap` [N m]: against the relative spin that
-/// they would have without it, but for its part about the normal, and no more than stops that spin
-/// within the step (Eq. 10 of Kasper et al. 2021, see [`rolling_gain`]).
+/// Torque of rolling friction on the grains, at most `cap` [N m]: the one `held` so far, changed
+/// against the relative spin that they would have with it, but for its part about the normal, and
+/// by no more than stops that spin within the step (Eq. 10 of Kasper et al. 2021, see
+/// [`rolling_gain`]).
 #[inline(always)]
 fn roll<N: Lanes>(
     processor: N::Processor,
     normal: [N; 3],
     cap: N,
+    held: [N; 3],
     (spin, compliance): ([N; 3], N),
 ) -> [N; 3] {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+    let spin = minus(spin, times(held, compliance));
     let speed = dot(spin, spin).sqrt();
     let gain = rolling_gain(cap, compliance, speed, zero, one);
     let without_twist = minus(spin, times(normal, dot(spin, normal)));
@@ -385,7 +388,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     all: &Surroundings<'_, L>,
     partners: P,
     constants: &Constants<N>,
-    springs: &mut [Row],
+    histories: &mut [History],
     contacts: &mut [ContactForce],
     liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
 ) -> u32 {
@@ -401,14 +404,13 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let stiffness = N::choose(touching, law.tangential_stiffness, zero);
     let updated = update(
         processor,
-        side_by_side::<N, _>(|k| &springs[k]),
+        side_by_side::<N, _>(|k| &histories[k].spring),
         times(slip, dt),
         normal,
         touching,
         stiffness,
         friction * bounding,
     );
-    updated.store(springs);
     let unslid = N::choose(updated.slides, zero, law.tangential_damping);
     let damping = N::choose(touching, unslid, zero);
     let mut tangential = minus(times(updated.spring, -stiffness), times(slip, damping));
@@ -423,7 +425,9 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let force = minus(tangential, times(normal, repulsion));
     let moment = cross(normal, tangential);
 
-    let rolling = roll(processor, normal, rolling_arm * elastic, rolling_spin);
+    let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &histories[k].rolling));
+    let cap = rolling_arm * elastic;
+    let rolling = roll(processor, normal, cap, [x, y, z], rolling_spin);
     let [spin, partner_spin] = met.spins;
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = if P::WALL {
@@ -435,6 +439,11 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
     let companions = [arm, partner_arm, count];
     write(contacts, [force, moment, rolling], companions, exchanged);
+    let springs = updated.rows.iter().zip(contacts.iter());
+    for (history, (spring, contact)) in histories.iter_mut().zip(springs) {
+        history.spring = spring.row();
+        history.rolling = contact.rolling;
+    }
     ruptures
 }
 
@@ -464,8 +473,8 @@ pub struct PairRows<'a> {
     pub pairs: &'a [Pair],
     /// The kind of all of them, if it is one.
     pub kind: Option<u32>,
-    /// Their tangential springs [m], and the stiffness of each when it was last updated [N/m].
-    pub springs: &'a mut [Row],
+    /// What they remember.
+    pub histories: &'a mut [History],
     /// Their contact forces.
     pub forces: &'a mut [ContactForce],
     /// Their bridges, by groups; empty where nothing is wet.
@@ -551,7 +560,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]),
             second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner as usize]),
         };
-        let springs = &mut rows.springs[group.clone()];
+        let histories = &mut rows.histories[group.clone()];
         let forces = &mut rows.forces[group.clone()];
         let liquid = match all.wetting {
             Some(wetting) if WET => Some((
@@ -574,7 +583,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             None => own_constants::<N>(processor, all.constants, pairs),
         };
         ruptures += u64::from(interact(
-            processor, all, partners, &constants, springs, forces, liquid,
+            processor, all, partners, &constants, histories, forces, liquid,
         ));
     }
     ruptures
@@ -588,15 +597,15 @@ fn at_walls<N: Lanes, L: Law>(
     rows: PairRows<'_>,
 ) {
     let outputs = rows
-        .springs
+        .histories
         .chunks_exact_mut(N::COUNT)
         .zip(rows.forces.chunks_exact_mut(N::COUNT));
-    for (pairs, (springs, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
+    for (pairs, (histories, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
         let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]);
         let partners =
             GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
         let own = own_constants::<N>(processor, all.constants, pairs);
-        interact(processor, all, partners, &own, springs, forces, None);
+        interact(processor, all, partners, &own, histories, forces, None);
     }
 }
 

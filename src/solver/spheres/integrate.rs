@@ -193,7 +193,7 @@ fn drift<Q: Quad>(
     let partners = total.partners();
     let partners = if partners > 1.0 { partners } else { 1.0 };
     let free = Q::load(processor, &body.spin)
-        + total.torque * Q::repeat(processor, dt * body.inverse_inertia());
+        + (total.torque + total.rolling) * Q::repeat(processor, dt * body.inverse_inertia());
     let free = free.row();
     body.free_spin = [free[0], free[1], free[2], load.compliance * partners];
     body.position = position.row();

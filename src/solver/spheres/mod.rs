@@ -30,7 +30,7 @@ mod slots;
 mod working_copy;
 
 use super::FaultKind;
-use super::row::{Row, length_squared, row, vector};
+use super::row::{length_squared, row, vector};
 use super::step::{Kernel, Tally};
 use super::walls::Walls;
 use super::workers::Batch;
@@ -41,7 +41,7 @@ use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
 use integrate::{Load, Motion, Start};
 use neighbours::{Neighbours, PairList, grain_key, wall_key};
-use rows::{Body, Pair};
+use rows::{Body, History, Pair};
 use share::SphereShare;
 pub use working_copy::Spheres;
 
@@ -73,7 +73,7 @@ impl Kernel for Spheres {
         self.load_grains(world);
         self.load_liquid(world);
         self.fit_lists(world);
-        self.load_springs(&world.contacts);
+        self.load_histories(&world.contacts);
     }
 
     fn start(&mut self, processor: Processor) -> bool {
@@ -228,16 +228,16 @@ impl Spheres {
             let bridge = bridge.map_or(BridgeRow::default(), |bridge| {
                 BridgeRow::of(bridge, &mut kinds, radii)
             });
-            rows.push((self.pair(contact), spring(contact), bridge));
+            rows.push((self.pair(contact), history(contact), bridge));
         }
         rows.sort_unstable_by_key(|(pair, ..)| grain_key(pair));
         let mut list = PairList {
             bridges: Bridges::none(rows.len()),
             ..PairList::default()
         };
-        for (k, (pair, spring, bridge)) in rows.into_iter().enumerate() {
+        for (k, (pair, history, bridge)) in rows.into_iter().enumerate() {
             list.pairs.push(pair);
-            list.springs.push(spring);
+            list.histories.push(history);
             list.bridges.set(k, &bridge);
         }
         self.neighbours.adopt(list);
@@ -265,8 +265,8 @@ impl Spheres {
         self.motion.slack_squared = slack * slack;
     }
 
-    /// Gives the listed pairs the tangential springs of the world's contacts; all others have none.
-    fn load_springs(&mut self, contacts: &[Contact]) {
+    /// Gives the listed pairs the histories of the world's contacts; all others have none.
+    fn load_histories(&mut self, contacts: &[Contact]) {
         let rows = contacts.iter().map(|contact| (self.pair(contact), contact));
         let (mut of_grains, mut of_walls): (Vec<_>, Vec<_>) =
             rows.partition(|(_, contact)| matches!(contact.partner, Partner::Grain(_)));
@@ -276,9 +276,9 @@ impl Spheres {
             (walls, &mut of_walls, wall_key),
         ] {
             rows.sort_unstable_by_key(|(pair, _)| key(pair));
-            let rows = rows.iter().map(|(pair, contact)| (*pair, spring(contact)));
-            let (pairs, springs): (Vec<_>, Vec<_>) = rows.unzip();
-            list.load_springs(&pairs, &springs, key);
+            let rows = rows.iter().map(|(pair, contact)| (*pair, history(contact)));
+            let (pairs, histories): (Vec<_>, Vec<_>) = rows.unzip();
+            list.load_histories(&pairs, &histories, key);
         }
     }
 
@@ -340,9 +340,12 @@ impl Spheres {
     }
 }
 
-/// What the spring of a contact holds, as a row.
-fn spring(contact: &Contact) -> Row {
-    row(contact.spring, contact.stiffness)
+/// What a contact remembers, in rows.
+fn history(contact: &Contact) -> History {
+    History {
+        spring: row(contact.spring, contact.stiffness),
+        rolling: row(contact.rolling, f64::from(u8::from(contact.touching))),
+    }
 }
 
 /// Largest gap that a bridge of `world` can hold [m], for the largest grains and the thickest

@@ -9,7 +9,7 @@
 //! higher of these, but the first grain of a pair is the one of lower index, and forces are summed
 //! in the order of indices: so the sums do not depend on the slots. A listed pair that does not
 //! touch adds exact zeros, so they do not depend on the skins. A pair with a bridge is on the inner
-//! list however wide its gap. Tangential springs and bridges follow their pair from list to list.
+//! list however wide its gap. Histories and bridges follow their pair from list to list.
 //! The last of the bodies is a padding body, which fills groups of pairs up; nothing it does
 //! counts.
 
@@ -17,7 +17,7 @@ use super::super::grid::for_each_near;
 use super::super::row::{Row, length_squared, sub, vector};
 use super::super::walls::Walls;
 use super::bridges::{BridgeEffect, Bridges};
-use super::rows::{Body, ContactForce, GROUP, Pair};
+use super::rows::{Body, ContactForce, GROUP, History, Pair};
 use crate::world::{Contact, Partner, Surface};
 
 /// Pairs with what they remember, in whole groups: the last ones may be padding.
@@ -27,8 +27,8 @@ pub struct PairList {
     pub pairs: Vec<Pair>,
     /// The kind of all of them, if it is one.
     pub kind: Option<u32>,
-    /// Tangential spring of each [m].
-    pub springs: Vec<Row>,
+    /// Tangential spring and rolling friction of each.
+    pub histories: Vec<History>,
     /// Bridge of each; empty where nothing is wet.
     pub bridges: Bridges,
 }
@@ -237,25 +237,26 @@ impl Neighbours {
         let (index, force) = (part.pair(), &self.forces[part.pair()]);
         let touching = force.touches();
         let bridge = self.grains.bridges.get(index).bridge();
-        let (pair, partner, spring) = match index.checked_sub(self.grains.pairs.len()) {
+        let (pair, partner, history) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
                 (
                     pair,
                     Partner::Grain(pair.partner),
-                    self.grains.springs[index],
+                    self.grains.histories[index],
                 )
             }
             Some(k) => {
                 let pair = self.walls.pairs[k];
-                (pair, Partner::Wall(pair.partner), self.walls.springs[k])
+                (pair, Partner::Wall(pair.partner), self.walls.histories[k])
             }
         };
         ((touching || bridge.is_some()) && part.side() == 0).then(|| Contact {
             grain: pair.grain,
             partner,
-            spring: vector(spring),
-            stiffness: spring[3],
+            spring: vector(history.spring),
+            stiffness: history.spring[3],
+            rolling: vector(history.rolling),
             force: vector(force.force),
             touching,
             bridge,
@@ -271,7 +272,7 @@ impl Neighbours {
         }
     }
 
-    /// Takes over pairs with their springs and bridges, sorted by their slots, whatever was listed
+    /// Takes over pairs with their histories and bridges, sorted by their slots, whatever was listed
     /// before. They are no whole groups: a refresh must follow.
     pub fn adopt(&mut self, pairs: PairList) {
         self.grains = pairs;
@@ -294,7 +295,7 @@ impl Neighbours {
             .clamp(INNER_SKIN.start() * radius, INNER_SKIN.end() * radius);
     }
 
-    /// Brings both lists up to date; springs follow their pairs. `indices` are those of the grains
+    /// Brings both lists up to date; histories follow their pairs. `indices` are those of the grains
     /// in each slot; `kind(grain, partner)` names the constants of a pair of indices.
     pub fn refresh(
         &mut self,
@@ -447,29 +448,29 @@ fn with_radius(body: &Body) -> Row {
 }
 
 impl PairList {
-    /// Takes over `pairs`, sorted by `key`; those that were listed before keep their springs.
+    /// Takes over `pairs`, sorted by `key`; those that were listed before keep their histories.
     fn replace(&mut self, pairs: Vec<Pair>, key: Key, wet: bool) {
-        let mut springs = vec![[0.0; 4]; pairs.len()];
+        let mut histories = vec![History::default(); pairs.len()];
         let mut bridges = Bridges::none(if wet { pairs.len() } else { 0 });
         for (old, new) in in_both(&self.pairs, &pairs, key) {
-            springs[new] = self.springs[old];
+            histories[new] = self.histories[old];
             if wet {
                 bridges.set(new, &self.bridges.get(old));
             }
         }
-        self.springs = springs;
+        self.histories = histories;
         self.bridges = bridges;
         let kind = pairs.first().map(|pair| pair.kind);
         self.kind = kind.filter(|kind| pairs.iter().all(|pair| pair.kind == *kind));
         self.pairs = pairs;
     }
 
-    /// Sets the springs of the listed pairs from `known` pairs with their springs, sorted by `key`;
-    /// others are unloaded.
-    pub fn load_springs(&mut self, known: &[Pair], springs: &[Row], key: Key) {
-        self.springs.fill([0.0; 4]);
+    /// Sets the histories of the listed pairs from `known` pairs with their histories, sorted by
+    /// `key`; others have none.
+    pub fn load_histories(&mut self, known: &[Pair], histories: &[History], key: Key) {
+        self.histories.fill(History::default());
         for (old, new) in in_both(known, &self.pairs, key) {
-            self.springs[new] = springs[old];
+            self.histories[new] = histories[old];
         }
     }
 

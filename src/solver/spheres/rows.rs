@@ -18,8 +18,8 @@ pub struct Body {
     pub velocity: Row,
     /// Spin half a step ago [rad/s]; radius [m].
     pub spin: Row,
-    /// Spin after the step if nothing resisted rolling [rad/s]; time step and contact count over
-    /// inertia [1/(N m s)].
+    /// Spin after the step if all torques stayed as they were [rad/s]; time step and contact count
+    /// over inertia [1/(N m s)].
     pub free_spin: Row,
 }
 
@@ -52,6 +52,16 @@ impl Body {
     pub fn radius(&self) -> f64 {
         self.spin[3]
     }
+}
+
+/// What a pair remembers from one step to the next; all zero where grains do not touch.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct History {
+    /// Tangential spring [m]; its stiffness when it was last updated [N/m].
+    pub spring: Row,
+    /// Torque of rolling friction on the grain at the last step [N m]; 1 where the two touched.
+    pub rolling: Row,
 }
 
 /// The contact force of a pair and its torques, in rows.

@@ -16,7 +16,7 @@ use super::bridges::{BridgeColumns, BridgeEffect, Wetting};
 use super::contacts::{Forces, PairRows, Surroundings};
 use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion};
 use super::neighbours::{Neighbours, Parts};
-use super::rows::{Body, ContactForce, GROUP, Pair};
+use super::rows::{Body, ContactForce, GROUP, History, Pair};
 use crate::lanes::Processor;
 use crate::physics::law::{FilmConstants, Law, LawUser, PairConstants};
 use crate::physics::{ContactLaw, Liquid};
@@ -32,12 +32,12 @@ pub struct SphereShare<'a> {
     /// Read by all in the motion phase, as are the bridges' effects.
     forces: Column<'a, ContactForce, ForcePhase>,
     bridge_effects: Column<'a, BridgeEffect, ForcePhase>,
-    /// What only this worker touches: loads and bridge loads of its grains, springs and bridges of
-    /// its pairs.
+    /// What only this worker touches: loads and bridge loads of its grains, histories and bridges
+    /// of its pairs.
     loads: &'a mut [Load],
     bridge_loads: &'a mut [BridgeLoad],
-    grain_springs: &'a mut [Row],
-    wall_springs: Vec<&'a mut [Row]>,
+    grain_histories: &'a mut [History],
+    wall_histories: Vec<&'a mut [History]>,
     bridges: &'a mut [BridgeColumns],
 }
 
@@ -107,8 +107,8 @@ impl<'a> SphereShare<'a> {
         let mut bridge_effects = batch.lend_ranges(bridge_effects, own_bridges());
         let mut loads = split_once(&mut spheres.loads, own_grains());
         let mut bridge_loads = split_once(&mut spheres.bridge_loads, own_films());
-        let mut grain_springs = split_once(&mut grains.springs, own_pairs());
-        let mut wall_springs = split(&mut walls.springs, own_walls).into_iter();
+        let mut grain_histories = split_once(&mut grains.histories, own_pairs());
+        let mut wall_histories = split(&mut walls.histories, own_walls).into_iter();
         let mut bridges = split_once(&mut grains.bridges.groups, own_groups());
         let share = |own: &WorkerRanges| {
             Some(Self {
@@ -120,8 +120,8 @@ impl<'a> SphereShare<'a> {
                 bridge_effects: bridge_effects.next()?,
                 loads: loads.next()?,
                 bridge_loads: bridge_loads.next()?,
-                grain_springs: grain_springs.next()?,
-                wall_springs: wall_springs.next()?,
+                grain_histories: grain_histories.next()?,
+                wall_histories: wall_histories.next()?,
                 bridges: bridges.next()?,
             })
         };
@@ -141,16 +141,16 @@ impl<'a> SphereShare<'a> {
         let of_grains = PairRows {
             pairs: &common.grain_pairs[self.ranges.pairs.clone()],
             kind: common.grain_kind,
-            springs: &mut *self.grain_springs,
+            histories: &mut *self.grain_histories,
             forces: forces.next().unwrap_or_default(),
             bridges: &mut *self.bridges,
             bridge_effects: self.bridge_effects.write_first(phase),
         };
-        let rows = self.ranges.at_walls.iter().zip(&mut self.wall_springs);
-        let of_walls = rows.zip(forces).map(|((own, springs), forces)| PairRows {
+        let rows = self.ranges.at_walls.iter().zip(&mut self.wall_histories);
+        let of_walls = rows.zip(forces).map(|((own, histories), forces)| PairRows {
             pairs: &common.wall_pairs[own.clone()],
             kind: None,
-            springs,
+            histories,
             forces,
             // Walls hold no bridges.
             bridges: &mut [],

@@ -196,8 +196,8 @@ fn run_has_the_bits_it_always_had() {
     assert_eq!(
         found,
         [
-            "9513703dbe57a75ac64160be6ea6b9f7",
-            "0d9a834a1cd658dc2b0faa4833811e2a"
+            "3ce2052f235ddd5e1be1a6c87a1902a0",
+            "c8e6f782a5f37d022203c0339374a16d"
         ]
     );
 }

@@ -147,6 +147,77 @@ fn grain_stays_on_a_slope_below_its_rolling_friction() {
     }
 }
 
+/// Radii of a grain in a tight pit and of one on top of it [m].
+const PIT: f64 = 3e-3;
+const TOP: f64 = 2e-3;
+/// Rolling friction of both.
+const ROLLING: f64 = 0.1;
+
+/// A grain that lies on another one, `slope` [rad] beside its top. Four walls hold the lower one:
+/// with six contacts it yields to no torque, as a grain in a bed does.
+fn on_another_grain(slope: f64) -> World {
+    let (sine, cosine) = slope.sin_cos();
+    let apart = PIT + TOP - 1e-6;
+    let side = PIT - 2e-5;
+    world(
+        &format!(
+            r#"(
+    title: "A grain on a grain",
+    materials: {{"m": (friction: 0.8, rolling_friction: {ROLLING})}},
+    container: Planes([
+        (point: (0, 0, 0), normal: (0, 1, 0), material: "m"),
+        (point: (-{side}, 0, 0), normal: (1, 0, 0), material: "m"),
+        (point: ({side}, 0, 0), normal: (-1, 0, 0), material: "m"),
+        (point: (0, 0, -{side}), normal: (0, 0, 1), material: "m"),
+        (point: (0, 0, {side}), normal: (0, 0, -1), material: "m"),
+    ]),
+    grains: List([
+        (position: (0, {PIT}, 0), radius: {PIT}, material: "m"),
+        (position: ({}, {}, 0), radius: {TOP}, material: "m"),
+    ]),
+)"#,
+            apart * sine,
+            PIT + apart * cosine,
+        ),
+        STEP,
+    )
+}
+
+#[test]
+fn grain_stays_on_another_below_the_rolling_friction_and_its_torque_is_what_holds_it() {
+    // The torque about the contact is `m g r sin φ`, the bound `μ_R m g cos φ r*` with r* = 0.6 r.
+    let bound = f64::atan(ROLLING * PIT / (PIT + TOP));
+    for share in [0.3, 0.6, 0.9] {
+        let mut world = on_another_grain(share * bound);
+        run(&mut world, 0.3);
+        let begin = world.grains.position[1].x;
+        run(&mut world, 1.0);
+        let grains = &world.grains;
+        let crept = (grains.position[1].x - begin).abs();
+        assert_below("creep in 1 s, in radii", crept / TOP, 1e-9);
+        assert_below("surface speed", grains.spin[1].length() * TOP, 1e-12);
+        let contact = world
+            .contacts
+            .iter()
+            .find(|c| c.partner == Partner::Grain(1));
+        let held = contact.expect("they touch").rolling.z.abs();
+        let slope = (grains.position[1] - grains.position[0]).normalize().x;
+        // The arm is short by half the overlap.
+        let torque = grains.mass[1] * G * slope * TOP;
+        assert_relative("torque that holds it", held, torque, 5e-3);
+    }
+}
+
+#[test]
+fn grain_rolls_off_another_above_the_rolling_friction() {
+    let bound = f64::atan(ROLLING * PIT / (PIT + TOP));
+    let mut world = on_another_grain(1.3 * bound);
+    let begin = world.grains.position[1].x;
+    run(&mut world, 0.3);
+    let way = world.grains.position[1].x - begin;
+    assert!(way > 0.1 * TOP, "it rolls: {way:e} m");
+}
+
 #[test]
 fn grain_rolls_down_a_slope_above_its_rolling_friction() {
     for share in [1.1, 2.0, 10.0] {
