@@ -116,6 +116,7 @@ fn column() -> World {
         angular_momentum: vec![DVec3::ZERO; POLYHEDRA],
         inertia: vec![DVec3::ONE; POLYHEDRA],
         features: Vec::new(),
+        ..Polyhedra::default()
     }));
     world
 }

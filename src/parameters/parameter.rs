@@ -162,6 +162,8 @@ parameters! {
     NormalStiffness => material_properties::NORMAL_STIFFNESS,
     /// How contacts of two polyhedra in several places count.
     Features => material_properties::FEATURES,
+    /// How the equations of motion of polyhedra are integrated.
+    Integrator => run::INTEGRATOR,
     /// Time step [s].
     TimeStep => run::TIME_STEP,
     /// Seed of everything random.

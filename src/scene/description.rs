@@ -4,7 +4,7 @@ use super::container::SceneContainer;
 use super::grains::SceneGrains;
 use super::materials::{PairOverride, SceneMaterial};
 use super::stored_cells::StoredCells;
-use crate::physics::{ContactLaw, Liquid};
+use crate::physics::{ContactLaw, Integrator, Liquid};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +31,9 @@ pub struct Scene {
     pub gravity: DVec3,
     /// Which contact law acts.
     pub law: ContactLaw,
+    /// How the equations of motion are integrated; a record says nothing of the explicit one.
+    #[serde(default, skip_serializing_if = "Integrator::is_explicit")]
+    pub integrator: Integrator,
     /// How the time step is chosen.
     pub time_step: TimeStep,
     /// Simulated time of a headless run [s].

@@ -237,6 +237,7 @@ fn meaning(key: &str) -> &'static str {
         "between" => "two materials, `(\"glass\", \"drum\")`",
         "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
         "law" => ContactLaw::FORMS,
+        "integrator" => "`Explicit` or `Imex`",
         "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
         "duration" | "output_interval" => "a time in s",
         _ => "",

@@ -92,6 +92,19 @@ pub trait Share: Send {
         phase: &InPhase<'_, ForcePhase>,
     ) -> Tally;
 
+    /// How often the dashpots of all pairs are solved after the forces are known; none where they
+    /// are forces like any other.
+    fn sweeps(&self) -> usize {
+        0
+    }
+
+    /// Makes known how the worker's grains move after the forces and, from the second sweep on, the
+    /// dashpots so far.
+    fn respond(&mut self, _sweep: usize, _phase: &InPhase<'_, MotionPhase>) {}
+
+    /// Solves the dashpots of the worker's pairs.
+    fn resist(&mut self, _processor: Processor, _sweep: usize, _phase: &InPhase<'_, ForcePhase>) {}
+
     /// Sums the forces on the worker's grains and moves them; at the `last` step of a call they
     /// stay where they are and their velocities become those of that time.
     fn move_grains(
@@ -280,6 +293,12 @@ impl Course {
             let begin = timed.then(Instant::now);
 
             let tally = share.compute_forces(self.processor, &walls, &forces);
+            for sweep in 0..share.sweeps() {
+                let responding = forces.meet();
+                share.respond(sweep, &responding);
+                forces = responding.meet();
+                share.resist(self.processor, sweep, &forces);
+            }
             let motion: InPhase<'a, MotionPhase> = forces.meet();
             let middle = begin.map(|_| Instant::now());
 

@@ -11,7 +11,7 @@
 pub use crate::physics::law::StepLimit as Limit;
 
 use crate::physics::law::{Circumstances, SmallestGrain, lubrication_limit};
-use crate::physics::{ContactLaw, Liquid, MaterialId, Materials};
+use crate::physics::{ContactLaw, Integrator, Liquid, MaterialId, Materials};
 use crate::scene::{Scene, SceneGrains, TimeStep};
 use crate::world::{self, World};
 
@@ -73,7 +73,7 @@ pub fn advise(scene: &Scene) -> TimeStepAdvice {
     let grains = extremes.grains(&materials, |material| {
         scene.materials[usize::from(material.0)].restitution
     });
-    let at = extremes.circumstances(scene.is_polyhedral());
+    let at = extremes.circumstances(scene.is_polyhedral(), scene.integrator);
     let limits = limits(&grains, scene.law, scene.liquid.as_ref(), &at);
     match scene.time_step {
         TimeStep::Given(given) => TimeStepAdvice::of(given, limits),
@@ -104,15 +104,16 @@ impl Extremes {
         let grains = self.grains(materials, |material| {
             lowest_restitution(materials, material)
         });
-        let at = self.circumstances(world.polyhedra.is_some());
+        let at = self.circumstances(world.polyhedra.is_some(), world.integrator());
         let limits = limits(&grains, world.law, world.wetting(), &at);
         TimeStepAdvice::of(world.clock.time_step, limits)
     }
 
-    fn circumstances(&self, are_polyhedra: bool) -> Circumstances {
+    fn circumstances(&self, are_polyhedra: bool, integrator: Integrator) -> Circumstances {
         Circumstances {
             impact_speed: self.impact_speed,
             are_polyhedra,
+            integrator,
         }
     }
 

@@ -61,7 +61,12 @@ pub fn build_packed(scene: &Scene, time_step: f64, cells: Vec<Rounded>) -> World
         liquid: scene.liquid,
         law: scene.law,
         contacts: Vec::new(),
-        polyhedra: polyhedra.map(Box::new),
+        polyhedra: polyhedra.map(|polyhedra| {
+            Box::new(Polyhedra {
+                integrator: scene.integrator,
+                ..polyhedra
+            })
+        }),
         ledger: Ledger::default(),
     };
     world.spread_liquid();

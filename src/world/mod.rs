@@ -33,7 +33,7 @@ pub use soundness::Unsound;
 pub use voronoi::{Boundary, Tessellation};
 pub use wetting::Bridge;
 
-use crate::physics::{ContactLaw, Liquid, Materials};
+use crate::physics::{ContactLaw, Integrator, Liquid, Materials};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -120,6 +120,11 @@ impl World {
     /// Simulated time [s].
     pub fn time(&self) -> f64 {
         self.clock.time()
+    }
+
+    /// How the equations of motion are integrated.
+    pub fn integrator(&self) -> Integrator {
+        (self.polyhedra.as_ref()).map_or(Integrator::Explicit, |polyhedra| polyhedra.integrator)
     }
 
     /// Potential energy of the grains in gravity, `−Σ m g·x` [J].

@@ -1,6 +1,7 @@
 //! What grains that are no spheres need beside the columns that all grains have.
 
 use super::{Grains, Partner, Polyhedron, SpeciesId};
+use crate::physics::Integrator;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,6 +27,8 @@ pub struct Polyhedra {
     pub inertia: Vec<DVec3>,
     /// Every pair of features in contact, with its history, sorted by grain, partner and feature.
     pub features: Vec<FeatureContact>,
+    /// How their equations of motion are integrated.
+    pub integrator: Integrator,
 }
 
 /// Two features of two bodies in contact: one of the places where they touch.

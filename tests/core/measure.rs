@@ -181,6 +181,7 @@ fn two_rounded_bodies() -> World {
         angular_momentum: vec![DVec3::ZERO; 2],
         inertia: vec![DVec3::ONE; 2],
         features: Vec::new(),
+        ..Polyhedra::default()
     }));
     world
 }

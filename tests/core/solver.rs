@@ -10,6 +10,7 @@ mod determinism;
 mod drum;
 mod faults;
 mod golden;
+mod imex;
 mod impact;
 mod liggghts;
 mod pair_forces;

@@ -48,6 +48,7 @@ fn cube_and_sphere() -> World {
         angular_momentum: vec![DVec3::ZERO; 2],
         inertia: vec![DVec3::ONE; 2],
         features: Vec::new(),
+        ..Polyhedra::default()
     }));
     world
 }

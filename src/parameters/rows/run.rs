@@ -3,7 +3,7 @@
 use crate::parameters::Value;
 use crate::parameters::parameter_row::{InScene, InWorld, Kind, PanelSection, ParameterRow};
 use crate::parameters::value::Choice;
-use crate::physics::{limits, units};
+use crate::physics::{Integrator, limits, units};
 use crate::scene::TimeStep;
 use crate::solver::advise;
 
@@ -57,6 +57,45 @@ pub static TIME_STEP: ParameterRow = ParameterRow {
     in_world: Some(InWorld {
         read: |world, _| Some(world.clock.time_step.into()),
         write: |world, _, _, value| world.clock.set_time_step(value.number()),
+    }),
+    ..super::AT_START
+};
+
+static INTEGRATORS: [Choice; 2] = [
+    Choice {
+        key: "explicit",
+        name: "explicit",
+        number: 0.0,
+    },
+    Choice {
+        key: "imex",
+        name: "IMEX, dashpots implicit",
+        number: 1.0,
+    },
+];
+
+pub static INTEGRATOR: ParameterRow = ParameterRow {
+    key: "integrator",
+    name: |_| "integrator",
+    kind: Kind::Choice(&INTEGRATORS),
+    expected: "`explicit` or `imex`, in a scene of polyhedra",
+    description: "How polyhedra are moved: with IMEX, their dashpots do not limit the time step, which may be several times as \
+                  long.",
+    in_scene: Some(InScene {
+        read: |scene, _| {
+            let integrators = scene.is_polyhedral().then_some(&INTEGRATORS)?;
+            integrators
+                .get(scene.integrator as usize)
+                .map(Value::Choice)
+        },
+        write: |scene, _, value| {
+            scene.integrator = match value {
+                Value::Choice(choice) if choice.key == "explicit" => Integrator::Explicit,
+                Value::Choice(choice) if choice.key == "imex" => Integrator::Imex,
+                _ => return None,
+            };
+            scene.is_polyhedral().then_some(())
+        },
     }),
     ..super::AT_START
 };

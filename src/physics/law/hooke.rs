@@ -11,7 +11,7 @@ use super::{
     Pairing, SmallestGrain, StepLimit, mistaken_spring, natural_log,
 };
 use crate::lanes::{Lanes, Row};
-use crate::physics::Materials;
+use crate::physics::{Integrator, Materials};
 use std::f64::consts::PI;
 
 /// The law of Eqs. 3.3–3.5, its numbers as [`super::ContactLaw::Hooke`] states them.
@@ -62,6 +62,13 @@ impl LawFacts for Hooke {
 
     fn step_limits(&self, grain: &SmallestGrain, at: &Circumstances) -> Vec<StepLimit> {
         let touching = at.are_polyhedra.then_some(self.features);
+        if let (Some(rule), Integrator::Imex) = (touching, at.integrator) {
+            let stiffness = self.normal_stiffness.max(self.tangential_stiffness);
+            return vec![
+                self.stability_limit(grain, rule),
+                impact_limit(grain, stiffness),
+            ];
+        }
         let stiffness = self.normal_stiffness.max(self.tangential_stiffness);
         let dashpots = touching.map(|rule| dashpot_limit(grain, self.normal_stiffness, rule));
         std::iter::once(spring_limit(grain, stiffness, touching))
@@ -93,6 +100,52 @@ impl LawFacts for Hooke {
     }
 }
 
+impl Hooke {
+    /// Up to which step velocity Verlet is stable on the springs of the smallest grain, `2/Ω`: `M`
+    /// contacts in all directions pull it back with `M (K_n + 2 K_t)/3` along any of them, and
+    /// twice as hard where its neighbours give way.
+    fn stability_limit(&self, grain: &SmallestGrain, rule: FeatureRule) -> StepLimit {
+        let contacts = contacts_of_grain(rule);
+        let along = (self.normal_stiffness + 2.0 * self.tangential_stiffness) / 3.0;
+        let square = 2.0 * contacts * along / grain.mass();
+        StepLimit {
+            name: "springs of a polyhedron",
+            time_step: 2.0 / square.sqrt(),
+            reason: format!(
+                "2/Ω = 2/√(2 · {contacts} · {along:.3e} N/m / {:.3e} kg), the smallest grain of {} on the springs of \
+                 {contacts} contacts with neighbours that give way",
+                grain.mass(),
+                grain.material.name
+            ),
+        }
+    }
+}
+
+/// What an impact on one spring must last at least, in steps: half a period of two equal grains.
+/// With so many, restitution is right to three per cent, and nothing gets so deep that it comes
+/// through.
+const STEPS_PER_IMPACT: f64 = 9.0;
+
+fn impact_limit(grain: &SmallestGrain, stiffness: f64) -> StepLimit {
+    let time = PI * (0.5 * grain.mass() / stiffness).sqrt();
+    StepLimit {
+        name: "linear contact",
+        time_step: time / STEPS_PER_IMPACT,
+        reason: format!(
+            "1/{STEPS_PER_IMPACT} of the {time:.3e} s that two grains of {} touch on one spring of {stiffness:.3e} N/m",
+            grain.material.name
+        ),
+    }
+}
+
+/// Contacts that a polyhedron in a packed bed has at once, as its stiffness counts them.
+fn contacts_of_grain(rule: FeatureRule) -> f64 {
+    match rule {
+        FeatureRule::Full => FEATURES_OF_GRAIN,
+        FeatureRule::Shared => NEIGHBOURS_OF_GRAIN,
+    }
+}
+
 /// Half a period of two equal grains on a spring, `π √(m*/K)`; on several, where polyhedra touch in
 /// several places.
 fn spring_limit(grain: &SmallestGrain, stiffness: f64, touching: Option<FeatureRule>) -> StepLimit {
@@ -114,10 +167,7 @@ fn spring_limit(grain: &SmallestGrain, stiffness: f64, touching: Option<FeatureR
 /// `1.6 m/(M c)` with the dashpot `c = 2 √(ln² e K_n m/(π² + ln² e))` of a grain against a heavy
 /// one: up to that step the dashpots of `M` contacts take no more than all of its speed.
 fn dashpot_limit(grain: &SmallestGrain, normal_stiffness: f64, rule: FeatureRule) -> StepLimit {
-    let contacts = match rule {
-        FeatureRule::Full => FEATURES_OF_GRAIN,
-        FeatureRule::Shared => NEIGHBOURS_OF_GRAIN,
-    };
+    let contacts = contacts_of_grain(rule);
     let log = natural_log(grain.restitution);
     let log_squared = log * log;
     let damped = log_squared / (PI * PI + log_squared);

@@ -5,7 +5,7 @@
 //! solver's.
 
 use crate::geometry::spheres_volume;
-use crate::physics::Material;
+use crate::physics::{Integrator, Material};
 
 /// One limit on the time step.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -43,4 +43,6 @@ pub struct Circumstances {
     pub impact_speed: f64,
     /// Whether the grains are polyhedra, which touch in several places.
     pub are_polyhedra: bool,
+    /// How the equations of motion are integrated.
+    pub integrator: Integrator,
 }

@@ -15,7 +15,7 @@ pub(crate) use grains_keys::count_of;
 
 use super::error::Problem;
 use super::{PairOverride, Scene, SceneMaterial, TimeStep};
-use crate::physics::{ContactLaw, FeatureRule};
+use crate::physics::{ContactLaw, FeatureRule, Integrator};
 use container_keys::ContainerFile;
 use glam::DVec3;
 use grains_keys::GrainsFile;
@@ -44,6 +44,8 @@ pub(super) struct SceneFile {
     #[serde(default = "earth_gravity")]
     gravity: DVec3,
     law: Option<ContactLaw>,
+    #[serde(default)]
+    integrator: Integrator,
     #[serde(default)]
     time_step: TimeStep,
     #[serde(default = "paper_duration")]
@@ -158,6 +160,7 @@ impl SceneFile {
             liquid: self.liquid.map(LiquidFile::into_liquid).transpose()?,
             gravity: self.gravity,
             law: ContactLaw::default(),
+            integrator: self.integrator,
             time_step: self.time_step,
             duration: self.duration,
             output_interval: self.output_interval,

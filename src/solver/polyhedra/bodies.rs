@@ -57,6 +57,18 @@ impl Load {
     pub fn contact_count(&self) -> f64 {
         self.force[3]
     }
+
+    /// It and what dashpots do.
+    #[inline(always)]
+    #[must_use]
+    pub fn with(&self, resistance: &Self) -> Self {
+        let mut load = *self;
+        for axis in 0..3 {
+            load.force[axis] += resistance.force[axis];
+            load.torque[axis] += resistance.torque[axis];
+        }
+        load
+    }
 }
 
 /// The shapes of all bodies, feature by feature.
@@ -347,6 +359,26 @@ impl Body {
         }
     }
 
+    /// The inverse of its inertia along the axes of the world, `R I⁻¹ Rᵀ` [1/(kg m²)]: xx, xy, xz,
+    /// yy, yz, zz.
+    #[inline(always)]
+    pub fn inverse_inertia(&self) -> [f64; 6] {
+        let axes = axes(self.orientation);
+        let entry = |i: usize, j: usize| {
+            axes[0][i] * axes[0][j] * self.inverse_inertia[0]
+                + axes[1][i] * axes[1][j] * self.inverse_inertia[1]
+                + axes[2][i] * axes[2][j] * self.inverse_inertia[2]
+        };
+        [
+            entry(0, 0),
+            entry(0, 1),
+            entry(0, 2),
+            entry(1, 1),
+            entry(1, 2),
+            entry(2, 2),
+        ]
+    }
+
     /// Turns the free body for `dt` [s]: its angular momentum stays, its orientation follows by
     /// rotations about one body axis after the other, forwards and back (the symmetric splitting of
     /// Dullweber, Leimkuhler and `McLachlan` 1997). Each is symplectic, so the energy of a free
@@ -385,7 +417,7 @@ impl Body {
 
     /// Inverse mass [1/kg].
     #[inline(always)]
-    fn inverse_mass(&self) -> f64 {
+    pub fn inverse_mass(&self) -> f64 {
         self.position[3]
     }
 

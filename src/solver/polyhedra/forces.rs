@@ -9,6 +9,7 @@
 use super::super::row::{sub, vector};
 use super::super::step::Tally;
 use super::super::tangential::{UNLOADED, update};
+use super::dashpots::{Damper, Dashpot};
 use super::motion::{Surroundings, crossed};
 use super::nearest::{Nearest, group};
 use super::pairs::{BLOCK, Block, ContactPoint, Pair, PairForce, Terms};
@@ -35,6 +36,8 @@ pub struct Forces<'a> {
     pub effects: &'a mut [PairForce],
     /// Whether they do anything.
     pub acting: &'a mut [bool],
+    /// Whether their dashpots are left for [`super::dashpots`]; none where they act here.
+    pub resisting: Option<&'a mut [bool]>,
     /// Room to work in.
     pub workspace: &'a mut Workspace,
 }
@@ -51,13 +54,20 @@ impl Work for Forces<'_> {
             points,
             effects,
             acting,
+            mut resisting,
             workspace,
         } = self;
         let mut tally = Tally::default();
         acting.fill(false);
+        workspace.dampers.clear();
+        if let Some(resisting) = &mut resisting {
+            resisting.fill(false);
+        }
         let blocks = pairs.chunks_mut(BLOCK).zip(terms.chunks_mut(BLOCK));
         let effects = effects.chunks_mut(BLOCK).zip(acting.chunks_mut(BLOCK));
-        for (((pairs, terms), points), (forces, acting)) in blocks.zip(points).zip(effects) {
+        for (number, (((pairs, terms), points), (forces, acting))) in
+            blocks.zip(points).zip(effects).enumerate()
+        {
             let mut block = Block {
                 pairs,
                 terms,
@@ -67,8 +77,15 @@ impl Work for Forces<'_> {
             workspace.choose::<N>(processor, &all, &mut block);
             workspace.measure::<N>(processor, &all, &block);
             tally.fault |= workspace.evaluate_overlaps(&all, &mut block);
-            workspace.compute_forces::<N>(processor, all.dt, &mut block);
-            workspace.sum(&all, &block, forces, acting);
+            if let Some(resisting) = &mut resisting {
+                workspace.compute_forces::<N, true>(processor, all.dt, &mut block);
+                workspace.sum(&all, &block, forces, acting);
+                let first = number * BLOCK;
+                workspace.collect_dashpots(&block, first, forces, &mut resisting[first..]);
+            } else {
+                workspace.compute_forces::<N, false>(processor, all.dt, &mut block);
+                workspace.sum(&all, &block, forces, acting);
+            }
         }
         tally
     }
@@ -113,7 +130,7 @@ impl Workspace {
 
     /// The contact law of every active feature of the block.
     #[inline(always)]
-    fn compute_forces<N: Lanes>(
+    fn compute_forces<N: Lanes, const IMPLICIT: bool>(
         &mut self,
         processor: N::Processor,
         dt: f64,
@@ -121,10 +138,13 @@ impl Workspace {
     ) {
         let (terms, points) = (&*block.terms, &mut *block.points);
         self.effects.resize(self.results.len(), Effect::default());
-        let outputs = self.effects.chunks_mut(N::COUNT);
+        if IMPLICIT {
+            self.dashpots.resize(self.results.len(), Dashpot::default());
+        }
+        let outputs = self.effects.chunks_mut(N::COUNT).enumerate();
         let results = self.results.chunks(N::COUNT);
         let numbers = self.result_of.chunks(N::COUNT);
-        for ((numbers, results), effects) in numbers.zip(results).zip(outputs) {
+        for ((numbers, results), (group_number, effects)) in numbers.zip(results).zip(outputs) {
             let all = group::<N, _>(numbers);
             let pair = side_by_side::<N, _>(|k| &self.active[all[k].pair as usize]);
             let law = side_by_side::<N, _>(|k| &terms[pair[k].pair as usize].law);
@@ -132,7 +152,15 @@ impl Workspace {
             let contacts =
                 Contacts::<N>::gather(processor, pair, law, group::<N, _>(results), point);
             let springs = side_by_side::<N, _>(|k| &point[k].spring);
-            let found = contacts.forces(processor, dt, springs);
+            let found = contacts.forces::<IMPLICIT>(processor, dt, springs);
+            if IMPLICIT {
+                let begin = group_number * N::COUNT;
+                let dashpots = &mut self.dashpots[begin..begin + effects.len()];
+                for (k, dashpot) in dashpots.iter_mut().enumerate() {
+                    dashpot.normal = found.dashpots[0][k].row();
+                    dashpot.moment = found.dashpots[1][k].row();
+                }
+            }
             for (k, (effect, number)) in effects.iter_mut().zip(numbers).enumerate() {
                 effect.force = found.forces[k].row();
                 effect.moment = found.moments[k].row();
@@ -173,6 +201,34 @@ impl Workspace {
     }
 }
 
+impl Workspace {
+    /// Collects the dashpots of each pair, `first` being the number of the block's first pair.
+    #[inline(always)]
+    fn collect_dashpots(
+        &mut self,
+        block: &Block<'_>,
+        first: usize,
+        forces: &mut [PairForce],
+        resisting: &mut [bool],
+    ) {
+        for (number, active) in self.active.iter().enumerate() {
+            if !active.touches {
+                continue;
+            }
+            let dashpots = &self.dashpots[self.results_of(number)];
+            let own = active.pair as usize;
+            let pair = &block.pairs[own];
+            let sides = [pair.first, pair.second];
+            let number = (first + own) as u32;
+            if let Some(damper) = Damper::of(number, sides, dashpots) {
+                forces[own].first[3] = damper.strength();
+                resisting[own] = true;
+                self.dampers.push(damper);
+            }
+        }
+    }
+}
+
 /// As many contacts as there are lanes, side by side.
 struct Contacts<N> {
     /// Unit vectors from the first sides to the second.
@@ -203,6 +259,9 @@ struct ContactForces<N: Lanes> {
     energies: [N::Quad; WIDEST],
     /// Tangential springs [m] and their stiffness [N/m].
     springs: [N::Quad; WIDEST],
+    /// Where dashpots are taken implicitly: normals and dashpots [N s/m], arms across the normals
+    /// [m].
+    dashpots: [[N::Quad; WIDEST]; 2],
 }
 
 impl<N: Lanes> Contacts<N> {
@@ -241,7 +300,12 @@ impl<N: Lanes> Contacts<N> {
     /// Their forces: Hooke's spring and a dashpot along the normal, never pulling, and across it a
     /// spring capped by Coulomb's law.
     #[inline(always)]
-    fn forces(&self, processor: N::Processor, dt: f64, springs: Rows<'_>) -> ContactForces<N> {
+    fn forces<const IMPLICIT: bool>(
+        &self,
+        processor: N::Processor,
+        dt: f64,
+        springs: Rows<'_>,
+    ) -> ContactForces<N> {
         let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
         let (step, half_step) = (N::splat(processor, dt), N::splat(processor, 0.5 * dt));
         let Self {
@@ -259,7 +323,16 @@ impl<N: Lanes> Contacts<N> {
         let approach = dot(velocity, normal);
         let elastic = normal_stiffness * part * overlap;
         let damped = N::choose(touching, damping * part * approach, zero);
-        let repulsion = Hooke::default().normal_force(elastic, damped, zero);
+        let (repulsion, strength) = if IMPLICIT {
+            // A contact that would pull lets go, spring and dashpot.
+            let holds = (elastic + damped).exceeds(zero);
+            (
+                N::choose(holds, elastic, zero),
+                N::choose(holds, damping * part, zero),
+            )
+        } else {
+            (Hooke::default().normal_force(elastic, damped, zero), zero)
+        };
         let slip = minus(velocity, times(normal, approach));
         let stiffness = N::choose(touching, tangential_stiffness * part, zero);
         let updated = update::<N>(
@@ -279,11 +352,27 @@ impl<N: Lanes> Contacts<N> {
         let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
         let elastic_before = normal_stiffness * part_before * overlap_before;
         let pressed = half * ((elastic_before + elastic) * (overlap - overlap_before));
+        let in_dashpot = if IMPLICIT {
+            // Where a contact begins or ends within a step, the spring takes more than it stores.
+            let taken = half_step * ((elastic_before + elastic) * approach);
+            in_dashpot + (taken - pressed)
+        } else {
+            in_dashpot
+        };
         ContactForces {
             forces: N::rows([force[0], force[1], force[2], overlap]),
             moments: N::rows([moment[0], moment[1], moment[2], dashpot]),
             energies: N::rows([in_dashpot, updated.lost, pressed, zero]),
             springs: updated.rows,
+            dashpots: if IMPLICIT {
+                let [tx, ty, tz] = cross(arm, normal);
+                [
+                    N::rows([normal[0], normal[1], normal[2], strength]),
+                    N::rows([tx, ty, tz, zero]),
+                ]
+            } else {
+                [updated.rows; 2]
+            },
         }
     }
 }

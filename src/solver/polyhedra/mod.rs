@@ -18,6 +18,8 @@
 //! | `nearest` | nearest points of two features |
 //! | `workspace` | which features are measured in a step, and their measurement |
 //! | `forces` | contact forces |
+//! | `damping` | matrices of the dashpots of pairs |
+//! | `dashpots` | the dashpots of all pairs, taken implicitly |
 //! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
 //! | `terms` | contact forces again, term by term |
@@ -26,6 +28,8 @@
 //! sphere is a core of one vertex.
 
 mod bodies;
+mod damping;
+mod dashpots;
 mod forces;
 mod listing;
 mod motion;
@@ -73,6 +77,10 @@ impl Kernel for Polyhedra {
     /// is made anew, to the same results.
     fn load(&mut self, processor: Processor, world: &World) {
         self.dt = world.clock.time_step;
+        if self.integrator != world.integrator() {
+            self.integrator = world.integrator();
+            self.resisting.fill(false);
+        }
         self.gravity = row(world.gravity, 0.0);
         self.rule = (world.law.feature_springs()).map_or(FeatureRule::Full, |springs| springs.rule);
         let unmoved = self.load_bodies(world);
@@ -148,16 +156,16 @@ impl Kernel for Polyhedra {
             polyhedra.features.extend(contacts);
         }
         let count = self.bodies.len();
-        let acting = self.pairs.list.iter().zip(&self.forces).zip(&self.acting);
-        let touching = acting
-            .filter(|((_, force), acting)| **acting && force.touches())
-            .map(|((pair, force), _)| Contact {
+        let pairs = self.pairs.list.iter().enumerate();
+        let touching = pairs
+            .filter(|(k, _)| self.acting[*k] && self.forces[*k].touches())
+            .map(|(k, pair)| Contact {
                 grain: pair.first,
                 partner: partner(pair, count),
                 spring: DVec3::ZERO,
                 stiffness: 0.0,
                 rolling: DVec3::ZERO,
-                force: vector(force.force),
+                force: self.force_of(k),
                 touching: true,
                 bridge: None,
             });
@@ -222,6 +230,16 @@ impl Polyhedra {
         unmoved
     }
 
+    /// The whole contact force of pair `k` [N].
+    fn force_of(&self, k: usize) -> DVec3 {
+        let force = vector(self.forces[k].force);
+        if self.resisting[k] {
+            force + vector(self.resistances[k].force)
+        } else {
+            force
+        }
+    }
+
     /// Whether the shapes and the contacts' histories are those of `world`.
     fn holds(&self, world: &World) -> bool {
         let (Some(polyhedra), Some(shapes)) = (&world.polyhedra, &self.known_shapes) else {
@@ -260,6 +278,10 @@ impl Polyhedra {
         self.forces.resize(list.len(), PairForce::default());
         self.acting.clear();
         self.acting.resize(list.len(), false);
+        self.resistances.clear();
+        self.resistances.resize(list.len(), PairForce::default());
+        self.resisting.clear();
+        self.resisting.resize(list.len(), false);
         self.sides = Sides::of(list, count);
         let positions = self.bodies.iter().map(|body| body.position);
         self.reference.clear();

@@ -11,6 +11,7 @@ use super::super::workers::{
 };
 use super::Polyhedra;
 use super::bodies::{Body, Geometry, Load, Place, Shapes};
+use super::dashpots::{Response, SWEEPS, Sweep};
 use super::forces::Forces;
 use super::motion::{Extents, Surroundings};
 use super::nearest::Places;
@@ -18,7 +19,7 @@ use super::neighbours::Sides;
 use super::pairs::{BLOCK, ContactPoint, Pair, PairForce, Terms};
 use super::workspace::Workspace;
 use crate::lanes::{Lanes, Processor, Work, prefetch};
-use crate::physics::FeatureRule;
+use crate::physics::{FeatureRule, Integrator};
 use std::ops::Range;
 
 /// A worker's share of a world of polyhedra.
@@ -33,6 +34,11 @@ pub struct PolyhedraShare<'a> {
     /// Read by all in the motion phase, as is which of them act.
     forces: Column<'a, PairForce, ForcePhase>,
     acting: Column<'a, bool, ForcePhase>,
+    /// What dashpots that are taken implicitly do, and which: read by all in the motion phase.
+    resistances: Column<'a, PairForce, ForcePhase>,
+    resisting: Column<'a, bool, ForcePhase>,
+    /// How the bodies respond to them: read by all in the force phase.
+    responses: Column<'a, Response, MotionPhase>,
     /// What only this worker touches: loads of its bodies, all that is kept of its pairs.
     loads: &'a mut [Load],
     pairs: &'a mut [Pair],
@@ -41,6 +47,8 @@ pub struct PolyhedraShare<'a> {
     workspace: &'a mut Workspace,
     /// The origin, and the velocity and the spin of every wall.
     wall_motions: Vec<[Row; 3]>,
+    /// The same, and how it responds to dashpots: not at all.
+    wall_responses: Vec<([Row; 3], Response)>,
 }
 
 /// What all workers read and none writes.
@@ -58,6 +66,8 @@ struct Common<'a> {
     dt: f64,
     /// Gravity [m/s²].
     gravity: Row,
+    /// How the equations of motion are integrated.
+    integrator: Integrator,
     /// Whether the features of a pair share its stiffness.
     rule: FeatureRule,
     /// Sizes that bound how far two bodies move in a step.
@@ -72,6 +82,7 @@ impl<'a> PolyhedraShare<'a> {
         let (slack, pair_count) = (world.slack(), world.pairs.list.len());
         let needed = size.max(world.workspaces.len());
         world.workspaces.resize_with(needed, Workspace::default);
+        world.responses.resize(count, Response::default());
         let common = Common {
             shapes: &world.shapes,
             sides: &world.sides,
@@ -79,6 +90,7 @@ impl<'a> PolyhedraShare<'a> {
             slack_squared: slack * slack,
             dt: world.dt,
             gravity: world.gravity,
+            integrator: world.integrator,
             rule: world.rule,
             extents: world.extents,
         };
@@ -102,12 +114,17 @@ impl<'a> PolyhedraShare<'a> {
         let mut planes = batch.lend_ranges(&mut world.planes, own_planes);
         let mut forces = batch.lend_ranges(&mut world.forces, own_pairs());
         let mut acting = batch.lend_ranges(&mut world.acting, own_pairs());
+        let mut resistances = batch.lend_ranges(&mut world.resistances, own_pairs());
+        let mut resisting = batch.lend_ranges(&mut world.resisting, own_pairs());
+        let mut responses = batch.lend_ranges(&mut world.responses, own_bodies());
         let mut loads = split_once(&mut world.loads, own_bodies());
         let mut pairs = split_once(&mut world.pairs.list, own_pairs());
         let mut terms = split_once(&mut world.pairs.terms, own_pairs());
         let mut points = split_once(&mut world.pairs.points, blocks.iter().cloned());
         let mut workspaces = world.workspaces.iter_mut();
         let wall_motions = motions_of(&world.walls);
+        let unmoved = |motion: &[Row; 3]| (*motion, Response::of_wall(motion));
+        let wall_responses: Vec<_> = wall_motions.iter().map(unmoved).collect();
         let share = |own: Range<usize>| {
             Some(Self {
                 common,
@@ -117,12 +134,16 @@ impl<'a> PolyhedraShare<'a> {
                 planes: planes.next()?,
                 forces: forces.next()?,
                 acting: acting.next()?,
+                resistances: resistances.next()?,
+                resisting: resisting.next()?,
+                responses: responses.next()?,
                 loads: loads.next()?,
                 pairs: pairs.next()?,
                 terms: terms.next()?,
                 points: points.next()?,
                 workspace: workspaces.next()?,
                 wall_motions: wall_motions.clone(),
+                wall_responses: wall_responses.clone(),
             })
         };
         own_bodies().filter_map(share).collect()
@@ -168,8 +189,56 @@ impl Share for PolyhedraShare<'_> {
             points: &mut *self.points,
             effects: self.forces.write_first(phase),
             acting: self.acting.write_first(phase),
+            resisting: (common.integrator == Integrator::Imex)
+                .then(|| self.resisting.write_first(phase)),
             workspace: &mut *self.workspace,
         })
+    }
+
+    fn sweeps(&self) -> usize {
+        match self.common.integrator {
+            Integrator::Explicit => 0,
+            Integrator::Imex => SWEEPS,
+        }
+    }
+
+    fn respond(&mut self, sweep: usize, phase: &InPhase<'_, MotionPhase>) {
+        let incidence = Incidence {
+            forces: self.forces.read(phase),
+            acting: self.acting.read(phase),
+            resistances: self.resistances.read(phase),
+            resisting: self.resisting.read(phase),
+            sides: self.common.sides,
+        };
+        let bodies = self.bodies.write_first(phase);
+        let responses = self.responses.write_first(phase);
+        let all = bodies.iter().zip(&mut *self.loads).zip(responses);
+        for (i, ((body, load), response)) in self.own.clone().zip(all) {
+            if sweep == 0 {
+                let strength = incidence.sum(i, load);
+                *response = body.response(load, self.common.dt, self.common.gravity, strength);
+            } else {
+                let resistance = incidence.resistance(i);
+                *response = body.response(
+                    &load.with(&resistance),
+                    self.common.dt,
+                    self.common.gravity,
+                    response.spin[3],
+                );
+            }
+        }
+    }
+
+    fn resist(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, ForcePhase>) {
+        processor.run(Sweep {
+            first: sweep == 0,
+            dt: self.common.dt,
+            dampers: &mut self.workspace.dampers,
+            bodies: self.bodies.read(phase),
+            responses: self.responses.read(phase),
+            walls: &self.wall_responses,
+            forces: self.resistances.write_first(phase),
+        });
     }
 
     fn move_grains(
@@ -187,6 +256,8 @@ impl Share for PolyhedraShare<'_> {
             incidence: Incidence {
                 forces: self.forces.read(phase),
                 acting: self.acting.read(phase),
+                resistances: self.resistances.read(phase),
+                resisting: self.resisting.read(phase),
                 sides: self.common.sides,
             },
             common: self.common,
@@ -202,6 +273,9 @@ struct Incidence<'a> {
     forces: &'a [PairForce],
     /// Which of them act.
     acting: &'a [bool],
+    /// What its dashpots do where they are taken implicitly, and which of them do.
+    resistances: &'a [PairForce],
+    resisting: &'a [bool],
     /// Which pairs are whose.
     sides: &'a Sides,
 }
@@ -232,7 +306,11 @@ impl Work for Finish<'_> {
         let mut outcome = Outcome::default();
         let from = shapes.places[self.own.start];
         for (i, (body, load)) in self.own.zip(self.bodies.iter_mut().zip(self.loads)) {
-            self.incidence.sum(i, load);
+            if common.integrator == Integrator::Explicit {
+                self.incidence.sum(i, load);
+            } else {
+                self.incidence.resist(i, body, load, common);
+            }
             body.kick(load, half, common.gravity);
             if self.last {
                 body.update_spin();
@@ -271,9 +349,55 @@ impl Incidence<'_> {
         }
     }
 
-    /// Sums what the pairs of body `i` do to it, in the pairs' order.
+    /// Sums what the dashpots of its pairs do to body `i`, in the pairs' order.
     #[inline(always)]
-    fn sum(&self, i: usize, load: &mut Load) {
+    fn resistance(&self, i: usize) -> Load {
+        let (as_second, as_first) = self.sides.of_body(i);
+        let mut load = Load::default();
+        for pair in as_second.iter().map(|&pair| pair as usize) {
+            if self.resisting[pair] {
+                let force = &self.resistances[pair];
+                for axis in 0..3 {
+                    load.force[axis] -= force.force[axis];
+                    load.torque[axis] += force.second[axis];
+                }
+            }
+        }
+        for pair in as_first {
+            if self.resisting[pair] {
+                let force = &self.resistances[pair];
+                for axis in 0..3 {
+                    load.force[axis] += force.force[axis];
+                    load.torque[axis] += force.first[axis];
+                }
+                load.exchanged[3] += force.exchanged[3];
+            }
+        }
+        load
+    }
+
+    /// Adds what the dashpots do to body `i` to its load, and books what they lose: what walls do
+    /// against them, less what they do to the body by the mean of its velocities before and after.
+    #[inline(always)]
+    fn resist(&self, i: usize, body: &Body, load: &mut Load, common: &Common<'_>) {
+        let resistance = self.resistance(i);
+        *load = load.with(&resistance);
+        let after = body.response(load, common.dt, common.gravity, 0.0);
+        let mut work = 0.0;
+        for axis in 0..3 {
+            work += resistance.force[axis] * (body.velocity[axis] + after.velocity[axis]);
+            work += resistance.torque[axis] * (body.spin[axis] + after.spin[axis]);
+        }
+        let by_walls = resistance.exchanged[3];
+        load.exchanged[0] += by_walls - 0.5 * common.dt * work;
+        load.exchanged[3] += by_walls;
+    }
+
+    /// Sums what the pairs of body `i` do to it, in the pairs' order; returns the sum of its
+    /// dashpots that are left to be taken implicitly.
+    #[inline(always)]
+    fn sum(&self, i: usize, load: &mut Load) -> f64 {
+        let mut strength = 0.0;
         let (as_second, as_first) = self.sides.of_body(i);
         self.fetch(i + 2);
         load.force = [0.0; 4];
@@ -288,6 +412,7 @@ impl Incidence<'_> {
                 load.torque[axis] += force.second[axis];
             }
             load.force[3] += force.force[3];
+            strength += force.first[3];
         }
         for pair in as_first {
             if !self.acting[pair] {
@@ -299,6 +424,8 @@ impl Incidence<'_> {
                 load.torque[axis] += force.first[axis];
                 load.exchanged[axis] += force.exchanged[axis];
             }
+            strength += force.first[3];
         }
+        strength
     }
 }

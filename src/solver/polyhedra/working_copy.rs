@@ -3,11 +3,12 @@
 use super::super::row::Row;
 use super::super::walls::Walls;
 use super::bodies::{Body, Load, Shapes};
+use super::dashpots::Response;
 use super::motion::Extents;
 use super::neighbours::{PairList, Sides};
 use super::pairs::PairForce;
 use super::workspace::Workspace;
-use crate::physics::{ContactLaw, FeatureRule, Materials};
+use crate::physics::{ContactLaw, FeatureRule, Integrator, Materials};
 use crate::world::{Polyhedron, SpeciesId, Surface};
 use std::sync::Arc;
 
@@ -32,6 +33,13 @@ pub struct Polyhedra {
     pub(super) forces: Vec<PairForce>,
     /// Which pairs act.
     pub(super) acting: Vec<bool>,
+    /// What the dashpots of every pair do, where they are taken implicitly; of those that do not
+    /// resist, anything.
+    pub(super) resistances: Vec<PairForce>,
+    /// Which pairs' dashpots act implicitly.
+    pub(super) resisting: Vec<bool>,
+    /// How each body responds to them.
+    pub(super) responses: Vec<Response>,
     /// Which pairs are whose.
     pub(super) sides: Sides,
     /// Where the bodies were when the pairs were found.
@@ -50,6 +58,8 @@ pub struct Polyhedra {
     pub(super) workspaces: Vec<Workspace>,
     /// Length of a step [s].
     pub(super) dt: f64,
+    /// How the equations of motion are integrated.
+    pub(super) integrator: Integrator,
     /// Gravity [m/s²].
     pub(super) gravity: Row,
     /// Whether the features of a pair share its stiffness.

@@ -5,6 +5,7 @@
 //! what one worker needs for it again and again.
 
 use super::super::row::{Row, vector};
+use super::dashpots::{Damper, Dashpot};
 use super::listing::{Listed, Search, Wanted, choose};
 use super::motion::Surroundings;
 use super::nearest::{Jobs, Nearest};
@@ -76,6 +77,10 @@ pub struct Workspace {
     pub result_of: Vec<ResultOf>,
     /// What each contact does.
     pub effects: Vec<Effect>,
+    /// Its dashpot, where that is taken implicitly.
+    pub dashpots: Vec<Dashpot>,
+    /// The dashpots of every pair of the worker that has some.
+    pub dampers: Vec<Damper>,
 }
 
 /// What a contact does.

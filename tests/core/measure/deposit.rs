@@ -172,6 +172,7 @@ fn cube(half: f64, turn: DQuat, position: DVec3) -> World {
         angular_momentum: vec![DVec3::ZERO],
         inertia: vec![DVec3::ONE],
         features: Vec::new(),
+        ..Polyhedra::default()
     }));
     world
 }

@@ -98,6 +98,13 @@ fn polyhedra_whose_features_share_their_stiffness_have_the_bits_they_always_had(
     assert_golden(&scene, 2000, "fe70f3e02b92d54d59fc395b7847f582");
 }
 
+#[test]
+fn polyhedra_whose_dashpots_are_implicit_have_the_bits_they_always_had() {
+    let mut scene = polyhedra("Full");
+    scene.set("integrator", "imex").unwrap();
+    assert_golden(&scene, 1000, "d1b98208b12925f070ebd5780acffc0b");
+}
+
 /// A drum of cells.
 fn polyhedra(rule: &str) -> Scene {
     let text = r#"(
