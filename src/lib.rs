@@ -27,7 +27,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`files`] | files that appear whole or not at all |
+//! | [`files`] | files that appear whole or not at all, that grow, and folders that are locked |
 //! | [`geometry`] | convex solids: cutting, integrals, hulls |
 //! | [`lanes`] | numbers side by side: one vocabulary for every width of the processor, and its plain twin |
 //! | [`physics`] | force laws and their choices, materials and how two meet, liquids, units and hard limits |

@@ -1,32 +1,28 @@
 //! The command line: what to open, what to change, and whether a window is wanted.
 //!
 //! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state
-//! than a file states, 130 interrupted.
+//! than a file states, 5 another program writes to the output folder, 130 interrupted.
 
 use clap::{Args, Parser, Subcommand};
-use grainfall::headless::{self, Progress};
+use grainfall::headless::terminal::{say, tell};
+use grainfall::headless::{self, Report, Said, check_threads, interruption};
 use grainfall::output::write_file;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
 use grainfall::physics::units::seconds;
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
-use grainfall::runner::{
-    Job, RunnerError, Verdict, apply_setting, available_threads, exit, read_commands,
-};
+use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
 use grainfall::scene::{Scene, StoredCells, built_in, take_packings_from_anywhere};
-use grainfall::simulation::{
-    BedStore, Estimate, Options, RunRecord, ScriptedCommand, Session, make_bed,
-};
+#[cfg(feature = "desktop")]
+use grainfall::simulation::Options;
+use grainfall::simulation::{BedStore, Estimate, ScriptedCommand, Session, make_bed};
 use grainfall::sweep::{Sweep, Variation};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 /// An interactive laboratory for granular matter.
 ///
@@ -39,11 +35,17 @@ struct Arguments {
     /// Run without a window, as fast as the machine can, and write files
     #[arg(long)]
     no_render: bool,
-    /// Folder for the files of a run without a window [default: out/<scene>]
+    /// Folder for the files of a run without a window [default: out/<scene>]. The same command goes
+    /// on there where it was stopped
     #[arg(long, value_name = "DIR", requires = "no_render")]
     out: Option<PathBuf>,
     #[command(flatten)]
     allowed: Allowed,
+    /// Begin anew, in the place of the run that the folder holds
+    #[arg(long, requires = "no_render")]
+    restart: bool,
+    #[command(flatten)]
+    said: Said,
     #[cfg(feature = "desktop")]
     #[command(flatten)]
     picture: PictureArguments,
@@ -67,13 +69,13 @@ impl Allowed {
     ///
     /// # Errors
     /// When that is more memory than there is, and nobody asked for it.
-    fn begin(&self, scene: &Scene, at_once: usize) -> Result<(), RunnerError> {
+    fn begin(&self, scene: &Scene, at_once: usize, report: Report) -> Result<(), RunnerError> {
         let estimate = Estimate::of(scene).side_by_side(at_once);
         if !self.beyond_memory {
             let fits = estimate.fits_into_memory();
             fits.map_err(|error| RunnerError::Input(error.to_string()))?;
         }
-        eprintln!("{estimate}");
+        report.note(&estimate.to_string());
         Ok(())
     }
 }
@@ -153,8 +155,8 @@ struct What {
 enum Task {
     /// Run a scene's variations side by side and set their results beside each other
     ///
-    /// Stopped with Ctrl-C, it goes on where it was when it is called again. Results: table.csv,
-    /// table.md and plots.
+    /// Stopped with Ctrl-C or killed, it goes on where it was when it is called again; called twice
+    /// at the same time, both share the cases. Results: table.csv, table.md and plots.
     Sweep {
         /// A scene file, or the name of a built-in scene
         scene: String,
@@ -173,6 +175,11 @@ enum Task {
         /// Cases that run at the same time [default: all cores]
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
         jobs: Option<u16>,
+        /// Run every case anew, in the place of those that the folder holds
+        #[arg(long)]
+        restart: bool,
+        #[command(flatten)]
+        said: Said,
     },
     /// Compute a run again and confirm that it comes to the same state, to the bit
     Verify {
@@ -212,8 +219,9 @@ enum Task {
     },
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state than a file states, \
-                          130 interrupted";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written or the machine gives too little, 2 bad input, \
+                          3 physical fault, 4 another state than a file states, 5 another program writes to the \
+                          output folder, 130 interrupted";
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -233,7 +241,10 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     }
     match arguments.task {
         Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
-        Some(Task::Verify { file, threads }) => return verify(&file, threads),
+        Some(Task::Verify { file, threads }) => {
+            let threads = checked_threads(threads, Report::Text)?;
+            return headless::confirm(&file, threads, &*interruption()?);
+        }
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
         Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
         Some(task @ Task::Sweep { .. }) => return run_sweep(task, &allowed),
@@ -266,19 +277,34 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     }
     let name = short_name(&name);
     let out = arguments.out.unwrap_or(Path::new("out").join(&name));
+    let report = arguments.said.report();
+    let interruption = interruption()?;
     let job = Job {
-        threads: threads(what.threads),
+        threads: checked_threads(what.threads, report)?,
         script,
+        checkpoints: true,
+        restart: arguments.restart,
         ..Job::new(name, scene, out)
     };
-    allowed.begin(&job.scene, 1)?;
-    let ending = headless::run(&job, &*interruption()?)?;
+    allowed.begin(&job.scene, 1, report)?;
+    let ending = headless::run(&job, report, &interruption)?;
     Ok(ending.exit_code())
 }
 
-/// The threads asked for, or as many as there are cores.
-fn threads(asked: Option<u16>) -> usize {
-    asked.map_or_else(available_threads, usize::from)
+/// The threads asked for, or as many as there are cores; says where they are more.
+///
+/// # Errors
+/// When the machine does not give so many.
+fn checked_threads(asked: Option<u16>, report: Report) -> Result<usize, RunnerError> {
+    let cores = available_threads();
+    let threads = asked.map_or(cores, usize::from);
+    if threads > cores {
+        report.note(&format!(
+            "{threads} threads share {cores} cores, which is slower than {cores} threads"
+        ));
+    }
+    check_threads(threads)?;
+    Ok(threads)
 }
 
 /// The built-in scene to open when none is asked for.
@@ -297,15 +323,11 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
         ("time-step", &what.time_step),
         ("seed", &what.seed),
     ];
-    for (key, value) in options {
-        if let Some(value) = value {
-            scene.set(key, value)?;
-        }
-    }
-    let mut script = Vec::new();
-    for setting in &what.set {
-        script.extend(apply_setting(&mut scene, setting)?);
-    }
+    let options = options
+        .into_iter()
+        .filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
+    let settings: Vec<String> = options.chain(what.set.iter().cloned()).collect();
+    let mut script = apply_settings(&mut scene, &settings)?;
     if let Some(path) = &what.commands {
         script.extend(read_commands(path)?);
     }
@@ -390,26 +412,6 @@ fn open_window(
 const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
                          `desktop`";
 
-/// Signals that follow each other sooner are one: tools such as `timeout` send theirs to a process
-/// and to its whole group.
-const ONE_SIGNAL: Duration = Duration::from_millis(500);
-
-/// Becomes true when somebody asks the program to end; a second time ends it at once.
-fn interruption() -> Result<Arc<AtomicBool>, RunnerError> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let shared = flag.clone();
-    let mut first = None;
-    ctrlc::set_handler(move || {
-        let first: Instant = *first.get_or_insert_with(Instant::now);
-        if first.elapsed() > ONE_SIGNAL {
-            std::process::exit(exit::INTERRUPTED.into());
-        }
-        shared.store(true, Ordering::Relaxed);
-    })
-    .map_err(|error| RunnerError::Input(format!("cannot listen to Ctrl-C: {error}")))?;
-    Ok(flag)
-}
-
 fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
     let Task::Sweep {
         scene: name,
@@ -418,14 +420,17 @@ fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
         duration,
         out,
         jobs,
+        restart,
+        said,
     } = task
     else {
         return Ok(0);
     };
     let mut scene = Scene::open(&name)?;
-    if let Some(duration) = &duration {
-        scene.set("duration", duration)?;
-    }
+    let duration = duration.map(|duration| format!("duration={duration}"));
+    apply_settings(&mut scene, duration.as_slice())?;
+    let report = said.report();
+    let interruption = interruption()?;
     let variations = vary.iter().map(|text| Variation::parse(text));
     let sweep = Sweep {
         out: out.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", short_name(&name)))),
@@ -433,11 +438,12 @@ fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
         scene,
         settings: set,
         variations: variations.collect::<Result<_, _>>()?,
-        jobs: threads(jobs),
+        jobs: checked_threads(jobs, report)?,
         beds: BedStore::user(),
+        restart,
     };
-    allowed.begin(&sweep.scene, sweep.jobs)?;
-    let ending = headless::run_sweep(&sweep, &*interruption()?)?;
+    allowed.begin(&sweep.scene, sweep.jobs, report)?;
+    let ending = headless::run_sweep(&sweep, report, &interruption)?;
     Ok(ending.exit_code())
 }
 
@@ -450,40 +456,8 @@ fn list_settings(name: &str, json: bool) -> Result<u8, RunnerError> {
     } else {
         settings.to_string()
     };
-    println!("{}", text.trim_end());
+    say(text.trim_end());
     Ok(0)
-}
-
-/// Computes the run of `file` again and says what came out. Returns the exit code.
-fn verify(file: &Path, threads: Option<u16>) -> Result<u8, RunnerError> {
-    let record = RunRecord::read(file)?;
-    let interruption = interruption()?;
-    let stop = || interruption.load(Ordering::Relaxed);
-    let mut progress = Progress::on_stderr();
-    let verdict = record.verify(
-        self::threads(threads),
-        BedStore::user(),
-        &mut progress,
-        &stop,
-    );
-    progress.finish();
-    let verdict = verdict?;
-    let (name, steps, time) = (&record.name, record.steps, record.time);
-    let stated = record.state_hash.as_deref().unwrap_or_default();
-    let found = match &verdict {
-        Verdict::Same => {
-            println!("the same: {name}, state {stated} at t = {time:.6} s, step {steps}");
-            return Ok(verdict.exit_code());
-        }
-        Verdict::Other(found) => format!(
-            "error: {name} comes to state {found} at step {steps}, not to {stated}; the file was written by version {}",
-            record.version
-        ),
-        Verdict::Faulted(fault) => format!("error: {name} does not come to step {steps}: {fault}"),
-        Verdict::Interrupted => format!("stopped before step {steps}"),
-    };
-    eprintln!("{found}");
-    Ok(verdict.exit_code())
 }
 
 fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
@@ -496,12 +470,13 @@ fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
 fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, RunnerError> {
     let mut scene = Scene::open(name)?;
     for setting in settings {
-        if apply_setting(&mut scene, setting)?.is_some() {
+        if !apply_settings(&mut scene.clone(), std::slice::from_ref(setting))?.is_empty() {
             return Err(RunnerError::Input(format!(
                 "--set {setting}: changes nothing about the grains' places and shapes"
             )));
         }
     }
+    apply_settings(&mut scene, settings)?;
     let grains = headless::pack(&scene)?;
     store(path, &StoredCells::encode(&grains))
 }
@@ -513,10 +488,10 @@ fn store(path: &Path, bytes: &[u8]) -> Result<u8, RunnerError> {
 
 /// Prints `error` and what led to it, once, for people.
 fn print_chain(error: &dyn Error) {
-    eprintln!("error: {error}");
+    tell(&format!("error: {error}"));
     let mut cause = error.source();
     while let Some(error) = cause {
-        eprintln!("  because: {error}");
+        tell(&format!("  because: {error}"));
         cause = error.source();
     }
 }

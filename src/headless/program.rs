@@ -1,9 +1,9 @@
 //! A run without a window, moved on by the same system as in the window.
 
 use super::Progress;
-use super::report::report;
+use super::report::Report;
 use crate::lab::{DriverKind, LabCommand, Options, Status};
-use crate::output::{Ending, RunSoFar};
+use crate::output::{Ending, OutputError, RunSoFar};
 use crate::run::{Checkpoint, Run, Session, Timeline};
 use crate::runner::{Advance, At, DirectRun, Halt, Job, Runner, RunnerError};
 use crate::simulation::{Simulation, SimulationPlugin};
@@ -13,19 +13,39 @@ use bevy::time::TimeUpdateStrategy;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs `job` until its duration is reached, a fault occurs or `interrupted` becomes true; prints
-/// progress to standard error and a summary to standard output.
+/// progress to standard error and a summary to standard output, but where the `report` is to be
+/// another.
 ///
 /// # Errors
 /// A [`RunnerError`] when the input asks for something that cannot be, or a file cannot be written.
-pub fn run(job: &Job, interrupted: &AtomicBool) -> Result<Ending, RunnerError> {
+pub fn run(job: &Job, report: Report, interrupted: &AtomicBool) -> Result<Ending, RunnerError> {
     let mut runner = Runner::open(job)?;
+    if let Some(time) = runner.goes_on_from() {
+        report.note(&if runner.is_done() {
+            format!(
+                "this run is done already, and {} holds its results; --restart computes it anew",
+                job.out.display()
+            )
+        } else {
+            format!(
+                "going on from t = {time:.6} s, where the run in {} was stopped",
+                job.out.display()
+            )
+        });
+    }
     let mut run = RunInApp::of(job, runner.take_checkpoint());
-    let mut progress = Progress::on_stderr();
+    let mut progress = Progress::of(report);
     let stop = || interrupted.load(Ordering::Relaxed);
     let finished = runner.finish(&mut run, &mut progress, &stop);
     progress.finish();
+    if let Err(RunnerError::Output(OutputError::Write { .. })) = &finished {
+        report.note(&format!(
+            "what was computed is kept in {} up to its last output: make room there, and the same command goes on",
+            job.out.display()
+        ));
+    }
     let finished = finished?;
-    report(run.at().state(), &job.out, &finished);
+    report.run(run.at().state(), &job.out, &finished)?;
     Ok(finished.ending)
 }
 

@@ -1,6 +1,8 @@
 //! How far a run has come: a bar on a terminal, a line now and then elsewhere. Everything goes to
 //! standard error.
 
+use super::report::Report;
+use super::terminal;
 use crate::runner::Watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -13,6 +15,8 @@ const PARTS: f64 = 10_000.0;
 
 /// Tells how far something has come.
 pub enum Progress {
+    /// Nobody wants to hear it.
+    Silent,
     /// On a terminal.
     Bar(ProgressBar),
     /// In a file or a pipe.
@@ -37,9 +41,18 @@ impl Progress {
         Self::Bar(bar)
     }
 
+    /// As the `report` at the end asks for.
+    pub fn of(report: Report) -> Self {
+        match report {
+            Report::Quiet => Self::Silent,
+            Report::Text | Report::Json => Self::on_stderr(),
+        }
+    }
+
     /// Says that `share` (0 … 1) is done, and `what`.
     pub fn tell(&mut self, share: f64, what: impl FnOnce() -> String) {
         match self {
+            Self::Silent => {}
             Self::Bar(bar) => {
                 bar.set_position((share * PARTS) as u64);
                 bar.set_message(what());
@@ -47,7 +60,7 @@ impl Progress {
             Self::Lines { told } if told.elapsed() < LINE_TIME => {}
             Self::Lines { told } => {
                 *told = Instant::now();
-                eprintln!("{:3.0} %  {}", 100.0 * share, what());
+                terminal::tell(&format!("{:3.0} %  {}", 100.0 * share, what()));
             }
         }
     }

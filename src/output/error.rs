@@ -12,6 +12,28 @@ pub enum OutputError {
          it", .0.display()
     )]
     ForeignFolder(PathBuf),
+    /// The output folder holds another run, which would be lost.
+    #[error(
+        "the output folder {} holds another run: {reason}. Choose another folder with --out, or add \
+         --restart to replace what it holds", .path.display()
+    )]
+    OtherRun {
+        /// Which folder.
+        path: PathBuf,
+        /// What is different about it.
+        reason: String,
+    },
+    /// Another program writes to the output folder.
+    #[error(
+        "the output folder {} is in use by {holder}: wait for it, stop it, or choose another folder \
+         with --out", .path.display()
+    )]
+    Taken {
+        /// Which folder.
+        path: PathBuf,
+        /// Who writes to it.
+        holder: String,
+    },
     /// A file or folder could not be written.
     #[error("cannot write {}", .path.display())]
     Write {

@@ -1,18 +1,27 @@
-//! A run's output folder: files that appear whole or not at all.
+//! A run's output folder: one run's files, and one program at a time that writes them.
 //!
-//! In: a path. Out: a folder that holds one run's files and nothing of an earlier run's. A folder
-//! that holds anything but an earlier run is left alone: see [`OutputError::ForeignFolder`].
+//! In: a path. Out: a locked folder that holds one run's files and nothing of an earlier run's. A
+//! folder that holds anything but an earlier run is left alone: see [`OutputError::ForeignFolder`].
+//! Of what is in a run's folder, only files by the names that runs give are ever removed.
 
 use super::OutputError;
-use crate::files::write_whole;
+use super::digest::Digested;
+use crate::files::{
+    FolderLock, GrowingFile, LOCK, LockError, is_temporary, read_whole, remove_file, sync_file,
+    sync_folder, write_whole, write_whole_unsynced,
+};
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The file that says a folder is a run's.
 pub const SUMMARY: &str = "summary.json";
 /// The file from which a run that was stopped goes on.
 pub const CHECKPOINT: &str = "checkpoint.bin";
+/// The samples that belong to [`CHECKPOINT`].
+pub const SAMPLES: &str = "checkpoint-samples.bin";
+/// Largest summary that is read [bytes].
+const LARGEST: u64 = 256 << 20;
 /// The folder of the grains' files.
 const GRAINS: &str = "grains";
 /// What [`SUMMARY`] contains in a run's folder.
@@ -22,24 +31,42 @@ const MARK: &[u8] = b"\"program\": \"grainfall\"";
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
+    lock: FolderLock,
 }
 
 impl OutputFolder {
-    /// Makes the folder, or clears it of an earlier run's grains but for the files named in `kept`.
+    /// Makes the folder where it is missing, and locks it. What is in it stays as it is.
     ///
     /// # Errors
-    /// When it holds other files than a run's, or cannot be written.
-    pub fn open(path: &Path, kept: &[&str]) -> Result<Self, OutputError> {
+    /// When it holds other files than a run's, another program writes to it, or it cannot be
+    /// written.
+    pub fn lock(path: &Path) -> Result<Self, OutputError> {
         let failed = |source| OutputError::write(path, source);
-        let folder = Self {
-            path: path.to_owned(),
-        };
-        fs::create_dir_all(path).map_err(failed)?;
-        if folder.is_foreign().map_err(failed)? {
+        if path.exists() && is_foreign(path).map_err(failed)? {
             return Err(OutputError::ForeignFolder(path.to_owned()));
         }
-        folder.clear(kept).map_err(failed)?;
-        Ok(folder)
+        fs::create_dir_all(path).map_err(failed)?;
+        let lock = FolderLock::of(path).map_err(|error| match error {
+            LockError::Taken(holder) => OutputError::Taken {
+                path: path.to_owned(),
+                holder,
+            },
+            LockError::Unwritten(source) => OutputError::write(&path.join(LOCK), source),
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            lock,
+        })
+    }
+
+    /// What people should know of it, in sentences.
+    pub fn warning(&self) -> Option<String> {
+        (!self.lock.holds()).then(|| {
+            format!(
+                "the file system of {} has no locks: see to it that no other run writes there",
+                self.path.display()
+            )
+        })
     }
 
     /// The folder itself.
@@ -47,12 +74,26 @@ impl OutputFolder {
         &self.path
     }
 
+    /// The text of the summary that is in it, if there is one.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn summary(&self) -> io::Result<Option<String>> {
+        let path = self.path.join(SUMMARY);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let bytes = read_whole(&path, LARGEST)?;
+        Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
+    }
+
     /// Name of the grains' file number `index` with this extension, relative to the folder.
     pub fn grains_name(index: usize, extension: &str) -> String {
         format!("{GRAINS}/grains_{index:06}.{extension}")
     }
 
-    /// Writes the file called `name` with what `fill` writes, whole or not at all.
+    /// Writes the file called `name` with what `fill` writes, whole or not at all, and returns the
+    /// digest of its bytes.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -60,8 +101,71 @@ impl OutputFolder {
         &self,
         name: &str,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<(), OutputError> {
-        write_file(&self.path.join(name), fill)
+    ) -> Result<String, OutputError> {
+        let mut digest = String::new();
+        let written = write_whole(&self.path.join(name), |file| {
+            digest = digested(file, fill)?;
+            Ok(())
+        });
+        self.named(name, written)?;
+        Ok(digest)
+    }
+
+    /// The same, durable only when [`OutputFolder::sync`] was called with its name.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write_unsynced(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<String, OutputError> {
+        let mut digest = String::new();
+        let written = write_whole_unsynced(&self.path.join(name), |file| {
+            digest = digested(file, fill)?;
+            Ok(())
+        });
+        self.named(name, written)?;
+        Ok(digest)
+    }
+
+    /// Makes the files called `names`, which lie in one folder, durable.
+    ///
+    /// # Errors
+    /// When the disk fails.
+    pub fn sync(&self, names: &[String]) -> Result<(), OutputError> {
+        for name in names {
+            self.named(name, sync_file(&self.path.join(name)))?;
+        }
+        let folder = names.last().map(|name| self.path.join(name));
+        match folder.as_deref().and_then(Path::parent) {
+            Some(folder) => {
+                sync_folder(folder).map_err(|source| OutputError::write(folder, source))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Begins the growing file called `name` with `head` and `tail`.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn begin(
+        &self,
+        name: &str,
+        head: &[u8],
+        tail: &'static [u8],
+    ) -> Result<GrowingFile, OutputError> {
+        let path = self.path.join(name);
+        GrowingFile::begin(&path, head, tail).map_err(|source| OutputError::write(&path, source))
+    }
+
+    /// Tells `outcome` of a call about the file called `name` with its path.
+    ///
+    /// # Errors
+    /// That of the outcome.
+    pub fn named<T>(&self, name: &str, outcome: io::Result<T>) -> Result<T, OutputError> {
+        outcome.map_err(|source| OutputError::write(&self.path.join(name), source))
     }
 
     /// Removes the file called `name`, if there is one.
@@ -69,48 +173,75 @@ impl OutputFolder {
     /// # Errors
     /// When it cannot be removed.
     pub fn remove(&self, name: &str) -> Result<(), OutputError> {
-        let path = self.path.join(name);
-        match fs::remove_file(&path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                Err(OutputError::write(&path, error))
-            }
-            _ => Ok(()),
-        }
+        self.named(name, remove_file(&self.path.join(name)))
     }
 
-    /// Whether it holds files and no summary of a run.
-    fn is_foreign(&self) -> io::Result<bool> {
-        let summary = self.path.join(SUMMARY);
-        if summary.is_file() && contains(&fs::read(summary)?, MARK) {
-            return Ok(false);
+    /// Removes the files called `names`, the grains' files, and what was not whole when a program
+    /// stopped here, but for what is `kept`.
+    ///
+    /// # Errors
+    /// When one of them cannot be removed.
+    pub fn clear(&self, names: &[&str], kept: &[&str]) -> Result<(), OutputError> {
+        for name in names.iter().filter(|name| !kept.contains(name)) {
+            self.remove(name)?;
         }
-        for entry in fs::read_dir(&self.path)? {
-            let name = entry?.file_name();
-            if name != GRAINS && name != CHECKPOINT {
-                return Ok(true);
-            }
-        }
-        let grains = self.path.join(GRAINS);
-        Ok(grains.is_dir() && fs::read_dir(grains)?.next().is_some())
-    }
-
-    fn clear(&self, kept: &[&str]) -> io::Result<()> {
-        let grains = self.path.join(GRAINS);
-        if !grains.is_dir() {
-            return Ok(());
-        }
-        for entry in fs::read_dir(grains)? {
-            let entry = entry?;
-            let name = entry.file_name();
-            let own = name.to_str().is_some_and(|name| {
-                is_grains_file(name) && !kept.contains(&format!("{GRAINS}/{name}").as_str())
-            });
-            if own {
-                fs::remove_file(entry.path())?;
-            }
+        let left = self.leftovers(kept);
+        for path in left.map_err(|source| OutputError::write(&self.path, source))? {
+            remove_file(&path).map_err(|source| OutputError::write(&path, source))?;
         }
         Ok(())
     }
+
+    /// Grains' files that are not `kept`, and files that were never whole.
+    fn leftovers(&self, kept: &[&str]) -> io::Result<Vec<PathBuf>> {
+        let grains = self.path.join(GRAINS);
+        let mut left = Vec::new();
+        for folder in [&self.path, &grains]
+            .into_iter()
+            .filter(|path| path.is_dir())
+        {
+            for entry in fs::read_dir(folder)? {
+                let entry = entry?;
+                let name = entry.file_name().to_string_lossy().into_owned();
+                let is_own = *folder == grains
+                    && is_grains_file(&name)
+                    && !kept.contains(&format!("{GRAINS}/{name}").as_str());
+                if (is_own || is_temporary(&name)) && entry.file_type()?.is_file() {
+                    left.push(entry.path());
+                }
+            }
+        }
+        Ok(left)
+    }
+}
+
+/// Writes to `file` what `fill` writes, and returns its digest.
+fn digested(
+    file: &mut dyn Write,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<String> {
+    let mut file = Digested::new(file);
+    fill(&mut file)?;
+    Ok(file.digest())
+}
+
+/// Whether the folder at `path` holds files and no summary of a run.
+fn is_foreign(path: &Path) -> io::Result<bool> {
+    let summary = path.join(SUMMARY);
+    if summary.is_file() && contains(&read_whole(&summary, LARGEST)?, MARK) {
+        return Ok(false);
+    }
+    let grains = path.join(GRAINS);
+    for entry in fs::read_dir(path)? {
+        let name = entry?.file_name();
+        let of_a_run = [GRAINS, CHECKPOINT, SAMPLES, LOCK]
+            .iter()
+            .any(|own| name == *own);
+        if !of_a_run && !name.to_str().is_some_and(is_temporary) {
+            return Ok(true);
+        }
+    }
+    Ok(grains.is_dir() && fs::read_dir(grains)?.next().is_some())
 }
 
 /// Writes the file at `path` with what `fill` writes, whole or not at all.

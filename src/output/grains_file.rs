@@ -1,5 +1,5 @@
-//! The grains as VTK files: one per output time and a `.pvd` that lists them. Spheres are points
-//! (`.vtp`), polyhedra are cells (`.vtu`, see `polyhedra_file`).
+//! The grains as VTK files, one per output time. Spheres are points (`.vtp`), polyhedra are cells
+//! (`.vtu`, see `polyhedra_file`); `collection_file` lists them.
 //!
 //! In: a world. Out: a file. `ParaView` opens `grains.pvd` as a series in time; of points, *Glyph*
 //! with spheres scaled by `radius` (scale factor 2), or *Point Gaussian* with `radius` as its scale
@@ -9,11 +9,7 @@ use super::polyhedra_file::write_polyhedra;
 use super::vtk::{Array, DataSet};
 use crate::run::Provenance;
 use crate::world::World;
-use std::fmt::Write as _;
 use std::io::{self, Write};
-
-/// Name of the list of the grains' files.
-pub const COLLECTION: &str = "grains.pvd";
 
 /// Extension of the files of the grains of `world`.
 pub fn extension(world: &World) -> &'static str {
@@ -77,28 +73,4 @@ fn write_spheres(world: &World, from: &Provenance, file: &mut dyn Write) -> io::
         ],
     };
     points.write(from, file)
-}
-
-/// Writes the list of grains' files, each with its time [s], all `from` one run, to `file`.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn write_collection(
-    frames: &[(f64, String)],
-    from: &Provenance,
-    file: &mut dyn Write,
-) -> io::Result<()> {
-    let mut text = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
-         byte_order=\"LittleEndian\">\n  <Collection>\n",
-    );
-    for (time, name) in frames {
-        writeln!(
-            text,
-            "    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{name}\"/>"
-        )
-        .map_err(io::Error::other)?;
-    }
-    text.push_str("  </Collection>\n</VTKFile>\n");
-    file.write_all(from.in_xml(&text).as_bytes())
 }

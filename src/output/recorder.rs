@@ -1,28 +1,43 @@
 //! Which file of a run is written when.
 //!
 //! In: a [`RunSoFar`] at each output time, and one at the end. Out: the files of the folder, each
-//! whole; whatever happens after a file was written, it stays.
+//! whole at any time; whatever happens after a file was written, it stays. The series and the list
+//! of the grains' files grow with the run, and are made durable with them at an output, at most once
+//! a second. Bytes written grow like what there is to say: nothing but the summary is written twice.
 
-use super::folder::{OutputFolder, SUMMARY};
-use super::grains_file::{COLLECTION, extension, write_collection, write_grains};
+use super::collection_file::{COLLECTION, CollectionFile, Frame, write_collection};
+use super::folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY};
+use super::grains_file::{extension, write_grains};
 use super::profile_files::{FLOW, PROFILE, write_flow, write_profile};
-use super::series_file::{SERIES, write_series};
+use super::series_file::{SERIES, SeriesFile};
 use super::summary_file::SummaryFile;
 use super::velocity_file::{VELOCITY, write_velocity};
 use super::{Ending, OutputError, RunSoFar};
-use crate::measure::{Deposit, Measure, SMALLEST_DROP, Series, Summary, summarise};
+use crate::measure::{Deposit, Summary};
 use crate::run::{Provenance, TABLES_METADATA, VERSION};
 use crate::scene::Scene;
 use crate::solver::{Extremes, TimeStepAdvice, advise};
 use crate::world::{Clock, World};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Wall-clock time after which a run that goes on writes its series anew, for those who look at it
-/// meanwhile.
-const LISTING_TIME: Duration = Duration::from_secs(10);
+/// Least wall-clock time between two times that outputs are made durable.
+const SYNC_TIME: Duration = Duration::from_secs(1);
+/// Files by these names are a run's own; those of an earlier run give way to a later one.
+const OWN: [&str; 8] = [
+    CHECKPOINT,
+    SAMPLES,
+    SERIES,
+    COLLECTION,
+    FLOW,
+    VELOCITY,
+    PROFILE,
+    TABLES_METADATA,
+];
 
 /// What is recorded.
 #[derive(Clone, Debug)]
@@ -38,18 +53,26 @@ pub struct Subject {
 }
 
 /// What was written so far, to go on with later.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Written {
-    /// The grains' files, each with its time [s] and its name.
-    frames: Vec<(f64, String)>,
+    /// The grains' files.
+    frames: Vec<Frame>,
     /// Outputs that are done or past.
     outputs: u64,
+    /// Wall-clock time that it took [s].
+    wall_time: f64,
 }
 
 impl Written {
-    /// The names of the grains' files.
-    pub fn names(&self) -> Vec<&str> {
-        self.frames.iter().map(|(_, name)| name.as_str()).collect()
+    /// The first of the grains' files that `folder` does not hold.
+    pub fn missing(&self, folder: &Path) -> Option<&str> {
+        let mut names = self.frames.iter().map(|frame| frame.name.as_str());
+        names.find(|name| !folder.join(name).is_file())
+    }
+
+    /// Wall-clock time that the run took until then [s].
+    pub fn wall_time(&self) -> f64 {
+        self.wall_time
     }
 }
 
@@ -59,33 +82,92 @@ pub struct Recorder {
     extremes: Extremes,
     folder: OutputFolder,
     written: Written,
+    series: Option<SeriesFile>,
+    collection: Option<CollectionFile>,
+    /// The grains' files that are not durable yet.
+    unsynced: Vec<String>,
+    /// When all that was written was last made durable.
+    synced: Instant,
     /// When the run was begun or gone on with.
     started: Instant,
-    /// When the lists of what was written were last written themselves.
-    listed: Instant,
 }
 
 impl Recorder {
-    /// Marks `folder` as that of a run of `subject` of which so much was `written` before.
+    /// Makes `folder` that of a run of `subject`: of an earlier run nothing is left in it.
     ///
     /// # Errors
     /// When the folder cannot be written.
-    pub fn open(
+    pub fn begin(subject: Subject, folder: OutputFolder) -> Result<Self, OutputError> {
+        // A checkpoint must not be taken for one of the run that the summary is of.
+        folder.remove(CHECKPOINT)?;
+        let mut recorder = Self::new(subject, folder, Written::default());
+        recorder.mark()?;
+        recorder.folder.clear(&OWN, &[])?;
+        recorder.begin_collection()?;
+        Ok(recorder)
+    }
+
+    /// Goes on in `folder` with a run of `subject` of which so much was `written` before; what was
+    /// written later is removed, as it is computed again.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn go_on(
         subject: Subject,
         folder: OutputFolder,
         written: Written,
     ) -> Result<Self, OutputError> {
-        let recorder = Self {
+        let mut recorder = Self::new(subject, folder, written);
+        recorder.mark()?;
+        recorder.begin_collection()?;
+        let frames = recorder.written.frames.iter();
+        let kept = [CHECKPOINT, SAMPLES, SERIES, COLLECTION].into_iter();
+        let kept: Vec<&str> = kept
+            .chain(frames.map(|frame| frame.name.as_str()))
+            .collect();
+        recorder.folder.clear(&OWN, &kept)?;
+        Ok(recorder)
+    }
+
+    /// Of a run of `subject` in `folder` that is done, with all that was `written`: nothing is
+    /// written any more.
+    pub fn of_done(subject: Subject, folder: OutputFolder, written: Written) -> Self {
+        Self::new(subject, folder, written)
+    }
+
+    fn new(subject: Subject, folder: OutputFolder, written: Written) -> Self {
+        Self {
             extremes: Extremes::of(&subject.scene),
             subject,
             folder,
             written,
+            series: None,
+            collection: None,
+            unsynced: Vec::new(),
+            synced: Instant::now(),
             started: Instant::now(),
-            listed: Instant::now(),
-        };
-        let advice = recorder.advice(None);
-        recorder.write_summary(None, "running", None, advice.warning.as_slice())?;
-        Ok(recorder)
+        }
+    }
+
+    /// Says in the folder that a run goes on there.
+    fn mark(&self) -> Result<(), OutputError> {
+        let advice = self.advice(None);
+        self.write_summary(
+            None,
+            "running",
+            None,
+            advice.warning.as_slice(),
+            &BTreeMap::new(),
+        )
+    }
+
+    fn begin_collection(&mut self) -> Result<(), OutputError> {
+        if self.subject.grains {
+            let from = self.provenance(None);
+            let file = CollectionFile::begin(&self.folder, &self.written.frames, &from)?;
+            self.collection = Some(file);
+        }
+        Ok(())
     }
 
     /// The step of the next output; none where grains are not written.
@@ -94,23 +176,41 @@ impl Recorder {
         self.subject.grains.then(|| clock.step_at(time))
     }
 
-    /// Writes what is due at the present state.
+    /// Writes what is new at the present state; says whether that was an output.
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn record(&mut self, run: RunSoFar) -> Result<(), OutputError> {
+    pub fn record(&mut self, run: RunSoFar) -> Result<bool, OutputError> {
+        self.write_series(Some(run))?;
         let clock = &run.world.clock;
         let is_due = |step: Option<u64>| step.is_some_and(|step| step <= clock.step);
-        if is_due(self.next_output(clock)) {
+        let is_output = is_due(self.next_output(clock));
+        if is_output {
             self.write_grains(run.world)?;
+            if self.synced.elapsed() >= SYNC_TIME {
+                self.sync()?;
+            }
         }
         while is_due(self.next_output(clock)) {
             self.written.outputs += 1;
         }
-        if self.listed.elapsed() > LISTING_TIME {
-            self.write_lists(Some(run))?;
-            self.listed = Instant::now();
+        Ok(is_output)
+    }
+
+    /// Makes all that was written durable.
+    ///
+    /// # Errors
+    /// When the disk fails.
+    pub fn sync(&mut self) -> Result<(), OutputError> {
+        self.folder.sync(&self.unsynced)?;
+        self.unsynced.clear();
+        if let Some(series) = &self.series {
+            series.sync(&self.folder)?;
         }
+        if let Some(collection) = &self.collection {
+            collection.sync(&self.folder)?;
+        }
+        self.synced = Instant::now();
         Ok(())
     }
 
@@ -127,89 +227,128 @@ impl Recorder {
     ) -> Result<Summary, OutputError> {
         if let Some(RunSoFar { world, .. }) = run
             && self.subject.grains
-            && self.written.frames.last().map(|(time, _)| *time) != Some(world.time())
+            && self.written.frames.last().map(|frame| frame.time) != Some(world.time())
         {
             self.write_grains(world)?;
         }
-        self.write_lists(run)?;
-        self.write_tables(run)?;
-        let results = match &run {
-            Some(run) => run.results(),
-            None => summarise(&Series::default(), 0.0, SMALLEST_DROP),
-        };
+        self.write_series(run)?;
+        self.sync()?;
+        let mut files = self.write_tables(run)?;
+        if self.subject.grains {
+            let from = self.provenance(run);
+            let frames = &self.written.frames;
+            let digest = write_collection(&self.folder, frames, &from)?;
+            files.insert(COLLECTION.into(), digest);
+            let frames = frames.iter();
+            files.extend(frames.map(|frame| (frame.name.clone(), frame.digest.clone())));
+        }
+        let results = RunSoFar::results_of(run);
         let end = Some((ending, &results));
-        self.write_summary(run, ending.status(), end, warnings)?;
+        self.write_summary(run, ending.status(), end, warnings, &files)?;
         Ok(results)
     }
 
     /// What was written so far.
-    pub fn written(&self) -> &Written {
-        &self.written
+    pub fn written(&self) -> Written {
+        Written {
+            wall_time: self.wall_time(),
+            ..self.written.clone()
+        }
     }
 
-    /// Wall-clock time since the run was begun or gone on with [s].
+    /// The folder that is written to.
+    pub fn folder(&self) -> &OutputFolder {
+        &self.folder
+    }
+
+    /// Wall-clock time of the run, without that between a stop and going on [s].
     pub fn wall_time(&self) -> f64 {
-        self.started.elapsed().as_secs_f64()
+        self.written.wall_time + self.started.elapsed().as_secs_f64()
     }
 
     fn write_grains(&mut self, world: &World) -> Result<(), OutputError> {
         let name = OutputFolder::grains_name(self.written.frames.len(), extension(world));
         let from = Provenance::of(&self.subject.scene, world);
-        self.folder
-            .write(&name, |file| write_grains(world, &from, file))?;
-        self.written.frames.push((world.time(), name));
+        let digest = self
+            .folder
+            .write_unsynced(&name, |file| write_grains(world, &from, file))?;
+        self.unsynced.push(name.clone());
+        let frame = Frame {
+            time: world.time(),
+            name,
+            digest,
+        };
+        if let Some(collection) = &mut self.collection {
+            collection.add(&self.folder, &frame)?;
+        }
+        self.written.frames.push(frame);
         Ok(())
     }
 
-    /// Writes the samples so far and the list of the grains' files.
-    fn write_lists(&self, run: Option<RunSoFar>) -> Result<(), OutputError> {
-        let none = Series::default();
-        let series = run.map_or(&none, |run| run.series);
-        let measures = run.map_or_else(Vec::new, |run| Measure::of(run.world));
-        self.folder
-            .write(SERIES, |file| write_series(series, &measures, file))?;
-        if !self.subject.grains {
-            return Ok(());
+    /// Writes the samples that are new.
+    fn write_series(&mut self, run: Option<RunSoFar>) -> Result<(), OutputError> {
+        match (&mut self.series, run) {
+            (Some(series), Some(run)) => series.go_on(&self.folder, run),
+            (Some(_), None) => Ok(()),
+            (None, run) => {
+                self.series = Some(SeriesFile::begin(&self.folder, run)?);
+                Ok(())
+            }
         }
-        let from = self.provenance(run);
-        self.folder.write(COLLECTION, |file| {
-            write_collection(&self.written.frames, &from, file)
-        })
     }
 
-    /// Writes the tables of a run's end and what says where they come from.
-    fn write_tables(&self, run: Option<RunSoFar>) -> Result<(), OutputError> {
+    /// Writes the tables of a run's end and what says where they come from; returns the digests of
+    /// all tables.
+    fn write_tables(&self, run: Option<RunSoFar>) -> Result<BTreeMap<String, String>, OutputError> {
         let from = run.map_or(0.0, |run| run.results_from());
         let flow = run.map(|run| run.flow.since(from));
         let flow = flow.filter(|profile| !profile.depth.is_empty());
         let fastest = run.and_then(|run| run.flow.fastest_since(from));
         let deposit = run.and_then(|run| Deposit::of(run.world));
         let heights = deposit.map(|deposit| deposit.height_profile());
-        let written = [
-            Some(SERIES),
-            self.write_table(FLOW, flow.as_ref(), write_flow)?,
-            self.write_table(VELOCITY, fastest, write_velocity)?,
-            self.write_table(PROFILE, heights.as_ref(), write_profile)?,
+        let series = self.series.as_ref().map(SeriesFile::digest);
+        let tables = [
+            (SERIES, series),
+            (FLOW, self.write_table(FLOW, flow.as_ref(), write_flow)?),
+            (
+                VELOCITY,
+                self.write_table(VELOCITY, fastest, write_velocity)?,
+            ),
+            (
+                PROFILE,
+                self.write_table(PROFILE, heights.as_ref(), write_profile)?,
+            ),
         ];
-        let written: Vec<&str> = written.into_iter().flatten().collect();
+        let written = tables
+            .iter()
+            .filter_map(|(name, digest)| digest.as_ref().map(|_| *name));
+        let written: Vec<&str> = written.collect();
         let from = self.provenance(run);
-        self.folder
-            .write(TABLES_METADATA, |file| from.write_tables(&written, file))
+        let metadata = self
+            .folder
+            .write(TABLES_METADATA, |file| from.write_tables(&written, file))?;
+        let tables = tables
+            .into_iter()
+            .chain([(TABLES_METADATA, Some(metadata))]);
+        Ok(tables
+            .filter_map(|(name, digest)| Some((name.to_owned(), digest?)))
+            .collect())
     }
 
-    /// Writes the table called `name` and returns its name; where the run has nothing for it, none
-    /// of an earlier run is left.
+    /// Writes the table called `name` and returns its digest; where the run has nothing for it,
+    /// there is none.
     fn write_table<T>(
         &self,
         name: &'static str,
         content: Option<&T>,
         write: fn(&T, &mut dyn Write) -> io::Result<()>,
-    ) -> Result<Option<&'static str>, OutputError> {
-        match content {
-            Some(content) => self.folder.write(name, |file| write(content, file))?,
-            None => self.folder.remove(name)?,
-        }
-        Ok(content.map(|_| name))
+    ) -> Result<Option<String>, OutputError> {
+        let Some(content) = content else {
+            self.folder.remove(name)?;
+            return Ok(None);
+        };
+        let digest = self.folder.write(name, |file| write(content, file))?;
+        Ok(Some(digest))
     }
 
     /// Where the files of the run so far come from.
@@ -235,6 +374,7 @@ impl Recorder {
         status: &'static str,
         end: Option<(&Ending, &Summary)>,
         warnings: &[String],
+        files: &BTreeMap<String, String>,
     ) -> Result<(), OutputError> {
         let world = run.map(|run| run.world);
         let scene = &self.subject.scene;
@@ -256,7 +396,9 @@ impl Recorder {
             wall_time: self.wall_time(),
             threads: self.subject.threads,
             warnings,
+            files,
         };
-        self.folder.write(SUMMARY, |file| summary.write(file))
+        self.folder.write(SUMMARY, |file| summary.write(file))?;
+        Ok(())
     }
 }

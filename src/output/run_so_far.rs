@@ -1,6 +1,6 @@
 //! What files and results show of a run.
 
-use crate::measure::{FlowHistory, LEFT_OUT, SMALLEST_DROP, Series, Summary, results};
+use crate::measure::{FlowHistory, LEFT_OUT, SMALLEST_DROP, Series, Summary, results, summarise};
 use crate::run::{Run, StampedCommand};
 use crate::world::World;
 
@@ -37,5 +37,13 @@ impl<'a> RunSoFar<'a> {
     /// The results so far.
     pub fn results(&self) -> Summary {
         results(self.series, self.world, self.results_from(), SMALLEST_DROP)
+    }
+
+    /// The results of `run`; of one that never stood at time zero, none.
+    pub fn results_of(run: Option<Self>) -> Summary {
+        match run {
+            Some(run) => run.results(),
+            None => summarise(&Series::default(), 0.0, SMALLEST_DROP),
+        }
     }
 }

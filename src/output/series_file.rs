@@ -1,22 +1,103 @@
 //! `series.csv`: one row per sample, one column per quantity that has a meaning in the scene,
 //! headed `key [unit]`, in SI units.
+//!
+//! In: a run so far, again and again. Out: the file, which grows by the rows that are new.
 
+use super::{OutputError, OutputFolder, RunSoFar};
+use crate::files::GrowingFile;
 use crate::measure::{Measure, Series};
 use std::io::{self, Write};
+use std::ops::Range;
 
 /// The file's name.
 pub const SERIES: &str = "series.csv";
 
-/// Writes the `measures` of `series` to `file`.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn write_series(series: &Series, measures: &[Measure], file: &mut dyn Write) -> io::Result<()> {
+/// The file of a run.
+pub struct SeriesFile {
+    file: GrowingFile,
+    measures: Vec<Measure>,
+    /// Samples that are in it.
+    rows: usize,
+    digest: blake3::Hasher,
+}
+
+impl SeriesFile {
+    /// Writes the file with what there is of `run`; of none, its head alone.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn begin(folder: &OutputFolder, run: Option<RunSoFar>) -> Result<Self, OutputError> {
+        let measures = run.map_or_else(Vec::new, |run| Measure::of(run.world));
+        let rows = run.map_or(0, |run| run.series.len());
+        let mut text = Vec::new();
+        let written = write_head(&measures, &mut text).and_then(|()| match run {
+            Some(run) => write_rows(run.series, 0..rows, &measures, &mut text),
+            None => Ok(()),
+        });
+        folder.named(SERIES, written)?;
+        let mut digest = blake3::Hasher::new();
+        digest.update(&text);
+        Ok(Self {
+            file: folder.begin(SERIES, &text, b"")?,
+            measures,
+            rows,
+            digest,
+        })
+    }
+
+    /// Adds what is new of `run`. Where other quantities have got a meaning since, the file is
+    /// written anew.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn go_on(&mut self, folder: &OutputFolder, run: RunSoFar) -> Result<(), OutputError> {
+        if run.series.len() == self.rows {
+            return Ok(());
+        }
+        if Measure::of(run.world) != self.measures {
+            *self = Self::begin(folder, Some(run))?;
+            return Ok(());
+        }
+        let mut text = Vec::new();
+        let new = self.rows..run.series.len();
+        let added = write_rows(run.series, new, &self.measures, &mut text)
+            .and_then(|()| self.file.add(&text));
+        folder.named(SERIES, added)?;
+        self.digest.update(&text);
+        self.rows = run.series.len();
+        Ok(())
+    }
+
+    /// Makes it durable.
+    ///
+    /// # Errors
+    /// When the disk fails.
+    pub fn sync(&self, folder: &OutputFolder) -> Result<(), OutputError> {
+        folder.named(SERIES, self.file.sync())
+    }
+
+    /// The digest of its bytes.
+    pub fn digest(&self) -> String {
+        self.digest.finalize().to_hex().to_string()
+    }
+}
+
+fn write_head(measures: &[Measure], file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
     let head = |measure: &Measure| measure.quantity().column();
     let first = ["step [1]", "time [s]"].map(str::to_owned);
     writer.write_record(first.into_iter().chain(measures.iter().map(head)))?;
-    for sample in (0..series.len()).filter_map(|index| series.get(index)) {
+    writer.flush()
+}
+
+fn write_rows(
+    series: &Series,
+    rows: Range<usize>,
+    measures: &[Measure],
+    file: &mut dyn Write,
+) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(file);
+    for sample in rows.filter_map(|index| series.get(index)) {
         writer.write_field(sample.step.to_string())?;
         writer.write_field(format!("{:?}", sample.time))?;
         // The shortest text that reads back as the same bits.

@@ -5,6 +5,7 @@ use crate::run::{StampedCommand, fingerprint};
 use crate::scene::Scene;
 use crate::solver::{Fault, TimeStepAdvice};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// All that `summary.json` holds, in SI units.
@@ -44,6 +45,8 @@ pub struct SummaryFile<'a> {
     pub threads: usize,
     /// What people should know, in sentences.
     pub warnings: &'a [String],
+    /// The files that were written, by their names relative to the folder, each with its digest.
+    pub files: &'a BTreeMap<String, String>,
 }
 
 impl SummaryFile<'_> {
@@ -52,13 +55,7 @@ impl SummaryFile<'_> {
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, file: &mut dyn Write) -> io::Result<()> {
-        let commands = self.commands.iter();
-        let fingerprint = fingerprint(
-            self.scene,
-            commands.map(|stamped| (Some(stamped.step), &stamped.command)),
-            self.steps,
-            self.state_hash.as_deref(),
-        );
+        let fingerprint = fingerprint(&serde_json::to_value(self)?);
         let signed = Signed {
             summary: self,
             fingerprint,
@@ -73,5 +70,5 @@ impl SummaryFile<'_> {
 struct Signed<'a> {
     #[serde(flatten)]
     summary: &'a SummaryFile<'a>,
-    fingerprint: Option<String>,
+    fingerprint: String,
 }

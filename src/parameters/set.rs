@@ -26,6 +26,40 @@ impl Scene {
     /// When there is no such key, the text is no such value, or the scene does not hold together
     /// with it; the scene is then as it was.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), SceneError> {
+        let mut changed = self.clone();
+        changed.put(key, text)?;
+        let origin = format!("{key}={text}");
+        let checked = changed.problem();
+        checked.map_err(|problem| SceneError::outside_of_files(&origin, problem))?;
+        *self = changed;
+        Ok(())
+    }
+
+    /// Replaces several values, in order, which need to hold together only all at once.
+    ///
+    /// # Errors
+    /// Where they do not, that of the first one with which the scene does not; the scene is then as
+    /// it was.
+    pub fn set_all(&mut self, values: &[(&str, &str)]) -> Result<(), SceneError> {
+        let mut changed = self.clone();
+        let one_by_one = values
+            .iter()
+            .try_for_each(|(key, text)| changed.set(key, text));
+        if let Err(refusal) = one_by_one {
+            changed = self.clone();
+            for (key, text) in values {
+                changed.put(key, text)?;
+            }
+            if changed.problem().is_err() {
+                return Err(refusal);
+            }
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Replaces one value, whether the scene holds together with it or not.
+    fn put(&mut self, key: &str, text: &str) -> Result<(), SceneError> {
         let origin = format!("{key}={text}");
         let refuse = |problem| SceneError::outside_of_files(&origin, problem);
         let (parameter, own) = self.of_scene(key).ok_or_else(|| refuse(unknown(key)))?;
@@ -38,11 +72,7 @@ impl Scene {
             ))
         };
         let value = row.parse(text).ok_or_else(unfit)?;
-        let mut changed = self.clone();
-        (own.write)(&mut changed, parameter.names(), value).ok_or_else(unfit)?;
-        changed.problem().map_err(refuse)?;
-        *self = changed;
-        Ok(())
+        (own.write)(self, parameter.names(), value).ok_or_else(unfit)
     }
 
     /// The parameter called `key` that it has, or else one that other scenes have.

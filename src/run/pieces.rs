@@ -5,8 +5,12 @@
 
 use std::time::Duration;
 
-/// Steps that a piece has at least: taking a state in and giving it back costs as much as a dozen.
+/// Steps that a piece has at least, as long as they take no longer than [`LONGEST`]: taking a state
+/// in and giving it back costs as much as a dozen.
 const LEAST_STEPS: u64 = 50;
+/// Most wall-clock time that a piece takes where more than one step does not fit into it: whoever
+/// stops a run is answered within a second.
+const LONGEST: Duration = Duration::from_millis(500);
 /// Steps of the first piece, before it is known how long one takes.
 const FIRST_STEPS: u64 = 8;
 
@@ -36,8 +40,10 @@ impl Pieces {
         if steps == 0 {
             return;
         }
-        let fitting = steps as f64 * self.time.as_secs_f64() / time.as_secs_f64().max(1e-9);
+        let rate = steps as f64 / time.as_secs_f64().max(1e-9);
+        let fitting = |time: Duration| (rate * time.as_secs_f64()) as u64;
         let most = 4 * self.steps.max(steps);
-        self.steps = (fitting as u64).min(most).max(LEAST_STEPS);
+        let least = LEAST_STEPS.min(fitting(LONGEST)).max(1);
+        self.steps = fitting(self.time).min(most).max(least);
     }
 }

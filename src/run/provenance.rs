@@ -55,7 +55,7 @@ impl Provenance {
     /// From `scene`, of no one state.
     pub fn of_scene(scene: &Scene) -> Self {
         Self {
-            scene: scene.title.clone(),
+            scene: printable(&scene.title),
             seed: scene.seed,
             state: None,
             beside: None,
@@ -93,14 +93,18 @@ impl Provenance {
         let declared = xml.strip_prefix("<?xml").and_then(|rest| rest.find("?>"));
         let (head, body) = xml.split_at(declared.map_or(0, |end| end + "<?xml?>".len()));
         let space = if head.is_empty() { "" } else { "\n" };
-        // Two hyphens would end the comment.
-        let text = self.to_string().replace("--", "- -");
+        // Two hyphens would end the comment, and three hold two of them.
+        let mut text = self.to_string();
+        while text.contains("--") {
+            text = text.replace("--", "- -");
+        }
         format!("{head}{space}<!-- {text} -->\n{}", body.trim_start())
     }
 
     /// `svg` with a description that says so, which readers for the blind speak as well.
     pub fn in_svg(&self, svg: &str) -> String {
         let text = escaped(&self.to_string());
+        let svg = printable(svg);
         let start = svg.find("<svg").unwrap_or(0);
         let inside = svg[start..].find('>').map_or(0, |end| start + end + 1);
         let (head, body) = svg.split_at(inside);
@@ -146,6 +150,27 @@ impl fmt::Display for Provenance {
     }
 }
 
+/// `text` with what cannot be printed written out, as `\u{1b}`: no XML may hold it, and terminals
+/// obey it. Ends of lines and tabs stay.
+pub fn printable(text: &str) -> String {
+    let mut printable = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_unprintable(c) {
+            printable.extend(c.escape_unicode());
+        } else {
+            printable.push(c);
+        }
+    }
+    printable
+}
+
+/// Control characters, what turns the direction of the text after it, and what is no character.
+fn is_unprintable(c: char) -> bool {
+    let is_control = c.is_control() && !matches!(c, '\n' | '\t');
+    let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    is_control || turns || matches!(c, '\u{fffe}' | '\u{ffff}')
+}
+
 /// `text` as it stands in XML.
 fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;");
@@ -173,6 +198,25 @@ mod tests {
         assert!(svg.contains("<svg width=\"3\">\n<desc>Grainfall"), "{svg}");
         assert!(svg.contains("a --&gt; b &lt;c&gt; &amp; d”, seed"), "{svg}");
         assert!(svg.ends_with("</desc>\n<g/></svg>"), "{svg}");
+    }
+
+    #[test]
+    fn no_title_ends_a_comment_or_reaches_a_reader_as_a_control_character() {
+        let mut scene = Scene::open("bouncing-grain").unwrap();
+        for title in [
+            "a---b",
+            "a-----",
+            "--------b",
+            "\u{1b}[31m\u{7}\0 -\u{202e}- \r",
+        ] {
+            scene.title = title.into();
+            let xml = Provenance::of_scene(&scene).in_xml("<a/>");
+            let inside = &xml["<!--".len()..xml.find("-->").unwrap()];
+            assert!(!inside.contains("--") && !inside.ends_with('-'), "{xml}");
+            assert!(!xml.contains(is_unprintable), "{xml:?}");
+            let svg = Provenance::of_scene(&scene).in_svg("<svg>\u{8}</svg>");
+            assert!(!svg.contains(is_unprintable), "{svg:?}");
+        }
     }
 
     #[test]

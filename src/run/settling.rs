@@ -10,12 +10,16 @@
 //! a loss), they are calmed again. All stages are counted in steps: the same scene gives the same
 //! bits.
 
+use super::pieces::Pieces;
 use crate::measure::elastic_energy;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::solver::{Fault, Solver};
 use crate::world::{Clock, WallMotion, World};
 use glam::DVec3;
+use std::time::{Duration, Instant};
 
+/// Wall-clock time that a piece takes: whoever stops a run waits for it.
+const PIECE_TIME: Duration = Duration::from_millis(50);
 /// Share of its velocity that a grain keeps from one slice of the calming stage to the next.
 const KEPT: f64 = 0.9;
 /// Kinetic energy over `Σ m g r` at which calming ends.
@@ -43,7 +47,10 @@ pub struct Settling {
     /// The scene's world before settling.
     built: World,
     stage: SettlingStage,
+    /// Steps of a slice, and the step at which the present one ends.
     slice: u64,
+    slice_end: u64,
+    pieces: Pieces,
     /// `Σ m g r` [J].
     energy_scale: f64,
     /// Steps of the free fall, of a relaxation, and of everything at most.
@@ -70,8 +77,11 @@ impl Settling {
         let radius = mean(&world.grains.radius);
         let steps = |time: f64| (time / world.clock.time_step).ceil().max(1.0) as u64;
         let unit = (radius / gravity).sqrt();
+        let slice = steps(unit / SLICES);
         Self {
-            slice: steps(unit / SLICES),
+            slice,
+            slice_end: slice,
+            pieces: Pieces::of(PIECE_TIME),
             fall: steps((2.0 * extent(&world) / gravity).sqrt()),
             relaxation: steps(RELAXATION * unit),
             patience: steps(PATIENCE * unit),
@@ -84,13 +94,21 @@ impl Settling {
         }
     }
 
-    /// Moves the grains on by one short slice and says whether they are at rest.
+    /// Moves the grains on by a slice, or by a short piece of one, and says whether they are at
+    /// rest.
     ///
     /// # Errors
     /// The solver's [`Fault`].
     pub fn advance(&mut self) -> Result<bool, Fault> {
-        self.solver.advance(&mut self.world, self.slice)?;
+        let steps = (self.slice_end - self.world.clock.step).min(self.pieces.steps());
+        let started = Instant::now();
+        self.solver.advance(&mut self.world, steps)?;
+        self.pieces.fit(steps, started.elapsed());
         let step = self.world.clock.step;
+        if step < self.slice_end {
+            return Ok(false);
+        }
+        self.slice_end = step + self.slice;
         let agitation = self.world.kinetic_energy() / self.energy_scale;
         self.stage = match self.stage {
             _ if step >= self.patience => SettlingStage::AtRest,

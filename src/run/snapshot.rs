@@ -54,33 +54,58 @@ impl Snapshot {
     }
 }
 
-/// A run as a file can keep it: all it takes to go on in another process, to the same bits.
+/// A run as a file can keep it: all it takes to go on in another process, to the same bits. Its
+/// samples, which only ever become more, are kept apart from the rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Checkpoint {
     pub(super) world: World,
     pub(super) commands: Vec<StampedCommand>,
-    #[serde(with = "super::shared")]
+    #[serde(skip)]
     pub(super) series: Arc<Series>,
     #[serde(with = "super::shared")]
     pub(super) flow: Arc<FlowHistory>,
     pub(super) next_sample: u64,
 }
 
-impl Checkpoint {
-    /// The state `world` at the end of a run that had these `commands`, this `series` and this
-    /// `flow`.
+/// What a [`Checkpoint`] without its samples is read from.
+#[derive(Serialize)]
+pub struct CheckpointParts<'a> {
+    world: &'a World,
+    commands: &'a [StampedCommand],
+    flow: &'a FlowHistory,
+    next_sample: u64,
+}
+
+impl<'a> CheckpointParts<'a> {
+    /// Those of the state `world` at the end of a run that had these `commands`, so many `samples`
+    /// and this `flow`.
     pub fn of(
-        world: &World,
-        commands: &[StampedCommand],
-        series: &Series,
-        flow: &FlowHistory,
+        world: &'a World,
+        commands: &'a [StampedCommand],
+        samples: usize,
+        flow: &'a FlowHistory,
     ) -> Self {
         Self {
-            world: world.clone(),
-            commands: commands.to_vec(),
-            series: Arc::new(series.clone()),
-            flow: Arc::new(flow.clone()),
-            next_sample: next_sample(world, series.len() as u64),
+            world,
+            commands,
+            flow,
+            next_sample: next_sample(world, samples as u64),
+        }
+    }
+}
+
+impl Checkpoint {
+    /// The state at which the run goes on.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The same with the samples of the run until then.
+    #[must_use]
+    pub fn with_series(self, series: Series) -> Self {
+        Self {
+            series: Arc::new(series),
+            ..self
         }
     }
 }

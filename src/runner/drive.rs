@@ -6,9 +6,10 @@
 use super::checkpoint::{CheckpointFile, CheckpointLookup, Kept};
 use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
 use crate::measure::Summary;
-use crate::output::{Ending, OutputFolder, Recorder, RunSoFar, Subject, Written};
+use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
 use crate::run::Checkpoint;
 use crate::world::Clock;
+use serde_json::Value;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -23,6 +24,8 @@ pub struct Finished {
     pub wall_time: f64,
     /// What people should know, in sentences.
     pub warnings: Vec<String>,
+    /// Whether all of it was there already, and nothing was written.
+    pub was_done: bool,
 }
 
 /// Runs `job` by itself, without an app, until it is done, a fault occurs or `stop` says so;
@@ -57,6 +60,26 @@ pub fn run(
     Ok((finished, run))
 }
 
+/// Refuses `job` where that is known without running it: where it asks for something that cannot
+/// be, or its folder holds another run. Nothing is written.
+///
+/// # Errors
+/// The [`RunnerError`] that [`Runner::open`] would answer with.
+pub fn look(job: &Job) -> Result<(), RunnerError> {
+    job.check()?;
+    if job.restart || !job.checkpoints {
+        return Ok(());
+    }
+    match CheckpointFile::of(job)?.other() {
+        Some(reason) => Err(OutputError::OtherRun {
+            path: job.out.clone(),
+            reason,
+        }
+        .into()),
+        None => Ok(()),
+    }
+}
+
 impl DirectRun {
     /// The run that `job` asks for, at its beginning.
     pub fn of(job: &Job) -> Self {
@@ -72,41 +95,70 @@ pub struct Runner {
     checkpoints: Option<CheckpointFile>,
     /// Where the run goes on, if it was stopped before.
     checkpoint: Option<Checkpoint>,
+    /// Whether the folder holds all of it already.
+    is_done: bool,
     warnings: Vec<String>,
 }
 
 impl Runner {
-    /// Opens the folder of `job`, and what is kept there of it.
+    /// Checks `job`, then opens its folder, and what is kept there of it. A job that is refused
+    /// leaves the folder as it was.
     ///
     /// # Errors
-    /// When the folder holds other files or cannot be written.
+    /// When the job asks for something that cannot be, or its folder holds other files or another
+    /// run, is written to by another program or cannot be written.
     pub fn open(job: &Job) -> Result<Self, RunnerError> {
-        let checkpoints = job.checkpoints.then(|| CheckpointFile::of(job));
-        let checkpoints = checkpoints.transpose()?;
-        let mut warnings = Vec::new();
-        let (mut checkpoint, mut written) = (None, Written::default());
-        match checkpoints.as_ref().map(CheckpointFile::read) {
-            Some(CheckpointLookup::Kept(kept)) => {
-                written = kept.written;
-                checkpoint = Some(kept.checkpoint);
-            }
-            Some(CheckpointLookup::Damaged(warning)) => warnings.push(warning),
-            Some(CheckpointLookup::Nothing) | None => {}
-        }
-        let folder = OutputFolder::open(&job.out, &written.names())?;
+        job.check()?;
+        let folder = OutputFolder::lock(&job.out)?;
+        let mut checkpoints = job
+            .checkpoints
+            .then(|| CheckpointFile::of(job))
+            .transpose()?;
+        let kept = match &mut checkpoints {
+            Some(file) if !job.restart => find(job, file, &folder)?,
+            _ => None,
+        };
         let subject = Subject {
             scene: Arc::new(job.scene.clone()),
             name: job.name.clone(),
             threads: job.threads,
             grains: job.grains,
         };
+        let warnings = folder.warning().into_iter().collect();
+        let is_done = match &kept {
+            Some(kept) => is_done(kept, &folder, job.scene.duration)?,
+            None => false,
+        };
+        let (recorder, checkpoint) = match kept {
+            Some(kept) if is_done => {
+                let recorder = Recorder::of_done(subject, folder, kept.written);
+                (recorder, Some(kept.checkpoint))
+            }
+            Some(kept) => {
+                let recorder = Recorder::go_on(subject, folder, kept.written)?;
+                (recorder, Some(kept.checkpoint))
+            }
+            None => (Recorder::begin(subject, folder)?, None),
+        };
         Ok(Self {
             duration: job.scene.duration,
-            recorder: Recorder::open(subject, folder, written)?,
+            recorder,
             checkpoints,
             checkpoint,
+            is_done,
             warnings,
         })
+    }
+
+    /// Whether the folder holds all of the run already: then it is only read.
+    pub fn is_done(&self) -> bool {
+        self.is_done
+    }
+
+    /// Simulated time at which the run goes on, if it was stopped before [s].
+    pub fn goes_on_from(&self) -> Option<f64> {
+        let checkpoint = self.checkpoint.as_ref()?;
+        Some(checkpoint.world().time())
     }
 
     /// Where the run goes on, if it was stopped before.
@@ -125,28 +177,37 @@ impl Runner {
         stop: &dyn Fn() -> bool,
     ) -> Result<Finished, RunnerError> {
         let end = End::Time(self.duration);
-        let ending = drive(run, end, Some(&mut self), watch, stop)?;
-        if let Some(view) = run.at().state() {
+        let writing = (!self.is_done).then_some(&mut self);
+        let ending = drive(run, end, writing, watch, stop)?;
+        self.warnings.extend(run.warnings());
+        let view = run.at().state();
+        if self.is_done {
+            return Ok(Finished {
+                ending,
+                results: RunSoFar::results_of(view),
+                wall_time: self.recorder.written().wall_time(),
+                warnings: self.warnings,
+                was_done: true,
+            });
+        }
+        if let Some(view) = view {
             self.keep(view)?;
         }
-        self.warnings.extend(run.warnings());
-        let results = (self.recorder).finish(run.at().state(), &ending, &self.warnings)?;
+        let results = self.recorder.finish(view, &ending, &self.warnings)?;
         Ok(Finished {
             ending,
             results,
             wall_time: self.recorder.wall_time(),
             warnings: self.warnings,
+            was_done: false,
         })
     }
 
     /// Writes what is due at the present state; returns the step of the next output.
     fn record(&mut self, run: RunSoFar) -> Result<Option<u64>, RunnerError> {
-        self.recorder.record(run)?;
-        if self
-            .checkpoints
-            .as_ref()
-            .is_some_and(CheckpointFile::is_due)
-        {
+        let is_output = self.recorder.record(run)?;
+        let checkpoints = self.checkpoints.as_ref();
+        if checkpoints.is_some_and(|file| file.is_due(is_output)) {
             self.keep(run)?;
         }
         Ok(self.recorder.next_output(&run.world.clock))
@@ -157,13 +218,77 @@ impl Runner {
         let Some(file) = &mut self.checkpoints else {
             return Ok(());
         };
-        let checkpoint = Checkpoint::of(run.world, run.commands, run.series, run.flow);
-        let written = self.recorder.written().clone();
-        Ok(file.write(&Kept {
-            checkpoint,
-            written,
-        })?)
+        self.recorder.sync()?;
+        Ok(file.write(run, self.recorder.written())?)
     }
+}
+
+/// What is kept of `job` in its `folder`, from which it goes on.
+fn find(
+    job: &Job,
+    file: &mut CheckpointFile,
+    folder: &OutputFolder,
+) -> Result<Option<Kept>, RunnerError> {
+    let refuse = |reason: String| {
+        let path = folder.path().to_owned();
+        Err(OutputError::OtherRun { path, reason }.into())
+    };
+    match file.read() {
+        CheckpointLookup::Kept(kept) => {
+            if let Some(missing) = kept.written.missing(folder.path()) {
+                return refuse(format!("its file {missing} is missing"));
+            }
+            if let Err(reason) = kept.checkpoint.check(&job.scene) {
+                return refuse(format!("its checkpoint cannot be used: {reason}"));
+            }
+            let world = kept.checkpoint.world();
+            if world.time() > job.scene.duration + world.clock.time_step {
+                return refuse(format!(
+                    "it came to t = {:.6} s already, beyond the {} s asked for",
+                    world.time(),
+                    job.scene.duration
+                ));
+            }
+            Ok(Some(*kept))
+        }
+        CheckpointLookup::Unusable(reason) => refuse(reason),
+        CheckpointLookup::Nothing if is_begun_only(folder)? => Ok(None),
+        CheckpointLookup::Nothing => {
+            refuse("it has results and no checkpoint to go on from".into())
+        }
+    }
+}
+
+/// Whether the summary in `folder`, if there is one, is of a run that has come to nothing yet.
+fn is_begun_only(folder: &OutputFolder) -> Result<bool, RunnerError> {
+    let summary = summary(folder)?;
+    Ok(summary.is_null() || summary["state_hash"].is_null())
+}
+
+/// Whether `folder` holds all files of the run that is `kept`, which has come to its `duration`
+/// [s].
+fn is_done(kept: &Kept, folder: &OutputFolder, duration: f64) -> Result<bool, RunnerError> {
+    let (summary, world) = (summary(folder)?, kept.checkpoint.world());
+    let files = summary["files"].as_object();
+    let is_there = |name: &String| folder.path().join(name).is_file();
+    Ok(world.clock.step_at(duration) <= world.clock.step
+        && summary["status"] == "done"
+        && summary["state_hash"] == world.hash().to_string()
+        && files.is_some_and(|files| files.keys().all(is_there)))
+}
+
+/// What the summary in `folder` states; nothing where there is none.
+fn summary(folder: &OutputFolder) -> Result<Value, RunnerError> {
+    let failed = |source| OutputError::write(folder.path(), source);
+    let Some(text) = folder.summary().map_err(failed)? else {
+        return Ok(Value::Null);
+    };
+    // The folder was found to be a run's by this file, so a part of it was written elsewhere.
+    serde_json::from_str(&text).map_err(|error| {
+        let reason = format!("its summary.json cannot be read: {error}");
+        let path = folder.path().to_owned();
+        OutputError::OtherRun { path, reason }.into()
+    })
 }
 
 /// Where a run ends.

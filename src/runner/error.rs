@@ -13,6 +13,9 @@ pub enum RunnerError {
     /// The input asks for something that cannot be.
     #[error("{0}")]
     Input(String),
+    /// The machine has not what it takes.
+    #[error("{0}")]
+    System(String),
     /// The files cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -28,13 +31,17 @@ impl RunnerError {
         }
     }
 
-    /// What the process ends with: 2 for bad input, 1 for the rest.
+    /// What the process ends with: 2 for bad input, 5 where another program writes to the output
+    /// folder, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Scene(_) | Self::Input(_) | Self::Output(OutputError::ForeignFolder(_)) => {
+            Self::Scene(_)
+            | Self::Input(_)
+            | Self::Output(OutputError::ForeignFolder(_) | OutputError::OtherRun { .. }) => {
                 exit::BAD_INPUT
             }
-            Self::Output(OutputError::Write { .. }) => exit::NOT_WRITTEN,
+            Self::Output(OutputError::Taken { .. }) => exit::IN_USE,
+            Self::System(_) | Self::Output(OutputError::Write { .. }) => exit::NOT_WRITTEN,
         }
     }
 }

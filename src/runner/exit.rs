@@ -12,6 +12,8 @@ pub const BAD_INPUT: u8 = 2;
 pub const FAULT: u8 = 3;
 /// A run came to another state than a file states.
 pub const OTHER_STATE: u8 = 4;
+/// Another program writes to the output folder.
+pub const IN_USE: u8 = 5;
 /// Somebody stopped it.
 pub const INTERRUPTED: u8 = 130;
 

@@ -1,7 +1,12 @@
 //! What to run and where its files go.
 
-use crate::run::{BedStore, ScriptedCommand};
-use crate::scene::Scene;
+use super::RunnerError;
+use crate::parameters::live_parameters;
+use crate::run::{BedStore, Script, ScriptedCommand, check};
+use crate::scene::{Scene, SceneGrains};
+use crate::solver::advise;
+use crate::world::{SpeciesId, build, build_packed};
+use glam::DVec3;
 use std::path::PathBuf;
 
 /// What to run and where its files go.
@@ -21,8 +26,11 @@ pub struct Job {
     pub beds: BedStore,
     /// Whether the grains are written at each output time.
     pub grains: bool,
-    /// Whether checkpoints are kept in the folder, so that the same job goes on after a stop.
+    /// Whether checkpoints are kept in the folder, so that the same job goes on after a stop. Where
+    /// they are not, an earlier run in the folder is replaced.
     pub checkpoints: bool,
+    /// Whether a run in the folder is replaced instead of gone on with.
+    pub restart: bool,
 }
 
 impl Job {
@@ -38,8 +46,43 @@ impl Job {
             beds: BedStore::user(),
             grains: true,
             checkpoints: false,
+            restart: false,
         }
     }
+
+    /// Refuses a job whose commands cannot be carried out in its scene.
+    ///
+    /// # Errors
+    /// What was asked for that cannot be, and what can.
+    pub fn check(&self) -> Result<(), RunnerError> {
+        if self.script.is_empty() {
+            return Ok(());
+        }
+        check_script(&self.scene, &self.script).map_err(RunnerError::Input)
+    }
+}
+
+/// Refuses a script that cannot be carried out in `scene`. Cells are not cut for that: what can be
+/// changed about them does not depend on their shapes.
+fn check_script(scene: &Scene, script: &[ScriptedCommand]) -> Result<(), String> {
+    let time_step = advise(scene).time_step;
+    let world = match scene.grains {
+        SceneGrains::Voronoi(_) => {
+            let mut world = build_packed(scene, time_step, Vec::new());
+            // Shares are of grains, so it takes one.
+            world
+                .grains
+                .push_sphere(DVec3::ZERO, 1.0, 1.0, SpeciesId(0));
+            world
+        }
+        SceneGrains::Fill { .. } | SceneGrains::List(_) => build(scene, time_step),
+    };
+    let script = Script::new(script, &world.clock).map_err(|error| error.to_string())?;
+    let parameters = live_parameters(scene, &world);
+    let mut commands = script.commands();
+    commands
+        .try_for_each(|command| check(&parameters, &world, command))
+        .map_err(|error| error.to_string())
 }
 
 /// Threads that the machine has.

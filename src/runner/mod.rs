@@ -32,9 +32,12 @@ mod watch;
 
 pub use advance::{Advance, At, DirectRun, Halt};
 pub use commands_file::read_commands;
-pub use drive::{Finished, Runner, run};
+pub use drive::{Finished, Runner, look, run};
 pub use error::RunnerError;
 pub use job::{Job, available_threads};
-pub use setting::{apply_setting, compared_value};
-pub use verify::Verdict;
+pub use setting::{apply_settings, compared_value};
+pub use verify::{Verdict, VouchedFiles};
 pub use watch::{Watch, spoken};
+
+#[cfg(test)]
+mod faults;

@@ -5,23 +5,44 @@ use crate::parameters::{Parameter, Value};
 use crate::run::{Command, ScriptedCommand};
 use crate::scene::Scene;
 
-/// Carries out one `--set`: at once where it is the scene's, as a command at step zero where it is
-/// a live parameter's.
+/// Carries out every `--set`: at once and together where they are the scene's, as commands at step
+/// zero where they are of live parameters.
 ///
 /// # Errors
-/// When the setting has no such form, there is no such key, or the value does not suit it.
-pub fn apply_setting(
+/// When a setting has no such form, there is no such key, or the scene does not hold together with
+/// its value.
+pub fn apply_settings<S: AsRef<str>>(
     scene: &mut Scene,
-    setting: &str,
-) -> Result<Option<ScriptedCommand>, RunnerError> {
+    settings: &[S],
+) -> Result<Vec<ScriptedCommand>, RunnerError> {
+    let mut script = Vec::new();
+    let mut of_scene = Vec::new();
+    for setting in settings.iter().map(AsRef::as_ref) {
+        match read_setting(setting)? {
+            Setting::Scene(key, text) => of_scene.push((key, text)),
+            Setting::Live(command) => script.push(command),
+        }
+    }
+    scene.set_all(&of_scene)?;
+    Ok(script)
+}
+
+/// What one `--set` changes.
+enum Setting<'a> {
+    /// A key of the scene, to which the text is given.
+    Scene(&'a str, &'a str),
+    /// A live parameter.
+    Live(ScriptedCommand),
+}
+
+fn read_setting(setting: &str) -> Result<Setting<'_>, RunnerError> {
     let refuse = |reason: String| RunnerError::Input(format!("--set {setting}: {reason}"));
     let Some((key, text)) = setting.split_once('=') else {
         return Err(refuse("expected KEY=VALUE, such as drum-speed=1rpm".into()));
     };
     let mut known = Parameter::of_key(key).into_iter();
     if known.any(|parameter| parameter.row().in_scene.is_some()) {
-        scene.set(key, text)?;
-        return Ok(None);
+        return Ok(Setting::Scene(key, text));
     }
     let (parameter, value) = parameter_value(key, text).map_err(|reason| match reason {
         SettingMistake::Key(reason) => {
@@ -30,7 +51,7 @@ pub fn apply_setting(
         }
         SettingMistake::Value(reason) => refuse(reason),
     })?;
-    Ok(Some(ScriptedCommand {
+    Ok(Setting::Live(ScriptedCommand {
         step: Some(0),
         time: None,
         command: Command::Set { parameter, value },

@@ -73,6 +73,19 @@ impl CaseResult {
     }
 }
 
+/// What running `case` takes.
+pub fn job(sweep: &Sweep, case: &Case) -> Job {
+    Job {
+        threads: 1,
+        script: case.script.clone(),
+        beds: sweep.beds.clone(),
+        grains: false,
+        checkpoints: true,
+        restart: sweep.restart,
+        ..Job::new(&case.name, case.scene.clone(), sweep.out.join(&case.name))
+    }
+}
+
 /// Runs `case`, from its checkpoint where there is one, until it is done or `stop` says so; a
 /// finished one is only read. None where it was stopped while its bed was settling.
 ///
@@ -84,15 +97,7 @@ pub fn run(
     mut share: &CaseProgress,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<CaseResult>, RunnerError> {
-    let out = sweep.out.join(&case.name);
-    let job = Job {
-        threads: 1,
-        script: case.script.clone(),
-        beds: sweep.beds.clone(),
-        grains: false,
-        checkpoints: true,
-        ..Job::new(&case.name, case.scene.clone(), out)
-    };
+    let job = job(sweep, case);
     let finished = runner::run(&job, &mut share, stop);
     let (finished, run) = finished.map_err(|error| error.within(&case.name))?;
     let (ending, results) = (finished.ending, finished.results);

@@ -295,6 +295,7 @@ mod tests {
             out: "nowhere".into(),
             jobs: 1,
             beds: BedStore::none(),
+            restart: false,
         }
     }
 

@@ -4,24 +4,29 @@
 //! `series.csv`, and `flow.csv` and `velocity.csv` or a column's `profile.csv`), a table of all
 //! results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one
 //! core. A sweep that was stopped goes on when it is called again: finished cases are kept, others
-//! go on from their checkpoints.
+//! go on from their checkpoints. Several sweeps may work in one folder at the same time: each case
+//! is run by one of them, and each waits for all cases before it writes the tables.
 
 mod case;
 pub(crate) mod chart;
 mod column_laws;
 mod column_plots;
 mod drum_plots;
+mod folder;
 mod plan;
 mod plot_files;
 mod results_table;
 mod velocity_plot;
 
+pub use folder::SWEEP;
 pub use plan::{Case, Sweep, Variation};
 
-use crate::output::Ending;
+use crate::output::{Ending, OutputError};
 use crate::runner::{RunnerError, Watch, exit, spoken};
 use case::{CaseProgress, CaseResult};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use folder::SweepFolder;
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -81,11 +86,13 @@ pub fn run(
     watch: &mut dyn Watch,
 ) -> Result<Swept, RunnerError> {
     let cases = plan::cases(sweep)?;
+    let folder = SweepFolder::open(sweep, &cases)?;
     let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
-    results_table::write_tables(sweep, &outcomes)?;
-    plot_files::write_plots(sweep, &outcomes)?;
-    velocity_plot::write_velocity_plots(sweep, &outcomes)?;
+    let mut files = results_table::write_tables(sweep, &outcomes)?;
+    files.extend(plot_files::write_plots(sweep, &outcomes)?);
+    files.extend(velocity_plot::write_velocity_plots(sweep, &outcomes)?);
+    folder.close(sweep, &outcomes, files)?;
     Ok(Swept {
         ending: SweepEnding::of(&outcomes, cases.len()),
         table: results_table::markdown(sweep, &outcomes),
@@ -103,18 +110,27 @@ fn run_cases(
 ) -> Result<Vec<CaseResult>, RunnerError> {
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
-    let next = AtomicUsize::new(0);
+    let waiting = Mutex::new(VecDeque::from(order));
+    let next = || {
+        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.pop_front()
+    };
     let failed = AtomicBool::new(false);
     let stop = || interrupted.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed);
     let results = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..sweep.jobs.clamp(1, cases.len().max(1)) {
             scope.spawn(|| {
-                while let Some(&index) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if stop() {
-                        break;
-                    }
+                while let Some(index) = next().filter(|_| !stop()) {
                     let result = case::run(sweep, &cases[index], &shares[index], &stop);
+                    if let Err(RunnerError::Output(OutputError::Taken { .. })) = result {
+                        // Another sweep is at it: its outcome is read when that is done.
+                        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+                        waiting.push_back(index);
+                        drop(waiting);
+                        std::thread::sleep(LOOK_TIME);
+                        continue;
+                    }
                     failed.fetch_or(result.is_err(), Ordering::Relaxed);
                     let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
                     results.push((index, result));

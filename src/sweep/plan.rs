@@ -2,13 +2,14 @@
 
 use crate::parameters::Parameter;
 use crate::run::{BedStore, ScriptedCommand};
-use crate::runner::{RunnerError, apply_setting};
+use crate::runner::{RunnerError, apply_settings};
 use crate::scene::Scene;
 use crate::solver::advise;
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 /// Cases a sweep may have.
-const MOST_CASES: u16 = 10_000;
+const MOST_CASES: usize = 10_000;
 
 /// What to run.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub struct Sweep {
     pub jobs: usize,
     /// Where settled beds are looked for and kept.
     pub beds: BedStore,
+    /// Whether cases that are in the output folder are replaced instead of gone on with.
+    pub restart: bool,
 }
 
 /// A key and the values it takes.
@@ -69,8 +72,14 @@ impl Variation {
             Some((first, last)) => {
                 let number = |text: &str| text.trim().parse::<i64>().map_err(|_| refuse());
                 let (first, last) = (number(first)?, number(last)?);
-                if last < first || last - first >= i64::from(MOST_CASES) {
+                let count = (i128::from(last) - i128::from(first)).saturating_add(1);
+                if last < first {
                     return Err(refuse());
+                }
+                if count > MOST_CASES as i128 {
+                    return Err(RunnerError::Input(format!(
+                        "--vary {text}: expected KEY=VALUES with at most {MOST_CASES} values, not {count}"
+                    )));
                 }
                 (first..=last).map(|n| n.to_string()).collect()
             }
@@ -99,15 +108,27 @@ impl Case {
 /// Every combination of the variations, the last one changing fastest.
 ///
 /// # Errors
-/// When a key or value does not suit the scene, or there are too many cases.
+/// When a key or value does not suit the scene, there are too many cases, or two of them would have
+/// the same folder.
 pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
-    let number: usize = sweep.variations.iter().map(|v| v.values.len()).product();
-    if number > usize::from(MOST_CASES) {
+    let counts = sweep.variations.iter().map(|v| v.values.len() as u128);
+    let number = counts.fold(1_u128, u128::saturating_mul);
+    if number > MOST_CASES as u128 {
         return Err(RunnerError::Input(format!(
-            "the sweep has {number} cases; expected at most {MOST_CASES}"
+            "the sweep has {number} cases; expected at most {MOST_CASES}: vary less, or in several sweeps"
         )));
     }
-    (0..number).map(|index| case(sweep, index)).collect()
+    let cases: Vec<Case> = (0..number as usize)
+        .map(|index| case(sweep, index))
+        .collect::<Result<_, _>>()?;
+    let mut names = HashSet::new();
+    match cases.iter().find(|case| !names.insert(&case.name)) {
+        None => Ok(cases),
+        Some(twice) => Err(RunnerError::Input(format!(
+            "two cases are called {}: give each value once",
+            twice.name
+        ))),
+    }
 }
 
 fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
@@ -119,19 +140,28 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
         rest /= count;
     }
     let mut scene = sweep.scene.clone();
-    let mut script = Vec::new();
     let varied: Vec<String> = sweep
         .variations
         .iter()
         .zip(&values)
         .map(|(variation, value)| format!("{}={value}", variation.key))
         .collect();
-    for setting in varied.iter().chain(&sweep.settings) {
-        if is_for_wet_cases(setting) && scene.liquid.is_none() {
-            continue;
-        }
-        script.extend(apply_setting(&mut scene, setting)?);
-    }
+    let settings: Vec<&String> = varied.iter().chain(&sweep.settings).collect();
+    let (of_wet, of_all): (Vec<&String>, Vec<&String>) = settings
+        .iter()
+        .partition(|setting| is_for_wet_cases(setting));
+    let mut dry_or_wet = scene.clone();
+    apply_settings(&mut dry_or_wet, &of_all)?;
+    let skipped = if dry_or_wet.liquid.is_none() {
+        of_wet
+    } else {
+        Vec::new()
+    };
+    let settings: Vec<&String> = settings
+        .into_iter()
+        .filter(|setting| !skipped.contains(setting))
+        .collect();
+    let script = apply_settings(&mut scene, &settings)?;
     Ok(Case {
         name: varied.join("_").replace(['/', '\\'], "-"),
         values,

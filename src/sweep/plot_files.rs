@@ -11,20 +11,23 @@ use crate::output::write_file;
 use crate::run::Provenance;
 use crate::runner::RunnerError;
 
-/// Writes every plot that the outcomes have points for.
+/// Writes every plot that the outcomes have points for; returns the files' names.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), RunnerError> {
+pub fn write_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>, RunnerError> {
+    let mut names = Vec::new();
     for plot in plots(sweep, outcomes).filter(Plot::has_points) {
         let text = plot.draw().map_err(|reason| {
             RunnerError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
         })?;
-        let path = sweep.out.join("plots").join(&plot.file);
+        let name = format!("plots/{}", plot.file);
+        let path = sweep.out.join(&name);
         let text = Provenance::of_scene(&sweep.scene).in_svg(&text);
         write_file(&path, |file| file.write_all(text.as_bytes()))?;
+        names.push(name);
     }
-    Ok(())
+    Ok(names)
 }
 
 /// Every plot of these outcomes. What a case came to before it met a fault is no result, nor is

@@ -13,6 +13,9 @@ use crate::physics::{Unit, units};
 use crate::run::{Provenance, TABLES_METADATA};
 use crate::runner::RunnerError;
 
+/// The table's name.
+const TABLE: &str = "table.csv";
+
 /// A column: the result it shows under a short head, in the unit and with the digits of the
 /// registry or others.
 struct TableColumn {
@@ -129,13 +132,13 @@ fn columns(outcomes: &[CaseResult]) -> &'static [TableColumn] {
     }
 }
 
-/// Writes `table.csv` and `table.md`.
+/// Writes `table.csv` and `table.md`, and where they come from; returns the files' names.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), RunnerError> {
+pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>, RunnerError> {
     let columns = columns(outcomes);
-    write_file(&sweep.out.join("table.csv"), |file| {
+    write_file(&sweep.out.join(TABLE), |file| {
         let mut writer = csv::Writer::from_writer(file);
         writer.write_record(heads(sweep, columns))?;
         for outcome in outcomes {
@@ -144,13 +147,15 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), Runner
         writer.flush()
     })?;
     write_file(&sweep.out.join(TABLES_METADATA), |file| {
-        Provenance::of_scene(&sweep.scene).write_tables(&["table.csv"], file)
+        Provenance::of_scene(&sweep.scene).write_tables(&[TABLE], file)
     })?;
     let text = markdown(sweep, outcomes);
     write_file(&sweep.out.join("table.md"), |file| {
         file.write_all(text.as_bytes())
     })?;
-    Ok(())
+    Ok([TABLE, TABLES_METADATA, "table.md"]
+        .map(str::to_owned)
+        .into())
 }
 
 /// The table in Markdown.

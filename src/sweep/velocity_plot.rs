@@ -25,11 +25,15 @@ const BETWEEN_ARROWS: usize = 3;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type DrawingResult = Result<(), Box<dyn std::error::Error>>;
 
-/// Writes the plot of every case that ever flowed.
+/// Writes the plot of every case that ever flowed; returns the files' names.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<(), RunnerError> {
+pub fn write_velocity_plots(
+    sweep: &Sweep,
+    outcomes: &[CaseResult],
+) -> Result<Vec<String>, RunnerError> {
+    let mut files = Vec::new();
     for outcome in outcomes {
         let Some(map) = &outcome.fastest else {
             continue;
@@ -41,11 +45,13 @@ pub fn write_velocity_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<()
                 "the velocities of {name} cannot be drawn: {reason}"
             ))
         })?;
-        let path = sweep.out.join("plots/velocity").join(format!("{name}.svg"));
+        let file = format!("plots/velocity/{name}.svg");
+        let path = sweep.out.join(&file);
         let text = Provenance::of_scene(&outcome.case.scene).in_svg(&text);
         write_file(&path, |file| file.write_all(text.as_bytes()))?;
+        files.push(file);
     }
-    Ok(())
+    Ok(files)
 }
 
 fn draw(text: &mut String, outcome: &CaseResult, map: &VelocityMap) -> DrawingResult {

@@ -8,18 +8,18 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 /// A folder for one test; beds are kept beside the other tests' files, not in the user's cache.
-struct Place(TempDir);
+pub(crate) struct Place(TempDir);
 
 impl Place {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_grainfall"));
         command
             .args(arguments)
@@ -29,12 +29,24 @@ impl Place {
         command
     }
 
-    fn run(&self, arguments: &[&str]) -> Output {
+    /// A shell that carries out `script`.
+    #[cfg(unix)]
+    pub(crate) fn shell(&self, script: &str) -> Command {
+        let program = self.command(&["-c", script]);
+        let mut shell = Command::new("sh");
+        shell.args(program.get_args()).current_dir(self.0.path());
+        for (key, value) in program.get_envs() {
+            shell.env(key, value.unwrap_or_default());
+        }
+        shell
+    }
+
+    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
         self.command(arguments).output().unwrap()
     }
 
     /// Runs the small drum into the folder `out`, which must work, and returns its summary.
-    fn run_small_drum(&self, out: &str, more: &[&str]) -> Value {
+    pub(crate) fn run_small_drum(&self, out: &str, more: &[&str]) -> Value {
         let mut arguments = vec![
             "small-drum",
             "--no-render",
@@ -49,22 +61,22 @@ impl Place {
         summary(&self.path(out))
     }
 
-    fn write(&self, name: &str, content: &str) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, content: &str) -> PathBuf {
         let path = self.path(name);
         fs::write(&path, content).unwrap();
         path
     }
 }
 
-fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-fn summary(folder: &Path) -> Value {
+pub(crate) fn summary(folder: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
 }
 
-fn names(folder: &Path) -> Vec<String> {
+pub(crate) fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -73,7 +85,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-fn series(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+pub(crate) fn series(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let mut reader = csv::Reader::from_path(folder.join("series.csv")).unwrap();
     let head = reader
         .headers()
@@ -101,6 +113,9 @@ fn run_leaves_series_grains_and_summary() {
     assert_eq!(
         names(&out),
         [
+            ".grainfall.lock",
+            "checkpoint-samples.bin",
+            "checkpoint.bin",
             "csv-metadata.json",
             "grains",
             "grains.pvd",
@@ -152,7 +167,8 @@ fn grains_file_reads_back_as_the_grains() {
 #[test]
 fn threads_do_not_show_in_the_state() {
     let place = Place::new();
-    let hash = |threads| place.run_small_drum("out", &["--threads", threads])["state_hash"].clone();
+    let hash =
+        |threads| place.run_small_drum(threads, &["--threads", threads])["state_hash"].clone();
     let one = hash("1");
     assert_eq!(hash("2"), one);
     assert_eq!(hash("3"), one);
@@ -348,7 +364,7 @@ fn claim_of_a_state_that_the_run_does_not_come_to_is_not_confirmed() {
 fn later_run_clears_the_files_of_an_earlier_one() {
     let place = Place::new();
     place.run_small_drum("out", &[]);
-    place.run_small_drum("out", &["--duration", "50ms"]);
+    place.run_small_drum("out", &["--duration", "50ms", "--restart"]);
     assert_eq!(names(&place.path("out/grains")).len(), 2);
 }
 
@@ -455,6 +471,9 @@ fn interrupted_run_leaves_whole_files() {
     assert_eq!(
         names(&out),
         [
+            ".grainfall.lock",
+            "checkpoint-samples.bin",
+            "checkpoint.bin",
             "csv-metadata.json",
             "grains",
             "grains.pvd",
@@ -473,7 +492,7 @@ fn interrupted_run_leaves_whole_files() {
 
 #[test]
 fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
-    use grainfall::headless::run;
+    use grainfall::headless::{Report, run};
     use grainfall::output::Ending;
     use grainfall::run::{Command, Parameter, ScriptedCommand};
     use grainfall::runner::Job;
@@ -498,7 +517,10 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
         ..Job::new("drum", scene.clone(), place.path(out))
     };
     let never = AtomicBool::new(false);
-    assert_eq!(run(&job("whole"), &never).unwrap(), Ending::Done);
+    assert_eq!(
+        run(&job("whole"), Report::Quiet, &never).unwrap(),
+        Ending::Done
+    );
     let mut calls = 0;
     loop {
         let stop = Arc::new(AtomicBool::new(false));
@@ -507,7 +529,7 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
             std::thread::sleep(Duration::from_millis(60 + 40 * calls));
             stopper.store(true, Ordering::Relaxed);
         });
-        let ending = run(&job("parts"), &stop).unwrap();
+        let ending = run(&job("parts"), Report::Quiet, &stop).unwrap();
         timer.join().unwrap();
         calls += 1;
         if ending == Ending::Done {
@@ -535,7 +557,7 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
 
 /// Waits until `path` exists, a minute at most, while `child` runs.
 #[cfg(unix)]
-fn wait_for(path: &Path, child: &mut Child) {
+pub(crate) fn wait_for(path: &Path, child: &mut Child) {
     for _ in 0..6000 {
         if path.exists() {
             return;

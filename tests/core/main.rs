@@ -13,6 +13,8 @@ mod doors;
 mod headless;
 mod measure;
 mod parameters;
+#[cfg(feature = "headless")]
+mod reliability;
 mod run;
 mod scene;
 mod session;

@@ -32,6 +32,7 @@ fn sweep(out: &Path, variations: &[&str]) -> Sweep {
         out: out.to_owned(),
         jobs: 2,
         beds: BedStore::none(),
+        restart: false,
     }
 }
 
@@ -136,12 +137,78 @@ fn longer_sweep_goes_on_from_a_shorter_one_and_another_scene_does_not() {
     assert_eq!(hashes(&fresh), second);
     let mut other = sweep(&out, &["viscosity=0.1"]);
     other.settings = vec!["drum-speed=7rpm".into()];
+    let refused = run(&other, &AtomicBool::new(false)).unwrap_err();
+    assert_eq!(refused.exit_code(), 2);
+    assert!(refused.to_string().contains("other values"), "{refused}");
+    assert_eq!(hashes(&out), second, "what is there stays");
+    other.restart = true;
     run(&other, &AtomicBool::new(false)).unwrap();
     assert_ne!(
         hashes(&out),
         second,
         "its checkpoint is not taken for another's"
     );
+}
+
+#[test]
+fn sweep_leaves_a_folder_of_others_alone_and_takes_its_own_up_however_it_was_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sweep");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("table.csv"), "my own").unwrap();
+    let sweep = sweep(&out, &["viscosity=0.1"]);
+    let refused = run(&sweep, &AtomicBool::new(false)).unwrap_err();
+    assert_eq!(refused.exit_code(), 2);
+    assert!(refused.to_string().contains("not a sweep's"), "{refused}");
+    assert_eq!(fs::read(out.join("table.csv")).unwrap(), b"my own");
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 1);
+    // Killed before its first file was whole.
+    fs::remove_file(out.join("table.csv")).unwrap();
+    fs::write(out.join(".grainfall-a1b2c3"), "").unwrap();
+    run(&sweep, &AtomicBool::new(false)).unwrap();
+    // So is a case.
+    let case = out.join("viscosity=0.2");
+    fs::create_dir(&case).unwrap();
+    fs::write(case.join(".grainfall-a1b2c3"), "").unwrap();
+    run(
+        &self::sweep(&out, &["viscosity=0.2"]),
+        &AtomicBool::new(false),
+    )
+    .unwrap();
+    assert!(!case.join(".grainfall-a1b2c3").exists());
+}
+
+#[test]
+fn live_value_that_cannot_be_is_found_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sweep");
+    let sweep = sweep(&out, &["viscosity=0.1,0.2,1e9"]);
+    let error = run(&sweep, &AtomicBool::new(false)).unwrap_err();
+    assert!(error.to_string().contains("viscosity=1e9"), "{error}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn numbers_of_cases_are_counted_without_wrapping() {
+    let all = "seed=-9223372036854775808..9223372036854775807";
+    let message = Variation::parse(all).unwrap_err().to_string();
+    assert!(
+        message.contains("at most 10000 values, not 18446744073709551616"),
+        "{message}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    // 2⁶⁴ combinations.
+    let many = sweep(&folder.path().join("many"), &["seed=0..255"; 8]);
+    let message = run(&many, &AtomicBool::new(false)).unwrap_err().to_string();
+    assert!(
+        message.contains("18446744073709551616 cases; expected at most 10000"),
+        "{message}"
+    );
+    let twice = sweep(&folder.path().join("twice"), &["seed=1,1"]);
+    let message = run(&twice, &AtomicBool::new(false))
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("two cases are called seed=1"), "{message}");
 }
 
 #[test]

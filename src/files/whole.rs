@@ -1,0 +1,169 @@
+//! Files that appear whole or not at all.
+//!
+//! In: a path and what to write. Out: the file under that path as it was, or as it is to be, and
+//! nothing between, whenever the program or the machine stops.
+
+use super::attempt::attempt;
+use super::target::check_target;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use tempfile::{Builder, NamedTempFile, TempDir};
+
+/// What the names of files begin with that are not whole yet.
+const TEMPORARY: &str = ".grainfall-";
+
+/// Writes the file at `path` with what `fill` writes, whole or not at all; missing folders are
+/// made. It is on the disk when this returns.
+///
+/// # Errors
+/// When it cannot be written, or what is at `path` is no regular file; nothing is left behind then.
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let file = fill_beside(path, fill)?;
+    attempt(path)?;
+    file.as_file().sync_all()?;
+    attempt(path)?;
+    file.persist(path)?;
+    sync_folder(folder_of(path)?)
+}
+
+/// The same, and the system may keep it in memory for a while: whoever stops the program cannot
+/// lose it, a failing machine can until [`sync_file`] was called.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_whole_unsynced(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let file = fill_beside(path, fill)?;
+    attempt(path)?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// Makes the file at `path` durable, without its name in its folder.
+///
+/// # Errors
+/// When the disk fails.
+pub fn sync_file(path: &Path) -> io::Result<()> {
+    attempt(path)?;
+    File::open(path)?.sync_all()
+}
+
+/// A file that is to become the one at `path`, with what `fill` writes.
+fn fill_beside(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<NamedTempFile> {
+    check_target(path)?;
+    let folder = folder_of(path)?;
+    let file = Attempted {
+        file: new_file_in(folder)?,
+        path: path.to_owned(),
+    };
+    let mut buffer = BufWriter::new(file);
+    fill(&mut buffer)?;
+    let whole = buffer
+        .into_inner()
+        .map_err(io::IntoInnerError::into_error)?;
+    Ok(whole.file)
+}
+
+/// Removes the file at `path`, if there is one.
+///
+/// # Errors
+/// When it cannot be removed.
+pub fn remove_file(path: &Path) -> io::Result<()> {
+    attempt(path)?;
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        outcome => outcome,
+    }
+}
+
+/// Makes the names in `folder` durable, where the system has a way to.
+///
+/// # Errors
+/// When the disk fails.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    attempt(folder)?;
+    if cfg!(unix) {
+        // Some network file systems know no such thing.
+        return match File::open(folder)?.sync_all() {
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    ErrorKind::Unsupported | ErrorKind::InvalidInput
+                ) =>
+            {
+                Ok(())
+            }
+            outcome => outcome,
+        };
+    }
+    Ok(())
+}
+
+/// Whether a file or folder of this name is one that was not whole yet when the program stopped.
+pub fn is_temporary(name: &str) -> bool {
+    name.starts_with(TEMPORARY)
+}
+
+/// An empty folder under a name of its own beside `path`, in which to make what is then given that
+/// name as a whole; it goes away with what is in it when it is dropped. Missing folders above are
+/// made.
+///
+/// # Errors
+/// When it cannot be made.
+pub fn folder_beside(path: &Path) -> io::Result<TempDir> {
+    let folder = folder_of(path)?;
+    let mut builder = Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o777));
+    }
+    builder.prefix(TEMPORARY).tempdir_in(folder)
+}
+
+/// The folder that `path` is in, made where it is missing.
+fn folder_of(path: &Path) -> io::Result<&Path> {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new("."));
+    attempt(path)?;
+    fs::create_dir_all(folder)?;
+    Ok(folder)
+}
+
+/// A file under a name of its own, readable for whom the user's mask allows.
+fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    attempt(folder)?;
+    builder.prefix(TEMPORARY).tempfile_in(folder)
+}
+
+/// A file that is to become the one at `path`.
+struct Attempted {
+    file: NamedTempFile,
+    path: PathBuf,
+}
+
+impl Write for Attempted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        attempt(&self.path)?;
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}

@@ -1,0 +1,87 @@
+//! `grains.pvd`: the list of the grains' files, which `ParaView` opens as a series in time.
+//!
+//! In: each file with its time. Out: a list that is whole after each of them.
+
+use super::{OutputError, OutputFolder};
+use crate::files::GrowingFile;
+use crate::run::Provenance;
+use serde::{Deserialize, Serialize};
+
+/// The file's name.
+pub const COLLECTION: &str = "grains.pvd";
+const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+                    byte_order=\"LittleEndian\">\n  <Collection>\n";
+const TAIL: &str = "  </Collection>\n</VTKFile>\n";
+
+/// A file of grains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// Simulated time of the state in it [s].
+    pub time: f64,
+    /// Its name, relative to the folder.
+    pub name: String,
+    /// The digest of its bytes.
+    pub digest: String,
+}
+
+impl Frame {
+    fn entry(&self) -> String {
+        let Self { time, name, .. } = self;
+        format!("    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{name}\"/>\n")
+    }
+}
+
+/// The list while a run goes on.
+pub struct CollectionFile(GrowingFile);
+
+impl CollectionFile {
+    /// Writes the list of these `frames`, all `from` one run.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn begin(
+        folder: &OutputFolder,
+        frames: &[Frame],
+        from: &Provenance,
+    ) -> Result<Self, OutputError> {
+        let head = from.in_xml(&opening(frames));
+        let file = folder.begin(COLLECTION, head.as_bytes(), TAIL.as_bytes())?;
+        Ok(Self(file))
+    }
+
+    /// Adds `frame`.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn add(&mut self, folder: &OutputFolder, frame: &Frame) -> Result<(), OutputError> {
+        let added = self.0.add(frame.entry().as_bytes());
+        folder.named(COLLECTION, added)
+    }
+
+    /// Makes it durable.
+    ///
+    /// # Errors
+    /// When the disk fails.
+    pub fn sync(&self, folder: &OutputFolder) -> Result<(), OutputError> {
+        folder.named(COLLECTION, self.0.sync())
+    }
+}
+
+/// Writes the list of all `frames` of a run, `from` its last state, and returns its digest.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write_collection(
+    folder: &OutputFolder,
+    frames: &[Frame],
+    from: &Provenance,
+) -> Result<String, OutputError> {
+    let text = from.in_xml(&(opening(frames) + TAIL));
+    folder.write(COLLECTION, |file| file.write_all(text.as_bytes()))
+}
+
+/// All but the end of the list of `frames`.
+fn opening(frames: &[Frame]) -> String {
+    let entries: String = frames.iter().map(Frame::entry).collect();
+    format!("{HEAD}{entries}")
+}
