@@ -12,7 +12,7 @@ use super::lab_command::LabCommand;
 use super::runs::ONE_STEP;
 use super::update::{RunsNews, SavedFile, Update};
 use super::{DriverKind, Half, Options, RunView, Status};
-use crate::run::{Changed, Command, Parameter, Provenance, Session, Value, check};
+use crate::run::{Changed, Command, Parameter, Provenance, Session, Value, accept};
 use crate::scene::Scene;
 use crate::solver::{TimeStepAdvice, advise};
 use std::ops::Deref;
@@ -164,7 +164,7 @@ impl Lab {
         let Some(Comparison { parameter, right }) = self.comparison() else {
             return Some(provenance);
         };
-        let change = format!("{parameter} = {:?}", right.value(parameter));
+        let change = format!("{parameter} = {}", right.value(parameter)?);
         Some(provenance.beside(change, right.world()?))
     }
 
@@ -260,7 +260,8 @@ impl Lab {
             parameter: parameter.clone(),
             value,
         };
-        check(self.parameters(), world, &change).map_err(|refusal| refusal.to_string())
+        let accepted = accept(self.parameters(), world, &change);
+        accepted.map(drop).map_err(|refusal| refusal.to_string())
     }
 
     /// What became of files since this was last called.

@@ -155,11 +155,10 @@ impl RunView {
     }
 
     /// Present value of `parameter`, or the value asked for where that is still to be carried out;
-    /// NaN where the scene has no such parameter.
-    pub fn value(&self, parameter: &Parameter) -> Value {
+    /// none while the run is prepared, and where the scene has no such parameter.
+    pub fn value(&self, parameter: &Parameter) -> Option<Value> {
         let asked = self.asked.get(parameter).copied();
-        let present = || parameter.read(self.world()?);
-        asked.or_else(present).unwrap_or(Value::Number(f64::NAN))
+        asked.or_else(|| parameter.read(self.world()?))
     }
 
     /// What stopped it, if something did.

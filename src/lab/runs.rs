@@ -12,9 +12,7 @@
 use super::Half;
 use super::clock::LabClock;
 use super::update::{RunNews, RunsNews};
-use crate::run::{
-    Branch, Command, CommandError, Parameter, Run, Session, Snapshot, Timeline, Value,
-};
+use crate::run::{Branch, Command, CommandError, Parameter, Run, Session, Timeline, Value};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::{self, World};
@@ -291,23 +289,16 @@ impl Runs {
         half: Option<Half>,
         joins: bool,
     ) -> Result<(), CommandError> {
-        for run in &self.list {
-            run.timeline.run().check(change)?;
-        }
+        // Both have the same parameters and time step: what one accepts the other does too.
+        let change = &self.first().timeline.run().accept(change)?;
         let differs = matches!(
             (change, &self.comparison),
             (Command::Set { parameter, .. }, Some(own)) if parameter == own
         );
         let half = half.or(differs.then_some(Half::Left));
-        // Two runs have one time: their step follows no limit of one of them.
-        let make = if self.is_pair() {
-            Timeline::change_in_pair
-        } else {
-            Timeline::change
-        };
         for (index, timeline) in self.timelines().enumerate() {
             if half.is_none_or(|half| half.index() == index) {
-                make(timeline, change.clone(), joins)?;
+                timeline.change(change.clone(), joins)?;
             } else {
                 timeline.note_beside(change, joins)?;
             }
@@ -342,7 +333,10 @@ impl Runs {
             parameter: parameter.clone(),
             value,
         };
-        run.check(&change).map_err(|refusal| refusal.to_string())?;
+        let accepted = run.accept(&change).map_err(|refusal| refusal.to_string())?;
+        let Command::Set { parameter, value } = accepted else {
+            return Err(format!("`{parameter}` cannot differ between two runs"));
+        };
         let mut values = run.values();
         let second = Run::new(run.scene().clone(), run.bed().clone(), 1);
         first.restart(&values);
@@ -354,19 +348,23 @@ impl Runs {
         let mut second = Timeline::new(second, memory);
         second.restart(&values);
         self.list.push(LabRun::new(second));
+        // Two runs have one time: their step follows no limit of one of them.
+        self.timelines()
+            .for_each(|timeline| timeline.keep_step(true));
         self.comparison = Some(parameter);
         self.is_news = true;
         Ok(())
     }
 
-    /// Goes on with one of two runs and keeps the other as a branch.
+    /// Goes on with one of two runs and keeps the other, and its branches, as branches.
     pub fn end_comparison(&mut self, keep: Half) {
         let Some(second) = self.list.drain(1..).next() else {
             return;
         };
         self.comparison = None;
         let first = &mut self.list[0].timeline;
-        let newest = first.adopt(second.timeline.branch().clone(), second.timeline.end());
+        first.keep_step(false);
+        let newest = first.adopt_all(&second.timeline);
         if keep == Half::Right {
             first.take_up(newest);
         }
@@ -374,20 +372,20 @@ impl Runs {
     }
 
     /// Writes the session of a scene that was opened as `original` to `path`; of two runs, the
-    /// right one as a branch.
+    /// right one and its branches as branches.
     ///
     /// # Errors
     /// When the file cannot be written.
     pub fn save(&mut self, path: &Path, original: &Scene) -> io::Result<()> {
-        let second: Option<(_, Option<Snapshot>)> = (self.list.get(1))
-            .map(|second| (second.timeline.branch().clone(), second.timeline.end()));
-        let timeline = &mut self.list[0].timeline;
-        let kept = second.map(|(branch, end)| timeline.adopt(branch, end));
+        let (first, others) = self.list.split_at_mut(1);
+        let timeline = &mut first[0].timeline;
+        let kept = timeline.kept().to_vec();
+        for other in others {
+            timeline.adopt_all(&other.timeline);
+        }
         let title = &timeline.run().scene().title;
         let session = Session::of(title, timeline).of_original(original);
-        if let Some(index) = kept {
-            timeline.forget(index);
-        }
+        timeline.keep_only(kept);
         session.write(path)
     }
 

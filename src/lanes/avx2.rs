@@ -1,8 +1,8 @@
 //! Four numbers side by side in a register of AVX2.
 //!
-//! In: the proof that the processor has AVX2, numbers and rows. Out: the operations of [`Lanes`] and
-//! [`Quad`], element by element. Every `unsafe` here calls an intrinsic; what makes it sound is the
-//! proof that each value carries.
+//! In: the proof that the processor has AVX2, numbers and rows. Out: the operations of [`Lanes`]
+//! and [`Quad`], element by element. Every `unsafe` here calls an intrinsic; what makes it sound is
+//! the proof that each value carries.
 
 #![expect(
     unsafe_code,

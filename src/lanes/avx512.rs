@@ -1,8 +1,9 @@
 //! Eight numbers side by side in a register of AVX-512.
 //!
-//! In: the proof that the processor has AVX-512, numbers and rows. Out: the operations of [`Lanes`],
-//! element by element. Rows, which are four numbers, stay in the registers of `avx2`. Every `unsafe`
-//! here calls an intrinsic; what makes it sound is the proof that each value carries.
+//! In: the proof that the processor has AVX-512, numbers and rows. Out: the operations of
+//! [`Lanes`], element by element. Rows, which are four numbers, stay in the registers of `avx2`.
+//! Every `unsafe` here calls an intrinsic; what makes it sound is the proof that each value
+//! carries.
 
 #![expect(
     unsafe_code,

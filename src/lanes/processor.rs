@@ -1,7 +1,7 @@
 //! Which lanes the processor at hand has.
 //!
-//! In: the processor, asked at run time. Out: work done with the widest lanes it has, or with any of
-//! those it has.
+//! In: the processor, asked at run time. Out: work done with the widest lanes it has, or with any
+//! of those it has.
 
 use super::scalar::One;
 use super::vocabulary::Work;

@@ -21,6 +21,30 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// `value` as [`short`] has it without zeros at its end: `0.4`, `1.41`.
+pub fn trimmed(value: f64) -> String {
+    without_idle_zeros(short(value))
+}
+
+/// `value` with at most so many `digits`, zeros at its end left out, never as a power of ten:
+/// `12.5`, `0.0042`, `1500`.
+pub fn rounded(value: f64, digits: i32) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 6);
+    without_idle_zeros(fixed(value, decimals as usize))
+}
+
+fn without_idle_zeros(text: String) -> String {
+    if text.contains('.') && !text.contains('·') {
+        let kept = text.trim_end_matches('0').trim_end_matches('.');
+        kept.to_owned()
+    } else {
+        text
+    }
+}
+
 /// `value` with the prefix of its unit that leaves one to three digits before the point: `12.3 mJ`.
 pub fn with_prefix(value: f64, unit: &str) -> String {
     let (prefix, factor) = prefix_for(value.abs());
@@ -30,6 +54,11 @@ pub fn with_prefix(value: f64, unit: &str) -> String {
 /// The prefix in which `magnitude` has one to three digits before the point, and the factor that
 /// goes with it.
 pub fn prefix_for(magnitude: f64) -> (&'static str, f64) {
+    prefix_from(magnitude, 1.0)
+}
+
+/// The largest prefix in which `magnitude` is at least `least`, and the factor that goes with it.
+pub fn prefix_from(magnitude: f64, least: f64) -> (&'static str, f64) {
     const PREFIXES: [(&str, f64); 7] = [
         ("p", 1e12),
         ("n", 1e9),
@@ -42,7 +71,7 @@ pub fn prefix_for(magnitude: f64) -> (&'static str, f64) {
     if magnitude == 0.0 || !magnitude.is_finite() {
         return ("", 1.0);
     }
-    let fits = |(_, factor): &&(&str, f64)| magnitude * factor >= 1.0;
+    let fits = |(_, factor): &&(&str, f64)| magnitude * factor >= least;
     PREFIXES
         .iter()
         .rev()
@@ -126,6 +155,17 @@ mod tests {
         assert_eq!(short(f64::INFINITY), "∞");
         assert_eq!(power_of_ten(-40), "10⁻⁴⁰");
         assert_eq!(fixed(-0.25, 1), "−0.2");
+    }
+
+    #[test]
+    fn zeros_at_the_end_are_left_out() {
+        assert_eq!(trimmed(0.4), "0.4");
+        assert_eq!(trimmed(1410.0), "1410");
+        assert_eq!(trimmed(2.0e-9), "2.00·10⁻⁹");
+        let three = [0.0, 12.5, 0.025, 1500.0, 2.0, -0.05, 0.1234].map(|x| rounded(x, 3));
+        assert_eq!(three, ["0", "12.5", "0.025", "1500", "2", "−0.05", "0.123"]);
+        let two = [0.0042, 0.25, 3.08, 12.0, 120.4].map(|x| rounded(x, 2));
+        assert_eq!(two, ["0.0042", "0.25", "3.1", "12", "120"]);
     }
 
     #[test]

@@ -38,6 +38,22 @@ impl Sample {
 }
 
 /// Every [`Measure`] of `world` as it is now.
+///
+/// ```
+/// use grainfall::measure::{Measure, sample};
+/// use grainfall::solver::{Solver, advise};
+/// use grainfall::{scene::Scene, world};
+///
+/// let scene = Scene::open("bouncing-grain")?;
+/// let mut world = world::build(&scene, advise(&scene).time_step);
+/// Solver::new(1).advance(&mut world, 500)?;
+/// let energy = sample(&world).value(Measure::KineticEnergy);
+/// assert!(energy > 0.0);
+/// // Symbol, unit and digits are those of the quantity's row in the registry.
+/// let row = Measure::KineticEnergy.quantity();
+/// println!("{}: {}", row.label(), row.text(energy));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn sample(world: &World) -> Sample {
     sample_and_surface(world).0
 }

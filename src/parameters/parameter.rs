@@ -1,8 +1,8 @@
 //! Which parameters there are, each with its row, and the keys they go by.
 //!
-//! In: a key such as `friction.glass.drum`. Out: the [`Parameter`], and the [`ParameterRow`] that holds all
-//! else that is known of it. **To add a parameter**: write its row in one of the files of `rows`,
-//! and its line in the list below. Nothing else lists parameters.
+//! In: a key such as `friction.glass.drum`. Out: the [`Parameter`], and the [`ParameterRow`] that
+//! holds all else that is known of it. **To add a parameter**: write its row in one of the files of
+//! `rows`, and its line in the list below. Nothing else lists parameters.
 
 use super::parameter_row::{Kind, Names, ParameterRow};
 use super::rows::{driving, liquid_and_bridges, material_pairs, material_properties, run, sizes};

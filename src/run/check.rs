@@ -1,7 +1,7 @@
 //! Whether a command can be carried out in a run, and why not.
 //!
-//! In: a command, the run's parameters, a state of it. Out: nothing, or a [`CommandError`] with the
-//! value, the range and the keys there are. Nothing is changed here.
+//! In: a command, the run's parameters, a state of it. Out: the command as the run carries it out,
+//! or a [`CommandError`] with the value, the range and the keys there are. Nothing is changed here.
 
 use super::Command;
 use crate::parameters::{Parameter, ParameterInfo, Unsuited, Values, time_step};
@@ -37,14 +37,18 @@ pub enum CommandError {
     },
 }
 
-/// Refuses a command that cannot be carried out in `world`.
-pub(crate) fn check(
+/// The `command` as it is carried out in `world`: its parameter by the one name that it has, its
+/// value of the kind that this takes.
+///
+/// # Errors
+/// Why it cannot be carried out.
+pub(crate) fn accept(
     parameters: &[ParameterInfo],
     world: &World,
     command: &Command,
-) -> Result<(), CommandError> {
+) -> Result<Command, CommandError> {
     let Command::Set { parameter, value } = command else {
-        return Ok(());
+        return Ok(command.clone());
     };
     let parameter = parameter.canonical(&world.materials);
     let step = time_step(world.clock.time_step);
@@ -56,17 +60,14 @@ pub(crate) fn check(
         });
     };
     let value = parameter.typed(*value)?;
-    let Values::Range(range) = &info.values else {
-        return Ok(());
-    };
-    if range.contains(&value.number()) {
-        return Ok(());
+    match &info.values {
+        Values::Range(range) if !range.contains(&value.number()) => Err(CommandError::OutOfRange {
+            low: *range.start(),
+            high: *range.end(),
+            unit: parameter.row().kind.unit().si,
+            value: value.number(),
+            parameter,
+        }),
+        Values::Range(_) | Values::Choices(_) => Ok(Command::Set { parameter, value }),
     }
-    Err(CommandError::OutOfRange {
-        low: *range.start(),
-        high: *range.end(),
-        unit: parameter.row().kind.unit().si,
-        value: value.number(),
-        parameter,
-    })
 }

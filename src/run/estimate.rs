@@ -165,7 +165,7 @@ fn many(number: f64) -> String {
         n if n < 1e4 => format!("{n:.0}"),
         n if n < 1e6 => format!("{:.0} thousand", n / 1e3),
         n if n < 1e9 => format!("{:.1} million", n / 1e6),
-        n => format!("{:.1e}", n),
+        n => format!("{n:.1e}"),
     }
 }
 

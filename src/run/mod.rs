@@ -57,7 +57,7 @@ pub use crate::physics::DisplayUnit;
 pub use bed::BedStore;
 pub use branch::Branch;
 pub use check::CommandError;
-pub(crate) use check::check;
+pub(crate) use check::accept;
 pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMemory, Estimate};
 pub use history::{History, Moment};

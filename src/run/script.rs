@@ -112,9 +112,18 @@ impl Script {
         self.commands.make_contiguous().sort_by_key(|due| due.step);
     }
 
-    /// What is still to be carried out.
-    pub fn commands(&self) -> impl Iterator<Item = &Command> {
-        self.commands.iter().map(|due| &due.command)
+    /// It with each command as `accept` has it.
+    ///
+    /// # Errors
+    /// The first refusal.
+    pub(crate) fn accepted<E>(
+        mut self,
+        accept: impl Fn(&Command) -> Result<Command, E>,
+    ) -> Result<Self, E> {
+        for due in &mut self.commands {
+            due.command = accept(&due.command)?;
+        }
+        Ok(self)
     }
 
     /// The step before which the next command is due.

@@ -7,7 +7,7 @@
 
 use super::archive::{Archive, ArchivedDestination, ArchivedEntry, ArchivedState};
 use super::branch::Branch;
-use super::check::check;
+use super::check::accept;
 use super::history::Moment;
 use super::{Checkpoint, Command, RunRecord};
 use crate::measure::{FlowHistory, Series};
@@ -157,9 +157,9 @@ fn check_branch(branch: &Branch, parameters: &[ParameterInfo], bed: &World) -> C
     let commands = branch.history.commands().iter();
     let commands = commands.map(|stamped| (stamped.step, stamped.time, &stamped.command));
     check_commands(commands, parameters, bed)?;
-    branch.plan.commands().try_for_each(|command| {
-        check(parameters, bed, command).map_err(|error| format!("a planned change in it: {error}"))
-    })
+    let planned = branch.plan.clone();
+    let planned = planned.accepted(|command| accept(parameters, bed, command));
+    (planned.map(drop)).map_err(|error| format!("a planned change in it: {error}"))
 }
 
 fn check_measured(series: &Series, flow: &FlowHistory) -> Checked {
@@ -181,7 +181,7 @@ fn check_commands<'a>(
             last.0 <= step && last.1 <= time && time.is_finite(),
             "the changes in it are not in order",
         )?;
-        check(parameters, world, command).map_err(|error| format!("a change in it: {error}"))?;
+        accept(parameters, world, command).map_err(|error| format!("a change in it: {error}"))?;
         last = (step, time);
     }
     Ok(())

@@ -143,7 +143,7 @@ impl Timeline {
     }
 
     /// The state at the end of the present branch, where that is at hand.
-    pub(crate) fn end(&self) -> Option<Snapshot> {
+    fn end(&self) -> Option<Snapshot> {
         if self.run.is_at_end() {
             return Some(self.run.snapshot());
         }
@@ -238,27 +238,16 @@ impl Timeline {
     /// # Errors
     /// As [`Run::apply`].
     pub fn change(&mut self, command: Command, joins: bool) -> Result<(), CommandError> {
-        self.run.check(&command)?;
-        match self.begin_change(&command, joins) {
-            Some(joins) => self.run.apply_change(command, joins),
-            None => Ok(()),
+        if let Command::Set { parameter, value } = self.run.accept(&command)? {
+            let joins = self.begin_change(&parameter, joins);
+            self.run.change(parameter, value, joins);
         }
+        Ok(())
     }
 
-    /// The same in one of two runs that keep one time: the time step follows no limit.
-    ///
-    /// # Errors
-    /// As [`Run::apply`].
-    pub(crate) fn change_in_pair(
-        &mut self,
-        command: Command,
-        joins: bool,
-    ) -> Result<(), CommandError> {
-        self.run.check(&command)?;
-        match self.begin_change(&command, joins) {
-            Some(joins) => self.run.apply_at_this_step(command, joins),
-            None => Ok(()),
-        }
+    /// Whether the time step stays from now on, as it does in each of two runs that keep one time.
+    pub(crate) fn keep_step(&mut self, keeps: bool) {
+        self.run.keep_step(keeps);
     }
 
     /// Notes that `command` was carried out in the run beside this one and not here: an undo takes
@@ -271,24 +260,22 @@ impl Timeline {
         command: &Command,
         joins: bool,
     ) -> Result<(), CommandError> {
-        self.run.check(command)?;
-        self.begin_change(command, joins);
+        if let Command::Set { parameter, .. } = self.run.accept(command)? {
+            self.begin_change(&parameter, joins);
+        }
         Ok(())
     }
 
-    /// Makes what `command` sets a change that can be taken back; whether it is part of the one
-    /// before it. None where it sets nothing.
-    fn begin_change(&mut self, command: &Command, joins: bool) -> Option<bool> {
-        let Command::Set { parameter, .. } = command else {
-            return None;
-        };
+    /// Makes a new value of `parameter` a change that can be taken back; whether it is part of the
+    /// one before it.
+    fn begin_change(&mut self, parameter: &Parameter, joins: bool) -> bool {
         self.stop();
         let what = Changed::Parameter(parameter.clone());
         let moment = Moment::of(self.run.world());
         let joins = joins && self.run.is_at_end() && self.changes.can_join();
         if joins {
             self.changes.join(what);
-            return Some(true);
+            return true;
         }
         self.keep_end();
         let destination = if self.run.is_at_end() {
@@ -301,7 +288,7 @@ impl Timeline {
             }
         };
         self.changes.note(UndoEntry { what, destination });
-        Some(false)
+        false
     }
 
     /// Starts afresh at time zero with the present values, keeping the branch that is left.
@@ -357,7 +344,7 @@ impl Timeline {
 
     /// Keeps `branch`, which began from the same bed, beside the present one, with the state at its
     /// `end` where that is known; returns its index.
-    pub(crate) fn adopt(&mut self, mut branch: Branch, end: Option<Snapshot>) -> usize {
+    fn adopt(&mut self, mut branch: Branch, end: Option<Snapshot>) -> usize {
         branch.number = self.next_number();
         if let Some(end) = end {
             let position = branch.history.position(end.commands(), end.step());
@@ -366,6 +353,22 @@ impl Timeline {
         self.kept.push(Arc::new(branch));
         self.drop_oldest();
         self.kept.len() - 1
+    }
+
+    /// Keeps all branches of `other`, a run from the same bed, beside the present one, the newest
+    /// of both where there is no room for all; returns the index of that which is the other's
+    /// present one.
+    pub(crate) fn adopt_all(&mut self, other: &Self) -> usize {
+        for branch in &other.kept {
+            let end = other.keyframes.end(branch).map(|end| (**end).clone());
+            self.adopt((**branch).clone(), end);
+        }
+        self.adopt(other.branch().clone(), other.end())
+    }
+
+    /// Keeps these branches and no others beside the present one.
+    pub(crate) fn keep_only(&mut self, kept: Vec<Arc<Branch>>) {
+        self.kept = kept;
     }
 
     /// Goes on with `threads` threads.

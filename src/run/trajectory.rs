@@ -6,7 +6,7 @@
 //! give the same bits.
 
 use super::branch::Branch;
-use super::check::check;
+use super::check::accept;
 use super::history::Moment;
 use super::sampling::{next_sample, sample_step};
 use super::script::Script;
@@ -20,6 +20,25 @@ use crate::world::World;
 use std::sync::Arc;
 
 /// A run from time zero to now.
+///
+/// ```
+/// use grainfall::run::{Command, Parameter, Run};
+/// use grainfall::{scene::Scene, solver, world};
+///
+/// let scene = Scene::open("bouncing-grain")?;
+/// // Nothing has to settle here; where it has, `run::Preparation` makes the bed.
+/// let bed = world::build(&scene, solver::advise(&scene).time_step);
+/// let mut run = Run::new(scene.into(), bed, 1);
+/// run.advance_to(500)?;
+/// run.apply(Command::Set {
+///     parameter: Parameter::Gravity,
+///     value: 1.62.into(),
+/// })?;
+/// run.advance_to(1000)?;
+/// assert_eq!(run.commands()[0].step, 500);
+/// assert_eq!(run.world().gravity.length(), 1.62);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Run {
     scene: Arc<Scene>,
     parameters: Arc<[ParameterInfo]>,
@@ -38,6 +57,8 @@ pub struct Run {
     script: Script,
     /// How many of the script's commands are recorded already, with what the time step became.
     recorded: usize,
+    /// Whether the time step stays where the scene lets it follow its limit.
+    keeps_step: bool,
     extremes: Extremes,
 }
 
@@ -59,6 +80,7 @@ impl Run {
             next_sample: 0,
             script: Script::default(),
             recorded: 0,
+            keeps_step: false,
         };
         run.take_due_sample();
         run.note_end();
@@ -145,9 +167,7 @@ impl Run {
     }
 
     fn follow(&mut self, script: Script, recorded: usize) -> Result<(), CommandError> {
-        script
-            .commands()
-            .try_for_each(|command| self.check(command))?;
+        let script = script.accepted(|command| self.accept(command))?;
         self.branch.plan = script.clone();
         (self.script, self.recorded) = (script, recorded);
         self.apply_due(true);
@@ -168,43 +188,30 @@ impl Run {
     /// A [`CommandError`] when the scene has no such parameter or the value is out of its range;
     /// nothing changes then.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
-        self.apply_change(command, false)
-    }
-
-    /// As [`Run::apply`]; the command is part of the change before it where it `joins`.
-    ///
-    /// # Errors
-    /// As [`Run::apply`].
-    pub(crate) fn apply_change(
-        &mut self,
-        command: Command,
-        joins: bool,
-    ) -> Result<(), CommandError> {
-        self.check(&command)?;
-        self.followed(|run| run.execute(command, joins));
+        let command = self.accept(&command)?;
+        self.followed(|run| run.execute(command, false));
         Ok(())
     }
 
-    /// The same, and the time step stays: for one of two runs that keep one time.
-    ///
-    /// # Errors
-    /// As [`Run::apply`].
-    pub(crate) fn apply_at_this_step(
-        &mut self,
-        command: Command,
-        joins: bool,
-    ) -> Result<(), CommandError> {
-        self.check(&command)?;
-        self.execute(command, joins);
-        Ok(())
+    /// Gives a `parameter` the `value`, both as [`Run::accept`] has them, as [`Run::apply`] does;
+    /// it is part of the change before it where it `joins`.
+    pub(crate) fn change(&mut self, parameter: Parameter, value: Value, joins: bool) {
+        self.followed(|run| run.set(parameter, value, joins));
     }
 
-    /// Whether `command` can be carried out.
+    /// Whether the time step stays from now on where the scene lets it follow its limit: two runs
+    /// side by side keep one time.
+    pub(crate) fn keep_step(&mut self, keeps: bool) {
+        self.keeps_step = keeps;
+    }
+
+    /// The `command` as this run carries it out: its parameter by the one name that it has, its
+    /// value of the kind that this takes.
     ///
     /// # Errors
     /// The [`CommandError`] that [`Run::apply`] would answer with.
-    pub fn check(&self, command: &Command) -> Result<(), CommandError> {
-        check(&self.parameters, &self.world, command)
+    pub fn accept(&self, command: &Command) -> Result<Command, CommandError> {
+        accept(&self.parameters, &self.world, command)
     }
 
     /// Advances to `step`, sampling on the way; does nothing when that step is past.
@@ -324,7 +331,7 @@ impl Run {
         self.rewind();
         for (parameter, value) in values {
             if parameter.read(&self.world).is_some_and(|own| own != *value) {
-                self.set(parameter, *value, true);
+                self.set(parameter.clone(), *value, true);
             }
         }
         left
@@ -355,7 +362,7 @@ impl Run {
     /// Makes a change; where the time step follows its limit and that has moved, takes the largest
     /// stable time step from here on, as part of the change.
     fn followed(&mut self, change: impl FnOnce(&mut Self)) {
-        if self.scene.time_step != TimeStep::Following {
+        if self.keeps_step || self.scene.time_step != TimeStep::Following {
             return change(self);
         }
         let before = self.advice().largest();
@@ -363,7 +370,7 @@ impl Run {
         let advice = self.advice();
         let largest = advice.largest();
         if largest != before && largest != advice.time_step {
-            self.set(&Parameter::TimeStep, largest.into(), true);
+            self.set(Parameter::TimeStep, largest.into(), true);
         }
     }
 
@@ -372,15 +379,14 @@ impl Run {
             Command::Reset => {
                 self.start_afresh(&self.values(), self.branch.number);
             }
-            Command::Set { parameter, value } => self.set(&parameter, value, joins),
+            Command::Set { parameter, value } => self.set(parameter, value, joins),
             _ => {}
         }
     }
 
-    /// Gives a `parameter` of this run the `value`, which was checked.
-    fn set(&mut self, parameter: &Parameter, value: Value, joins: bool) {
-        let parameter = parameter.canonical(&self.world.materials);
-        let value = parameter.typed(value).unwrap_or(value);
+    /// Gives a `parameter` the `value`, both as [`Run::accept`] has them, and notes it in the
+    /// branch.
+    fn set(&mut self, parameter: Parameter, value: Value, joins: bool) {
         parameter.write(value, &self.scene, &mut self.world);
         // On the way to a later moment of the branch the command is in it already.
         if self.commands == self.branch.history.commands().len() {

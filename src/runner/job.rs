@@ -2,7 +2,7 @@
 
 use super::RunnerError;
 use crate::parameters::live_parameters;
-use crate::run::{BedStore, Script, ScriptedCommand, check};
+use crate::run::{BedStore, Script, ScriptedCommand, accept};
 use crate::scene::{Scene, SceneGrains};
 use crate::solver::advise;
 use crate::world::{SpeciesId, build, build_packed};
@@ -79,10 +79,8 @@ fn check_script(scene: &Scene, script: &[ScriptedCommand]) -> Result<(), String>
     };
     let script = Script::new(script, &world.clock).map_err(|error| error.to_string())?;
     let parameters = live_parameters(scene, &world);
-    let mut commands = script.commands();
-    commands
-        .try_for_each(|command| check(&parameters, &world, command))
-        .map_err(|error| error.to_string())
+    let accepted = script.accepted(|command| accept(&parameters, &world, command));
+    accepted.map(drop).map_err(|error| error.to_string())
 }
 
 /// Threads that the machine has.

@@ -26,6 +26,19 @@ impl Scene {
     /// The scene that a person calls `name`: the file at that path, or else a built-in scene of
     /// that name or path.
     ///
+    /// ```
+    /// use grainfall::scene::Scene;
+    ///
+    /// let mut scene = Scene::open("small-drum")?;
+    /// scene.set("seed", "7")?;
+    /// assert_eq!((scene.seed, scene.grain_count()), (7, 100));
+    ///
+    /// // What cannot be used is refused with where, what was expected, and what to do.
+    /// let error = Scene::open("smal-drum").unwrap_err();
+    /// assert!(error.to_string().contains("Did you mean `small-drum`?"));
+    /// # Ok::<(), grainfall::scene::SceneError>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Scene::load`], and when there is neither such a file nor such a scene.
     pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {

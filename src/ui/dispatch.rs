@@ -13,7 +13,6 @@ use crate::simulation::{
 use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
 use crate::ui::playback::first_speed;
-
 use crate::ui::request::{Request, Requests};
 use crate::ui::screenshot_orders::ScreenshotOrders;
 use crate::view::{CameraRequest, ViewSettings};
@@ -84,7 +83,11 @@ fn fulfil(
             compare(simulation, parameter, value, dock, &mut opener.view);
         }
         (Request::SetIn(half, parameter, value), Some(simulation)) => {
-            set_in(simulation, half, parameter, value);
+            simulation.send(LabCommand::SetIn {
+                half,
+                parameter,
+                value,
+            });
         }
         (Request::EndComparison(half), Some(simulation)) => {
             end_comparison(simulation, half, dock, &mut opener.view);
@@ -125,15 +128,6 @@ fn fulfil(
         )
         | (Request::SaveThen(_) | Request::Leave(_), _) => {}
     }
-}
-
-/// Sets a value in one of two runs side by side.
-fn set_in(simulation: &mut Simulation, half: Half, parameter: Parameter, value: Value) {
-    simulation.send(LabCommand::SetIn {
-        half,
-        parameter,
-        value,
-    });
 }
 
 /// Saves the session to the file it has, or lets the person choose one.
@@ -204,7 +198,7 @@ fn no_scene(name: &str) -> Option<String> {
 /// The script that gives a new run the present values of the live parameters at its start.
 fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
     let away = simulation.parameters().iter().filter_map(|info| {
-        let value = simulation.value(&info.parameter);
+        let value = simulation.value(&info.parameter)?;
         let parameter = info.parameter.clone();
         (value != info.default).then_some(Command::Set { parameter, value })
     });

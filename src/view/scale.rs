@@ -1,6 +1,9 @@
 //! Lengths and other numbers in the picture: round, short, with a unit of handy size.
 //!
-//! In: a number in its SI unit. Out: text, and how long the scale bar is drawn.
+//! In: a number in its SI unit. Out: text, and how long the scale bar is drawn. Digits and prefixes
+//! are those of [`numeral`].
+
+use crate::measure::numeral;
 
 /// A bar of a round length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +46,9 @@ pub(super) fn length(metres: f64) -> String {
     format!("{} {unit}", short_number(metres * factor))
 }
 
+/// Numbers below this take a smaller prefix.
+const LEAST: f64 = 0.15;
+
 /// A unit whose numbers are of handy size.
 pub(super) struct Prefixed {
     pub(super) factor: f64,
@@ -53,20 +59,11 @@ impl Prefixed {
     /// For numbers up to `largest`: metres per second become mm/s, pascal kPa, joule nJ where that
     /// reads better.
     pub(super) fn new(largest: f64, unit: &str) -> Self {
-        const PREFIXES: [(f64, &str); 7] = [
-            (1e-6, "M"),
-            (1e-3, "k"),
-            (1.0, ""),
-            (1e3, "m"),
-            (1e6, "µ"),
-            (1e9, "n"),
-            (1e12, "p"),
-        ];
         let takes_one = !unit.is_empty() && !unit.starts_with("rad");
-        let fits = |(factor, _): &&(f64, &str)| largest * factor > 0.15;
-        let (factor, prefix) = match PREFIXES.iter().find(fits) {
-            Some(prefixed) if takes_one && largest > 0.0 => *prefixed,
-            _ => (1.0, ""),
+        let (prefix, factor) = if takes_one {
+            numeral::prefix_from(largest, LEAST)
+        } else {
+            ("", 1.0)
         };
         Self {
             factor,
@@ -77,16 +74,7 @@ impl Prefixed {
 
 /// At most three digits, no trailing zeros.
 pub(super) fn short_number(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    let decimals = (2 - x.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    let text = format!("{x:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    numeral::rounded(x, 3)
 }
 
 /// A number with its unit, which takes a prefix where that reads better.
@@ -113,19 +101,6 @@ mod tests {
             assert!(bar.points <= 180.0 && bar.points > 180.0 / 2.6, "{bar:?}");
             // A billionth: rounding.
             assert!((bar.points * metres_per_point / bar.metres - 1.0).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        for (x, text) in [
-            (0.0, "0"),
-            (12.5, "12.5"),
-            (0.025, "0.025"),
-            (1500.0, "1500"),
-            (2.0, "2"),
-        ] {
-            assert_eq!(short_number(x), text);
         }
     }
 

@@ -46,11 +46,11 @@ pub(super) struct FilmReel {
     film: FilmWriter,
     path: PathBuf,
     pictures: usize,
-    /// Steps from picture to picture.
-    stride: u64,
-    /// The step of the next one.
+    /// Simulated time from picture to picture: so many steps, as many as they are at the time [s].
+    interval: f64,
+    /// When the next one is due [s], and the step of that time.
+    due: f64,
     next: u64,
-    time_step: f64,
 }
 
 /// What follows a picture that has been taken.
@@ -195,10 +195,8 @@ impl FilmReel {
         let kind = FilmKind::of(&path)?;
         let speed = simulation.speed();
         let speed = if speed.is_finite() { speed } else { 1.0 };
-        let (step, time_step) = (world.clock.step, world.clock.time_step);
-        let stride = (speed / (f64::from(FILM_RATE) * time_step))
-            .round()
-            .max(1.0) as u64;
+        let (step, due) = (world.clock.step, world.time());
+        let interval = speed / f64::from(FILM_RATE);
         let from = Provenance::of_scene(simulation.scene());
         let film = FilmWriter::begin(path.clone(), kind, from)
             .map_err(|reason| format!("{}: {reason}", path.display()))?;
@@ -207,16 +205,16 @@ impl FilmReel {
             film,
             path,
             pictures: 0,
-            stride,
+            interval,
+            due,
             next: step,
-            time_step,
         })
     }
 
     /// How many pictures there are so far, and the simulated time that they span [s].
     pub(super) fn length(&self) -> (usize, f64) {
-        let steps = self.stride * self.pictures.saturating_sub(1) as u64;
-        (self.pictures, steps as f64 * self.time_step)
+        let intervals = self.pictures.saturating_sub(1) as f64;
+        (self.pictures, intervals * self.interval)
     }
 
     /// Pictures that are not written yet.
@@ -241,27 +239,35 @@ impl FilmReel {
     }
 
     fn has_come(&mut self, simulation: &mut Simulation) -> bool {
-        let sought = simulation.step();
-        if sought + self.stride < self.next || sought > self.next + self.stride {
+        let (Some(times), Some(world)) = (simulation.step_times(), simulation.world()) else {
+            return false;
+        };
+        let sought = times.time_at(simulation.step());
+        if (sought - self.due).abs() > 1.5 * self.interval.max(world.clock.time_step) {
             // Somebody went to another moment: the film goes on from there.
-            self.aim_at(sought, simulation);
+            self.due = sought;
         }
+        // A time step that was changed meanwhile has another step there.
+        self.aim_at(times.step_at(self.due), simulation);
         let is_there = (simulation.world()).is_some_and(|world| world.clock.step >= self.next);
         is_there && self.film.has_room()
     }
 
     /// The next picture is that of `step`; the run goes no further until it is taken.
     fn aim_at(&mut self, step: u64, simulation: &mut Simulation) {
-        self.next = step;
-        simulation.send(LabCommand::Hold(Some(step)));
+        if step != self.next {
+            self.next = step;
+            simulation.send(LabCommand::Hold(Some(step)));
+        }
     }
 
     fn add(&mut self, image: Image, settings: &ViewSettings, simulation: &mut Simulation) {
         let area = free_area(&image, settings);
         self.film.add(image, area);
         self.pictures += 1;
-        if let Some(step) = simulation.world().map(|world| world.clock.step) {
-            self.aim_at(step + self.stride, simulation);
+        self.due += self.interval;
+        if let Some(times) = simulation.step_times() {
+            self.aim_at(times.step_at(self.due), simulation);
         }
     }
 }

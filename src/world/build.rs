@@ -29,6 +29,16 @@ const PLACES: u64 = 1;
 
 /// The world that `scene` asks for at time zero, with steps of `time_step` [s]. The scene is one
 /// that was parsed, or that [`Scene::check`] passed; of any other, what does not fit is left out.
+///
+/// ```
+/// use grainfall::{scene::Scene, solver, world};
+///
+/// let scene = Scene::open("bouncing-grain")?;
+/// let advice = solver::advise(&scene);
+/// let world = world::build(&scene, advice.time_step);
+/// assert_eq!((world.grains.len(), world.time()), (scene.grain_count(), 0.0));
+/// # Ok::<(), grainfall::scene::SceneError>(())
+/// ```
 pub fn build(scene: &Scene, time_step: f64) -> World {
     let cells = Packing::new(scene).map_or_else(|| stored_cells(scene), Packing::finish);
     build_packed(scene, time_step, cells)

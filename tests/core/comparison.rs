@@ -126,8 +126,11 @@ fn goes_its_own_way(
     simulation.send(set(Parameter::Gravity, 9.0));
     carry_out(&mut simulation, set(parameter.clone(), values[0]));
     start(&mut simulation, parameter, values[1]);
-    assert_eq!(simulation.value(parameter), values[0]);
-    assert_eq!(simulation.half(Half::Right).value(parameter), values[1]);
+    assert_eq!(simulation.value(parameter), Some(values[0].into()));
+    assert_eq!(
+        simulation.half(Half::Right).value(parameter),
+        Some(values[1].into())
+    );
 
     // Changed while both go on, at a step that nobody chose.
     simulation.send(LabCommand::Hold(Some(12 * lab.unit)));
@@ -162,8 +165,11 @@ fn goes_its_own_way(
     let right = simulation.half(Half::Right);
     is_a_lone_run(&simulation, lab, &at_the_start(values[0]));
     is_a_lone_run(right, lab, &at_the_start(values[1]));
-    assert_eq!(right.value(parameter), 0.5 * (values[0] + values[1]));
-    assert_eq!(simulation.value(parameter), values[0]);
+    assert_eq!(
+        right.value(parameter),
+        Some((0.5 * (values[0] + values[1])).into())
+    );
+    assert_eq!(simulation.value(parameter), Some(values[0].into()));
     assert_eq!(right.past().kept.len(), 1);
     assert_eq!(right.past().kept[0].end.step, 12 * lab.unit);
 }
@@ -239,7 +245,7 @@ fn is_taken_back_in_both(lab: &Explored, parameter: &Parameter, values: [f64; 4]
     assert_eq!(simulation.undo_and_redo()[0], None);
     carry_out(&mut simulation, Command::Undo);
     assert_eq!(hashes(&simulation), states[0], "nothing more to undo");
-    assert_eq!(simulation.value(parameter), values[0]);
+    assert_eq!(simulation.value(parameter), Some(values[0].into()));
 
     // Undone after two units of its own each, so each redo leads there.
     let ends = states[1..].iter().chain([&end]);
@@ -248,7 +254,10 @@ fn is_taken_back_in_both(lab: &Explored, parameter: &Parameter, values: [f64; 4]
         assert_eq!(hashes(&simulation), *state);
     }
     assert_eq!(simulation.undo_and_redo()[1], None);
-    assert_eq!(simulation.half(Half::Right).value(parameter), values[3]);
+    assert_eq!(
+        simulation.half(Half::Right).value(parameter),
+        Some(values[3].into())
+    );
     let start = |value| [set(parameter.clone(), value)];
     is_a_lone_run(&simulation, lab, &start(values[0]));
     is_a_lone_run(simulation.half(Half::Right), lab, &start(values[1]));
@@ -275,7 +284,10 @@ fn a_change_of_one_half_in_the_past_begins_another_run_in_both() {
     carry_out(&mut simulation, Command::Step(3 * lab.unit));
     // What came after in one of them alone would be a second difference.
     for half in Half::ALL {
-        assert_eq!(simulation.half(half).value(&Parameter::Gravity), 9.81);
+        assert_eq!(
+            simulation.half(half).value(&Parameter::Gravity),
+            Some(9.81.into())
+        );
         assert_eq!(simulation.half(half).past().end.step, 4 * lab.unit);
     }
     is_a_lone_run(&simulation, &lab, &[]);
@@ -305,7 +317,7 @@ fn values_that_follow_each_other_at_once_are_one_change_of_both() {
     simulation.send(set(Parameter::Gravity, -1.0));
     simulation.send(set_right(&Parameter::Viscosity, f64::NAN));
     carry_out(&mut simulation, Command::Step(lab.unit));
-    assert_eq!(simulation.value(&Parameter::Gravity), 7.0);
+    assert_eq!(simulation.value(&Parameter::Gravity), Some(7.0.into()));
     carry_out(&mut simulation, Command::Undo);
     assert_eq!(hashes(&simulation), before);
     assert_eq!(simulation.undo_and_redo()[0], None);
@@ -379,6 +391,46 @@ fn the_half_that_is_not_gone_on_with_stays_beside_the_other() {
             vec![]
         };
         is_a_lone_run(&simulation, &lab, &value);
+    }
+}
+
+#[test]
+fn the_branches_of_both_halves_stay_when_a_comparison_ends() {
+    let lab = wet_lab();
+    let mut simulation = opened(&lab, DriverKind::Thread);
+    start(&mut simulation, &Parameter::Viscosity, 1.41);
+    carry_out(&mut simulation, Command::Step(2 * lab.unit));
+    let left_behind = hashes(&simulation);
+    carry_out(&mut simulation, Command::Seek(lab.unit));
+    simulation.send(set(Parameter::Gravity, 11.0));
+    carry_out(&mut simulation, Command::Step(2 * lab.unit));
+    let present = hashes(&simulation);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pair.grainfall");
+    simulation.send(LabCommand::Save(path.clone()));
+    until(&mut simulation, |s| !s.is_saving() && s.has_answered());
+    simulation.send(LabCommand::EndComparison { keep: Half::Left });
+    // The left run's own other branch, then the right run's, then the right run.
+    until(&mut simulation, |s| {
+        s.has_answered() && s.past().kept.len() == 3
+    });
+    let resumed = Lab::resume(
+        Session::read(&path).unwrap(),
+        Options {
+            autoplay: false,
+            speed: f64::INFINITY,
+            ..Options::default()
+        },
+    );
+    for mut simulation in [simulation, resumed] {
+        until(&mut simulation, |s| *s.status() == Status::Paused);
+        assert_eq!(simulation.past().kept.len(), 3);
+        let expected = [&left_behind[0], &left_behind[1], &present[1]];
+        for (index, hash) in expected.into_iter().enumerate() {
+            // What is left for another branch goes to the end of the list.
+            carry_out(&mut simulation, Command::Return(0));
+            assert_eq!(hashes(&simulation)[0], *hash, "{index}");
+        }
     }
 }
 

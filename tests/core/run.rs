@@ -169,6 +169,48 @@ fn liquids_changed_while_it_runs_play_again_to_the_bit() {
 }
 
 #[test]
+fn a_value_is_kept_as_what_it_is_accepted_for() {
+    let mut scene = scene("small-drum");
+    scene.liquid = Some(LIQUID_CASES[3].liquid());
+    let as_coded = Parameter::BridgeLaw.row().parse("as-coded").unwrap();
+    let pair = |a: &str, b: &str| Parameter::Friction(a.into(), b.into());
+    // A choice by the number that stands for it, a pair by its other name.
+    let given = [
+        set(Parameter::BridgeLaw, as_coded.number()),
+        set(pair("drum", "glass"), 0.2),
+    ];
+    let accepted = [
+        set(Parameter::BridgeLaw, as_coded),
+        set(pair("glass", "drum"), 0.2),
+    ];
+    let kept = |run: &Run| -> Vec<Command> {
+        let commands = run.commands().iter();
+        commands.map(|stamped| stamped.command.clone()).collect()
+    };
+    let mut applied = run_of(&scene);
+    for command in &given {
+        applied.apply(command.clone()).unwrap();
+    }
+    assert_eq!(kept(&applied), accepted);
+    let mut scheduled = run_of(&scene);
+    let list = given.map(|command| ScriptedCommand {
+        step: Some(0),
+        time: None,
+        command,
+    });
+    let script = Script::new(&list, &scheduled.world().clock).unwrap();
+    scheduled.schedule(script).unwrap();
+    assert_eq!(kept(&scheduled), accepted);
+    let before = applied.world().hash();
+    let refused = applied.apply(set(pair("glass", "drum"), Value::Count(1)));
+    assert!(
+        matches!(refused, Err(CommandError::Unsuited(_))),
+        "{refused:?}"
+    );
+    assert_eq!(applied.world().hash(), before);
+}
+
+#[test]
 fn reset_starts_the_command_list_with_the_present_values() {
     let mut run = run_of(&scene("small-drum"));
     let start = run.world().hash();
@@ -475,18 +517,12 @@ fn value_asked_for_shows_before_it_is_carried_out() {
     let mut simulation = opened(scene("small-drum"), DriverKind::Inline);
     held_at(&mut simulation, 5);
     let parameter = Parameter::Friction("glass".into(), "drum".into());
-    assert_eq!(simulation.value(&parameter), 0.30);
+    assert_eq!(simulation.value(&parameter), Some(0.30.into()));
     simulation.send(set(parameter.clone(), 0.1));
-    assert_eq!(simulation.value(&parameter), 0.1);
+    assert_eq!(simulation.value(&parameter), Some(0.1.into()));
     tick_until(&mut simulation, |s| !s.commands().is_empty());
-    assert_eq!(simulation.value(&parameter), 0.1);
-    assert_eq!(
-        simulation
-            .value(&Parameter::Share("nobody".into()))
-            .number()
-            .to_bits(),
-        f64::NAN.to_bits()
-    );
+    assert_eq!(simulation.value(&parameter), Some(0.1.into()));
+    assert_eq!(simulation.value(&Parameter::Share("nobody".into())), None);
 }
 
 #[test]

@@ -141,7 +141,10 @@ fn changes_of_either_half_are_listed_and_taken_back_in_both() {
     assert_eq!(asked(&mut harness), [Request::Command(Command::Undo)]);
     let simulation = &mut harness.state_mut().simulation;
     carried_out(simulation, Command::Undo);
-    assert_eq!(simulation.half(Half::Right).value(&friction()), 0.9);
+    assert_eq!(
+        simulation.half(Half::Right).value(&friction()),
+        Some(0.9.into())
+    );
     let ends = Half::ALL.map(|half| simulation.half(half).past().end.step);
     assert_eq!(ends, [2000; 2]);
     harness.run_steps(2);
@@ -296,7 +299,10 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
     ask(&mut app, Request::EndComparison(Half::Right), |s| {
         s.comparison().is_none() && s.world().is_some_and(|world| world.hash() == state)
     });
-    assert_eq!(simulation(&app).value(&Parameter::Gravity), 0.0);
+    assert_eq!(
+        simulation(&app).value(&Parameter::Gravity),
+        Some(0.0.into())
+    );
     let alone = photographed(&mut app, "twin-ended");
     let centre = simulation(&app).world().unwrap().grains.position[0].as_vec3();
     let (middle, _) = alone.camera.project(centre).unwrap();

@@ -5,6 +5,7 @@ use crate::view::{laboratory, studio};
 use crate::window_of_panels::standing;
 use bevy::math::UVec2;
 use bevy::prelude::*;
+use grainfall::parameters::Parameter;
 use grainfall::simulation::{Command, Simulation};
 use grainfall::ui::{FilmState, ScreenshotOrder, ScreenshotOrders};
 use grainfall::view::FILM_RATE;
@@ -94,6 +95,45 @@ fn film_has_a_picture_for_every_frame_of_simulated_time() {
     until(&mut app, |app| {
         app.world().resource::<Simulation>().step() > before
     });
+}
+
+#[test]
+fn film_keeps_its_pace_where_the_time_step_changes() {
+    let Some(_studio) = studio("film_keeps_its_pace_where_the_time_step_changes") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = studio_with_camera();
+    let now = |app: &App| {
+        app.world()
+            .resource::<Simulation>()
+            .world()
+            .unwrap()
+            .clone()
+    };
+    let (begun, step) = (now(&app).time(), now(&app).clock.time_step);
+    record(&mut app, &folder.path().join("film"), 2);
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Set {
+        parameter: Parameter::TimeStep,
+        value: (0.25 * step).into(),
+    });
+    let so_far = pictures(&app);
+    until(&mut app, |app| pictures(app) >= so_far + 4);
+    // The run waits for its next picture, one 25th of a second after the last one.
+    let taken = pictures(&app) as f64;
+    until(&mut app, |app| {
+        pictures(app) as f64 > taken
+            || (now(app).time() - begun) * f64::from(FILM_RATE) > taken - 1.01
+    });
+    let reached = (now(&app).time() - begun) * f64::from(FILM_RATE);
+    let taken = pictures(&app) as f64;
+    assert!(
+        taken - 2.0 < reached && reached < taken + 0.01,
+        "{reached} {taken}"
+    );
+    assert_eq!(now(&app).clock.time_step, 0.25 * step);
+    order(&mut app, ScreenshotOrder::CancelFilm);
+    until(&mut app, |app| state(app) == FilmState::Idle);
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn saved_session_is_dropped_on_another_and_is_as_it_was() {
     assert_eq!(hash(&app), state);
     assert_eq!(simulation(&app).past().kept.len(), 1);
     command(&mut app, Command::Undo);
-    assert_eq!(simulation(&app).value(&friction()), 0.4);
+    assert_eq!(simulation(&app).value(&friction()), Some(0.4.into()));
     // It has a file now: saving asks for none.
     let before = std::fs::read(&path).unwrap();
     ask(&mut app, Request::Save);
@@ -175,7 +175,7 @@ fn start_with_another_scene_takes_the_present_values_along() {
     update_until(&mut app, |s| s.world().is_some());
     assert_eq!(simulation(&app).scene().materials[0].density, 5000.0);
     assert_eq!(simulation(&app).original().materials[0].density, 2500.0);
-    assert_eq!(simulation(&app).value(&friction()), 0.2);
+    assert_eq!(simulation(&app).value(&friction()), Some(0.2.into()));
 }
 
 #[test]

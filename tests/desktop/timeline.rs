@@ -171,7 +171,7 @@ fn undo_and_redo_are_there_when_they_mean_something() {
     assert_eq!(asked(&mut harness), [Command::Undo]);
     let simulation = &mut harness.state_mut().simulation;
     carried_out(simulation, Command::Undo);
-    assert_eq!(simulation.value(&friction()), 0.40);
+    assert_eq!(simulation.value(&friction()), Some(0.40.into()));
     assert_eq!(simulation.past().end.step, 1000);
     harness.run_steps(2);
     harness.get_by_label("Redo").click();

@@ -488,7 +488,7 @@ fn mark_turns_with_the_drum() {
         world.grains = Grains::default();
         world.container.angle = f64::from(angle);
         let photograph = photograph("mark", world, |_, camera| {
-            camera.look_from(StandardView::Front)
+            camera.look_from(StandardView::Front);
         });
         // Across the bold spoke on the back plate, halfway out: red exceeds blue only at the mark.
         let warmth = |azimuth: f32| {

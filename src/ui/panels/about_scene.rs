@@ -1,9 +1,11 @@
 //! What the scene is, what to look for, where its numbers come from.
 
+use crate::parameters::Parameter;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
+use crate::ui::words::run_names::value_in_words;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
 
@@ -35,10 +37,13 @@ impl Panel for AboutScene {
     }
 }
 
-/// Grains, law and seed in one line.
+/// Grains, law and seed in one line, the seed as the registry of parameters has it.
 fn outline(scene: &Scene) -> String {
     let grains = scene.grain_count();
     let law = scene.law.words().name;
     let noun = if grains == 1 { "grain" } else { "grains" };
-    format!("{grains} {noun} · {law} · seed {}", scene.seed)
+    let seed = Parameter::Seed;
+    let name = (seed.row().name)(scene);
+    let value = (seed.stated(scene)).map_or_else(String::new, |value| value_in_words(&seed, value));
+    format!("{grains} {noun} · {law} · {name} {value}")
 }

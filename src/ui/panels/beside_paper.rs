@@ -66,7 +66,9 @@ impl Panel for BesidePaper {
         _out: &mut Vec<Request>,
     ) {
         let run = simulation.half(view.focus);
-        let millipascals = 1e3 * run.value(&Parameter::Viscosity).number();
+        let viscosity = run
+            .value(&Parameter::Viscosity)
+            .map(|value| 1e3 * value.number());
         let Some(world) = run.world() else {
             ui.weak("The laws appear when the bed stands.");
             return;
@@ -88,7 +90,7 @@ impl Panel for BesidePaper {
                 law: law_over(-0.5..=3.4, |viscosity| drop_ratio_law(1e-3 * viscosity)),
                 law_name: "0.4 + 0.47 exp(−η/295 mPa s)",
                 threshold: None,
-                point: ratio.map(|ratio| [millipascals.max(0.1).log10(), ratio]),
+                point: viscosity.zip(ratio).map(|(x, y)| [x.max(0.1).log10(), y]),
                 x: -0.5..=3.4,
                 y: 0.0..=ratio.unwrap_or(0.0).max(1.1) * 1.05,
             },

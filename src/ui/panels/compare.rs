@@ -73,8 +73,7 @@ impl Compare {
         {
             other = telling(info, simulation);
         }
-        if let Some(info) = of(&parameter) {
-            let present = simulation.value(&parameter);
+        if let (Some(info), Some(present)) = (of(&parameter), simulation.value(&parameter)) {
             let left = value_in_words(&parameter, present);
             ui.label(format!("Left: {left}, the present value"));
             other = other_ui(ui, info, other).unwrap_or(other);
@@ -163,7 +162,8 @@ fn named_values(info: &ParameterInfo) -> Vec<Preset> {
 /// A value far from the present one, so that the two runs look unlike: the farthest named one, else
 /// the farther end.
 fn telling(info: &ParameterInfo, simulation: &Simulation) -> Value {
-    let present = simulation.value(&info.parameter).number();
+    let present = simulation.value(&info.parameter).unwrap_or(info.default);
+    let present = present.number();
     let range = info.range();
     let is_logarithmic = info.row().is_logarithmic(&range);
     let far = |value: &f64| {

@@ -104,7 +104,10 @@ impl Parameters {
         simulation: &Simulation,
         out: &mut Vec<Request>,
     ) {
-        let is_away = |info: &&ParameterInfo| simulation.value(&info.parameter) != info.default;
+        let is_away = |info: &&ParameterInfo| {
+            let value = simulation.value(&info.parameter);
+            value.is_some_and(|value| value != info.default)
+        };
         let away = || simulation.parameters().iter().filter(is_away);
         let of_start = self.start.changed(simulation);
         let button = ui
@@ -162,8 +165,11 @@ fn group_ui(
         let is_compared = (simulation.comparison())
             .is_some_and(|comparison| *comparison.parameter == info.parameter);
         if !is_compared {
-            let (value, mut compared) = (simulation.value(&info.parameter), false);
-            let wanted = row_ui(ui, info, value, detail, scene, |ui| {
+            let mut compared = false;
+            let Some(value) = simulation.value(&info.parameter) else {
+                continue;
+            };
+            let wanted = parameter_ui(ui, info, value, detail, scene, |ui| {
                 compared = compare_ui(ui, info, simulation);
             });
             out.extend(wanted.map(|value| Request::Command(set(info, value))));
@@ -176,8 +182,12 @@ fn group_ui(
                 ..info.clone()
             };
             ui.weak(number::capitalised(half.label()));
-            let value = simulation.half(half).value(&info.parameter);
-            let wanted = ui.push_id(half, |ui| row_ui(ui, &named, value, detail, scene, |_| ()));
+            let Some(value) = simulation.half(half).value(&info.parameter) else {
+                continue;
+            };
+            let wanted = ui.push_id(half, |ui| {
+                parameter_ui(ui, &named, value, detail, scene, |_| ())
+            });
             let parameter = info.parameter.clone();
             let set_in = |value| Request::SetIn(half, parameter, value);
             out.extend(wanted.inner.map(set_in));
@@ -197,9 +207,9 @@ fn compare_ui(ui: &mut egui::Ui, info: &ParameterInfo, simulation: &Simulation) 
     button.clicked()
 }
 
-/// The row of one parameter, with what is drawn `beside` its field: what is wanted instead of
-/// `value`, if anything.
-fn row_ui(
+/// The row of one parameter of `scene`, with what is drawn `beside` its field: what is wanted
+/// instead of `value`, if anything.
+pub fn parameter_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
     value: Value,
@@ -207,13 +217,9 @@ fn row_ui(
     scene: &Scene,
     beside: impl FnOnce(&mut egui::Ui),
 ) -> Option<Value> {
-    let wanted = match &info.values {
+    match &info.values {
         Values::Choices(choices) => choice_ui(ui, info, choices, value, scene, beside),
-        Values::Range(_) => parameter_ui(ui, info, value, detail, scene, beside),
-    };
-    match wanted? {
-        Command::Set { value, .. } => Some(value),
-        _ => None,
+        Values::Range(_) => number_ui(ui, info, value, detail, scene, beside),
     }
 }
 
@@ -249,7 +255,8 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
         let value = value.into();
         Request::Command(Command::Set { parameter, value })
     };
-    let volume = simulation.value(&Parameter::LiquidVolume).number();
+    let value = |parameter| simulation.value(parameter).map(Value::number);
+    let volume = value(&Parameter::LiquidVolume).unwrap_or(0.0);
     let mut wanted = Vec::new();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -258,7 +265,7 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
             wanted.push(set(Parameter::LiquidVolume, 0.0));
         }
         for case in &LIQUID_CASES {
-            let own = volume > 0.0 && simulation.value(&Parameter::Viscosity) == case.viscosity;
+            let own = volume > 0.0 && value(&Parameter::Viscosity) == Some(case.viscosity);
             let button = ui.selectable_label(own, case.name.trim_end_matches(" glycerol"));
             let hint = format!(
                 "{}: {} mPa s, case {} of Table 1 of Kasper et al. 2021",
@@ -281,7 +288,7 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
     wanted
 }
 
-/// The choice between the values of `info`; the command that a change asks for.
+/// The choice between the values of `info`; what is wanted instead of `value`, if anything.
 fn choice_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
@@ -289,7 +296,7 @@ fn choice_ui(
     value: Value,
     scene: &Scene,
     beside: impl FnOnce(&mut egui::Ui),
-) -> Option<Command> {
+) -> Option<Value> {
     let (mut chosen, description) = (value, info.row().description);
     ui.horizontal(|ui| {
         ui.label(short_name(info, scene)).on_hover_text(description);
@@ -299,19 +306,19 @@ fn choice_ui(
         }
         beside(ui);
     });
-    (chosen != value).then(|| set(info, chosen))
+    (chosen != value).then_some(chosen)
 }
 
-/// The row of one parameter of `scene` whose present value is `value`, with what is drawn `beside`
-/// its field; the command that a change asks for.
-pub fn parameter_ui(
+/// The row of a number of `scene` that is `value` now, with what is drawn `beside` its field; what
+/// is wanted instead, if anything.
+fn number_ui(
     ui: &mut egui::Ui,
     info: &ParameterInfo,
     value: Value,
     detail: Detail,
     scene: &Scene,
     beside: impl FnOnce(&mut egui::Ui),
-) -> Option<Command> {
+) -> Option<Value> {
     let own = info.row();
     let (name, range) = (short_name(info, scene), info.range());
     let mut row = ValueRow {
@@ -340,7 +347,7 @@ pub fn parameter_ui(
         ui.weak("It acts from the next step on.");
         ui.weak(format!("--set {}=… on the command line", info.parameter));
     });
-    wanted.map(|wanted| set(info, own.value(wanted)))
+    wanted.map(|wanted| own.value(wanted))
 }
 
 fn set(info: &ParameterInfo, value: Value) -> Command {

@@ -1,30 +1,15 @@
 //! Numbers in the panels: those of the registry's own writing
-//! ([`numeral`](crate::measure::numeral)), and shorter ones for hints and ranges.
+//! ([`numeral`](crate::measure::numeral)), and what the panels say with them.
 
 pub use crate::measure::numeral::{
-    capitalised, fixed, power_of_ten, prefix_for, short, with_prefix,
+    capitalised, fixed, power_of_ten, prefix_for, rounded, short, trimmed, with_prefix,
 };
 
 use crate::measure::Measure;
 
-/// `value` as [`short`] has it without zeros at its end: `0.4`, `1.41`.
-pub fn trimmed(value: f64) -> String {
-    without_idle_zeros(short(value))
-}
-
-fn without_idle_zeros(text: String) -> String {
-    if text.contains('.') && !text.contains('·') {
-        let kept = text.trim_end_matches('0').trim_end_matches('.');
-        kept.to_owned()
-    } else {
-        text
-    }
-}
-
 /// `value` with two digits or so: `0.0042`, `0.25`, `3.1`, `120`.
 pub fn rough(value: f64) -> String {
-    let digits = 1 - value.abs().max(1e-4).log10().floor() as i32;
-    without_idle_zeros(fixed(value, digits.clamp(0, 5) as usize))
+    rounded(value, 2)
 }
 
 /// A time step or another short time [s]: `12.3 µs`.
@@ -42,12 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn short_numbers_have_no_idle_zeros() {
-        assert_eq!(trimmed(0.4), "0.4");
-        let speeds = [0.0042, 0.25, 3.08, 12.0, 120.4].map(rough);
-        assert_eq!(speeds, ["0.0042", "0.25", "3.1", "12", "120"]);
-        assert_eq!(trimmed(1410.0), "1410");
-        assert_eq!(trimmed(2.0e-9), "2.00·10⁻⁹");
+    fn short_times_have_a_prefix() {
         assert_eq!(short_time(1.25e-5), "12.50 µs");
     }
 }

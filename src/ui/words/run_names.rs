@@ -34,7 +34,8 @@ pub fn half_title(simulation: &Simulation, half: Half) -> String {
     let Some(parameter) = (simulation.comparison()).map(|comparison| comparison.parameter) else {
         return String::new();
     };
-    let value = simulation.half(half).value(parameter);
     let name = parameter_name(parameter, simulation);
-    format!("{name} {}", value_in_words(parameter, value))
+    let value = simulation.half(half).value(parameter);
+    let value = value.map_or_else(String::new, |value| value_in_words(parameter, value));
+    format!("{name} {value}")
 }

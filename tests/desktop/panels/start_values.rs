@@ -12,7 +12,7 @@ use grainfall::ui::Request;
 #[test]
 fn reset_all_sets_what_was_changed_and_nothing_else() {
     let mut simulation = prepared();
-    let speed = simulation.value(&Parameter::DrumSpeed);
+    let speed = simulation.value(&Parameter::DrumSpeed).unwrap();
     simulation.send(set(friction(), 0.8));
     simulation.send(set(Parameter::DrumSpeed, 1.0));
     let mut harness = Window::of(simulation);
