@@ -46,8 +46,8 @@ const LATTICE_POINT: f64 = 500.0;
 const PROGRAM: f64 = 20e6;
 /// A number of `series.csv` [bytes].
 const TABLE_CELL: f64 = 14.0;
-/// Settling takes as long as so many simulated seconds, about.
-const SETTLING: f64 = 1.5;
+/// Simulated time that settling takes, about, in `√(r/g)` of the mean radius.
+const SETTLING: f64 = 80.0;
 /// Part of the memory that is free which a run may take.
 const SHARE_OF_MEMORY: f64 = 0.9;
 
@@ -99,10 +99,7 @@ impl Estimate {
         let samples = scene.duration / SAMPLE_INTERVAL + 1.0;
         let columns = Measure::COUNT as f64 + 2.0;
         let outputs = scene.duration / scene.output_interval + 1.0;
-        let settling = match scene.grains {
-            SceneGrains::Fill { .. } => SETTLING / time_step,
-            SceneGrains::Voronoi(_) | SceneGrains::List(_) => 0.0,
-        };
+        let settling = settling_time(scene) / time_step;
         let grain = grains as f64;
         Self {
             grains,
@@ -157,6 +154,18 @@ impl fmt::Display for Estimate {
             bytes(self.files),
             duration(self.time)
         )
+    }
+}
+
+/// Simulated time that the bed of `scene` takes to settle [s], none where none does.
+fn settling_time(scene: &Scene) -> f64 {
+    let gravity = scene.gravity.length();
+    match &scene.grains {
+        SceneGrains::Fill { species, .. } if gravity > 0.0 => {
+            let mean: f64 = species.iter().map(|kind| kind.share * kind.radius).sum();
+            SETTLING * (mean / gravity).sqrt()
+        }
+        _ => 0.0,
     }
 }
 
