@@ -116,6 +116,7 @@ impl World {
             )?;
             vector(contact.spring, LARGEST, || name("the spring"))?;
             vector(contact.force, LARGEST, || name("the force"))?;
+            vector(contact.rolling, LARGEST, || name("the rolling torque"))?;
             number(contact.stiffness, || name("the stiffness"))?;
             if let Some(bridge) = &contact.bridge {
                 require(self.liquid.is_some(), || name("without a liquid, a bridge"))?;
