@@ -86,39 +86,30 @@ impl Archive {
             self.check_state(state)?;
         }
         let mut entries = self.undo.iter().chain(&self.redo);
-        require(
-            entries.all(|entry| self.leads_somewhere(entry)),
-            "a change in it leads nowhere",
-        )
+        require(entries.all(leads_somewhere), "a change in it leads nowhere")
     }
 
     fn check_state(&self, state: &ArchivedState) -> Checked {
-        let (snapshot, branch) = (&state.snapshot, &self.branches[state.branch]);
-        let shared = snapshot.clone().sharing(Some(&self.bed));
+        let shared = state.snapshot.clone().sharing(Some(&self.bed));
         shared.world().check().map_err(|error| error.to_string())?;
         require(
-            are_alike(shared.world(), &self.bed) && snapshot.flow.is_whole(),
+            are_alike(shared.world(), &self.bed) && shared.flow.is_whole(),
             "a state in it is one of another scene",
-        )?;
-        require(
-            snapshot.step() <= branch.end.step
-                && snapshot.commands <= branch.history.commands().len()
-                && snapshot.samples <= branch.series.len(),
-            "a state in it is no part of its branch",
         )
     }
+}
 
-    fn leads_somewhere(&self, entry: &ArchivedEntry) -> bool {
-        match entry.destination {
-            ArchivedDestination::Earlier { commands, moment } => {
-                let present = &self.branches[0];
-                commands <= present.history.commands().len()
-                    && moment.step <= present.end.step
-                    && moment.time.is_finite()
-            }
-            ArchivedDestination::Other { branch, step } => step <= self.branches[branch].end.step,
-        }
+/// Whether a change can be taken back or brought back. Where it leads may lie beyond the present
+/// branch: others are taken back before it.
+fn leads_somewhere(entry: &ArchivedEntry) -> bool {
+    match entry.destination {
+        ArchivedDestination::Earlier { moment, .. } => is_moment(moment),
+        ArchivedDestination::Other { step, .. } => step <= MOST_STEPS,
     }
+}
+
+fn is_moment(moment: Moment) -> bool {
+    moment.step <= MOST_STEPS && (0.0..=LONGEST).contains(&moment.time)
 }
 
 /// Whether `world` is a state of a run of `scene`, as far as that can be told without making one.
@@ -148,9 +139,8 @@ fn are_alike(world: &World, bed: &World) -> bool {
 }
 
 fn check_branch(branch: &Branch, parameters: &[ParameterInfo], bed: &World) -> Checked {
-    let Moment { step, time } = branch.end;
     require(
-        step <= MOST_STEPS && (0.0..=LONGEST).contains(&time) && branch.number <= MOST_BEGUN,
+        is_moment(branch.end) && branch.number <= MOST_BEGUN,
         "a branch in it ends nowhere",
     )?;
     check_measured(&branch.series, &branch.flow)?;

@@ -125,7 +125,6 @@ impl World {
                     .into_iter()
                     .try_for_each(|value| number(value, || name("the bridge")))?;
                 vector(bridge.drag, LARGEST, || name("the bridge"))?;
-                require(bridge.volume >= 0.0, || name("the bridge's volume"))?;
                 number(bridge.volume, || name("the bridge's volume"))?;
             }
         }
