@@ -5,7 +5,9 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Largest size of a body that is taken from a file, in SI units.
+/// Smallest and largest size of a body that is taken from a file, in SI units: products of a few of
+/// them are numbers still.
+const SMALLEST: f64 = 1e-60;
 const LARGEST: f64 = 1e12;
 
 /// A convex core and the radius by which it is rounded: the body is all that lies within `rounding`
@@ -118,7 +120,7 @@ impl Polyhedron {
 
     /// Whether its sizes are positive and not absurd.
     fn has_sound_sizes(&self) -> bool {
-        let positive = |x: f64| x > 0.0 && x <= LARGEST;
+        let positive = |x: f64| (SMALLEST..=LARGEST).contains(&x);
         positive(self.rounding)
             && positive(self.volume)
             && self.gyration.to_array().into_iter().all(positive)

@@ -235,6 +235,9 @@ fn find(
     };
     match file.read() {
         CheckpointLookup::Kept(kept) => {
+            if let Err(reason) = kept.checkpoint.check(&job.scene) {
+                return refuse(format!("its checkpoint cannot be used: {reason}"));
+            }
             if let Some(missing) = kept.written.missing(folder.path()) {
                 return refuse(format!("its file {missing} is missing"));
             }
