@@ -14,7 +14,7 @@
 //! contacts of grains with `n` contacts each.
 //!
 //! Without the memory, a torque `−ω/C` alone holds a grain that is pulled by a torque T only while
-//! it rolls, at up to `Σ n T Δt/I`: the wet bed of that paper then stood lower than it should.
+//! it rolls, at up to `Σ n T Δt/I`.
 
 use crate::lanes::Lanes;
 
