@@ -95,19 +95,7 @@ impl Panel for BesidePaper {
                 y: 0.0..=ratio.unwrap_or(0.0).max(1.1) * 1.05,
             },
         );
-        comparison_ui(
-            ui,
-            PaperPlot {
-                id: "flowing share",
-                title: "Non-rigid share ta/ts, over √(1/Ga)",
-                law: Vec::new(),
-                law_name: "",
-                threshold: Some(0.0),
-                point: inverse_root.zip(flowing).map(|(x, y)| [x.log10(), y]),
-                x: -3.5..=1.2,
-                y: 0.0..=1.1,
-            },
-        );
+        comparison_ui(ui, flowing_share(inverse_root.zip(flowing)));
         let missing = match (dry, drop) {
             (None, _) => "No stored dry drum has this radius: set a drum of 3 or 2 mm beside it. ",
             (_, None) => "No avalanche yet. ",
@@ -119,6 +107,20 @@ impl Panel for BesidePaper {
             number::fixed(count, 0)
         );
         ui.label(RichText::new(averages).small().weak());
+    }
+}
+
+/// The non-rigid share over `√(1/Ga)`, where the run stands at the `point`.
+fn flowing_share(point: Option<(f64, f64)>) -> PaperPlot {
+    PaperPlot {
+        id: "flowing share",
+        title: "Non-rigid share ta/ts, over √(1/Ga)",
+        law: Vec::new(),
+        law_name: "",
+        threshold: Some(0.0),
+        point: point.map(|(x, y)| [x.log10(), y]),
+        x: -3.5..=1.2,
+        y: 0.0..=1.1,
     }
 }
 
