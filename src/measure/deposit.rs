@@ -10,6 +10,8 @@ use crate::world::{Contact, Partner, Shape, World};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
+/// Rings of a height profile at most: a lone grain that flew away takes no memory.
+const MOST_RINGS: usize = 1000;
 /// Sectors over which the front is averaged.
 const SECTORS: usize = 72;
 /// Share of the column's radius at the start within which the deposit's height is taken.
@@ -120,14 +122,17 @@ impl Deposit {
     /// The mean height over the azimuth: the floor about the axis is cut into rings two grain sizes
     /// wide (the grain size is the cube root of the mean volume) and these into cells about as
     /// long; a cell is as high as the highest grain whose centre lies over it, an empty one has no
-    /// height, and a ring has the mean height of its cells.
+    /// height, and a ring has the mean height of its cells. Grains beyond [`MOST_RINGS`] rings are
+    /// left out.
     pub fn height_profile(&self) -> HeightProfile {
         let width = RING_WIDTH * self.grain_size;
         let farthest = self.grains.iter().map(|grain| grain.distance);
-        let rings = (farthest.fold(0.0, f64::max) / width) as usize + 1;
+        let rings = ((farthest.fold(0.0, f64::max) / width) as usize).min(MOST_RINGS - 1) + 1;
         let mut cells: Vec<Vec<f64>> = (0..rings).map(|ring| vec![0.0; cells_of(ring)]).collect();
         for grain in &self.grains {
-            let ring = &mut cells[(grain.distance / width) as usize];
+            let Some(ring) = cells.get_mut((grain.distance / width) as usize) else {
+                continue;
+            };
             let count = ring.len();
             let cell = &mut ring[((grain.turn * count as f64) as usize).min(count - 1)];
             *cell = cell.max(grain.top);

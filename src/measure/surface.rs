@@ -15,6 +15,8 @@
 use crate::world::{Grains, Shape, World};
 use glam::DVec2;
 
+/// Bins of a surface at most: a large container with a few small grains takes no memory.
+const MOST_BINS: f64 = 1e5;
 /// Share of the free surface, about its middle, through which the line is fitted.
 pub const MIDDLE_SHARE: f64 = 0.7;
 
@@ -162,7 +164,9 @@ impl Silhouette {
     /// holds one.
     fn tops(&self, guess: Guess, middle: FittedPart) -> Vec<DVec2> {
         let length = 2.0 * middle.half_length;
-        let bins = (length / (2.0 * self.mean_radius)).floor().max(1.0);
+        let bins = (length / (2.0 * self.mean_radius))
+            .floor()
+            .clamp(1.0, MOST_BINS);
         let start = middle.centre - middle.half_length;
         let mut highest = vec![f64::NEG_INFINITY; bins as usize];
         let mut tops = vec![DVec2::NAN; bins as usize];
