@@ -161,13 +161,18 @@ impl Target for SceneTexts {
     }
 }
 
-/// Builds `scene` and takes two steps, where that is little work.
-fn built(scene: &Scene) {
+/// Whether it is little work to build `scene`.
+fn is_small(scene: &Scene) -> bool {
     let points = match &scene.grains {
         SceneGrains::Voronoi(cells) => cells.lattice_size(&scene.container) as usize,
         _ => 0,
     };
-    if scene.grain_count() > FEW_GRAINS || points > 2 * FEW_GRAINS {
+    scene.grain_count() <= FEW_GRAINS && points <= 2 * FEW_GRAINS
+}
+
+/// Builds `scene` and takes two steps, where that is little work.
+fn built(scene: &Scene) {
+    if !is_small(scene) {
         return;
     }
     let mut world = world::build(scene, advise(scene).time_step);
@@ -518,7 +523,7 @@ impl Target for RecordFiles {
         let Ok(record) = RunRecord::read(&path) else {
             return false;
         };
-        if record.scene.grain_count() <= FEW_GRAINS {
+        if is_small(&record.scene) {
             let looks = AtomicU32::new(0);
             let stop = || looks.fetch_add(1, Ordering::Relaxed) >= 2;
             let _ = record.verify(1, BedStore::none(), &mut (), &stop);
