@@ -27,6 +27,8 @@ use std::time::{Duration, Instant};
 
 /// Least wall-clock time between two times that outputs are made durable.
 const SYNC_TIME: Duration = Duration::from_secs(1);
+/// Most of a run's wall-clock time that this may cost, as one part in so many.
+const SHARE_OF_TIME: u32 = 20;
 /// Files by these names are a run's own; those of an earlier run give way to a later one.
 const OWN: [&str; 8] = [
     CHECKPOINT,
@@ -88,6 +90,8 @@ pub struct Recorder {
     unsynced: Vec<String>,
     /// When all that was written was last made durable.
     synced: Instant,
+    /// Wall-clock time that this took: a busy disk takes its time.
+    sync_cost: Duration,
     /// When the run was begun or gone on with.
     started: Instant,
 }
@@ -145,6 +149,7 @@ impl Recorder {
             collection: None,
             unsynced: Vec::new(),
             synced: Instant::now(),
+            sync_cost: Duration::ZERO,
             started: Instant::now(),
         }
     }
@@ -187,7 +192,8 @@ impl Recorder {
         let is_output = is_due(self.next_output(clock));
         if is_output {
             self.write_grains(run.world)?;
-            if self.synced.elapsed() >= SYNC_TIME {
+            let affordable = self.sync_cost.saturating_mul(SHARE_OF_TIME);
+            if self.synced.elapsed() >= affordable.max(SYNC_TIME) {
                 self.sync()?;
             }
         }
@@ -202,6 +208,7 @@ impl Recorder {
     /// # Errors
     /// When the disk fails.
     pub fn sync(&mut self) -> Result<(), OutputError> {
+        let started = Instant::now();
         self.folder.sync(&self.unsynced)?;
         self.unsynced.clear();
         if let Some(series) = &self.series {
@@ -211,6 +218,7 @@ impl Recorder {
             collection.sync(&self.folder)?;
         }
         self.synced = Instant::now();
+        self.sync_cost = started.elapsed();
         Ok(())
     }
 

@@ -196,12 +196,16 @@ impl CheckpointFile {
         self.written.elapsed() >= spacing
     }
 
-    /// Keeps `run`, of which so much was `written`.
+    /// Keeps `run`, of which so much was `written`; the work for it `started` then.
     ///
     /// # Errors
     /// When it cannot be written; what was kept before is kept on.
-    pub fn write(&mut self, run: RunSoFar, written: Written) -> Result<(), OutputError> {
-        let started = Instant::now();
+    pub fn write(
+        &mut self,
+        run: RunSoFar,
+        written: Written,
+        started: Instant,
+    ) -> Result<(), OutputError> {
         self.log
             .add(run.series)
             .map_err(|source| OutputError::write(&self.log.path, source))?;

@@ -218,8 +218,9 @@ impl Runner {
         let Some(file) = &mut self.checkpoints else {
             return Ok(());
         };
+        let started = Instant::now();
         self.recorder.sync()?;
-        Ok(file.write(run, self.recorder.written())?)
+        Ok(file.write(run, self.recorder.written(), started)?)
     }
 }
 
