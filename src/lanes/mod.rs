@@ -24,5 +24,6 @@ mod vocabulary;
 pub use processor::{Processor, prefetch};
 pub use scalar::{Elementwise, One};
 pub use vocabulary::{
-    Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
+    Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, splat_vector,
+    times,
 };

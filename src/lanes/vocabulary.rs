@@ -103,6 +103,16 @@ pub trait Quad: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     }
 }
 
+/// The vector `v` in every lane.
+#[inline(always)]
+pub fn splat_vector<N: Lanes>(processor: N::Processor, [x, y, z]: [f64; 3]) -> [N; 3] {
+    [
+        N::splat(processor, x),
+        N::splat(processor, y),
+        N::splat(processor, z),
+    ]
+}
+
 /// `a · b`.
 #[inline(always)]
 pub fn dot<N: Lanes>(a: [N; 3], b: [N; 3]) -> N {

@@ -9,11 +9,8 @@ use super::{Run, bed};
 use crate::measure::elastic_energy;
 use crate::scene::Scene;
 use crate::solver::{Fault, Solver, advise};
-use crate::world::{self, Clock, Packing, World};
+use crate::world::{self, Packing, World};
 use std::sync::Arc;
-
-/// A time so short that nothing moves, in time steps.
-const NO_TIME: f64 = 1e-12;
 
 /// A run that is being prepared.
 pub struct Preparation {
@@ -152,32 +149,14 @@ fn settling_step(scene: &Scene) -> f64 {
     advise(&dry).time_step
 }
 
-/// `built` with the contacts and forces of grains that touch from the start, their elastic energy
-/// in the ledger.
-///
-/// A step of next to no length leaves every grain in its place and the forces there behind. Where
-/// even that one is a fault, the world stays as it was built: the run's first step meets it again
-/// and says so.
-fn with_forces(built: World, threads: usize) -> World {
-    let mut probe = built.clone();
-    probe.clock = Clock::new(NO_TIME * built.clock.time_step);
-    if Solver::new(threads).advance(&mut probe, 1).is_err() {
-        return built;
+/// `world` with the contacts and forces of grains that touch from the start, their elastic energy
+/// in the ledger. Where its state is a fault, it stays as it was built: the run's first step meets
+/// the fault again and says so.
+fn with_forces(mut world: World, threads: usize) -> World {
+    if Solver::new(threads).evaluate(&mut world).is_ok() {
+        let elastic = elastic_energy(&world);
+        world.restart_clock(elastic);
     }
-    let mut world = World {
-        clock: built.clock,
-        container: built.container,
-        ..probe
-    };
-    world.grains.position = built.grains.position;
-    world.grains.velocity = built.grains.velocity;
-    world.grains.spin = built.grains.spin;
-    if let (Some(polyhedra), Some(built)) = (&mut world.polyhedra, built.polyhedra) {
-        polyhedra.orientation = built.orientation;
-        polyhedra.angular_momentum = built.angular_momentum;
-    }
-    let elastic = elastic_energy(&world);
-    world.restart_clock(elastic);
     world
 }
 

@@ -5,6 +5,14 @@
 //! have to be looked at for each. Where sizes differ much there is a grid for each level of size,
 //! and a sphere looks for its like and for larger ones alone: a cell of the largest would hold all
 //! the small ones there are. Used for grains and for the spheres round polyhedra.
+//!
+//! Cells are numbered with x fastest, so that the three cells beside each other along x are one range
+//! of members: 9 ranges are looked at instead of 27 cells. Each pair is told once, by its lower
+//! number, and partners come in rising order: the lists that are made from them need no sorting of
+//! their own. Boxes much larger than what they hold get wider cells, up to eight for each sphere: the
+//! grid takes memory by spheres, not by space.
+//!
+//! Not here: walls, which each list asks for their distance, and how long a list lasts.
 
 use super::row::{Row, length_squared, sub};
 

@@ -1,6 +1,6 @@
 //! Rows: elementwise sums of four numbers side by side in memory.
 
-pub use super::lanes::Row;
+pub use crate::lanes::Row;
 
 /// `a − b`, element by element.
 #[inline(always)]

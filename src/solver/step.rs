@@ -20,8 +20,13 @@
 //! The motion of the last step is one kick, without a drift. Velocity Verlet's second half kick of
 //! one step and the first of the next are one pass over the grains.
 //!
+//! Faults are looked for where they are cheap: every grain's speed after every step, as a number
+//! that is not finite makes a speed that is not. A call that meets one gives the world back as it
+//! was, and only then asks which grain it was and why.
+//!
 //! Not here: any formula.
 
+use super::barrier::OwnLine;
 use super::profile::{Profile, Stage};
 use super::walls::Walls;
 use super::workers::{Batch, ForcePhase, InPhase, MotionPhase, WorkerPool};
@@ -224,8 +229,7 @@ impl Resources<'_> {
             limit: remaining.min(kernel.steps_within_slack()),
             dt,
             walls: kernel.walls().clone(),
-            refresh: AtomicBool::new(false),
-            fault: AtomicBool::new(false),
+            requests: OwnLine::default(),
         };
         let batch = Batch::new(self.pool.size());
         let shares = kernel.lend(&batch);
@@ -239,7 +243,7 @@ impl Resources<'_> {
             }
             whole.tally.add(&report.tally);
         }
-        whole.fault = course.fault.into_inner();
+        whole.fault = course.requests.0.fault.into_inner();
         // At the last step of a call nothing moves any more.
         let moves = whole.steps - u64::from(whole.steps == remaining);
         (0..moves).for_each(|_| kernel.walls().advance(dt));
@@ -276,9 +280,17 @@ struct Course {
     limit: u64,
     dt: f64,
     walls: Walls,
-    /// Some worker asks for lists, or has found a fault: the batch ends after the step. Both are
-    /// read at the beginning of a step only, and written between the two meetings of one.
+    /// What some worker asks for: on a line of its own, as all read it in every step.
+    requests: OwnLine<BatchRequests>,
+}
+
+/// What workers ask for: the batch ends after the step. It is read at the beginning of a step only,
+/// and written between the two meetings of one.
+#[derive(Default)]
+struct BatchRequests {
+    /// The lists are to be brought up to date.
     refresh: AtomicBool,
+    /// A grain's or a pair's state is absurd.
     fault: AtomicBool,
 }
 
@@ -305,8 +317,8 @@ impl Course {
             report.steps += 1;
             let last = report.steps == self.remaining;
             let outcome = share.move_grains(self.processor, last, &motion);
-            raise(&self.refresh, outcome.refresh);
-            raise(&self.fault, outcome.fault || tally.fault);
+            raise(&self.requests.0.refresh, outcome.refresh);
+            raise(&self.requests.0.fault, outcome.fault || tally.fault);
             if !last {
                 walls.advance(self.dt);
             }
@@ -323,7 +335,8 @@ impl Course {
 
     /// Whether some worker has asked for the batch to end.
     fn is_over(&self) -> bool {
-        self.refresh.load(Ordering::Relaxed) || self.fault.load(Ordering::Relaxed)
+        let BatchRequests { refresh, fault } = &self.requests.0;
+        refresh.load(Ordering::Relaxed) || fault.load(Ordering::Relaxed)
     }
 }
 

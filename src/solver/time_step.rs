@@ -5,6 +5,11 @@
 //! the scene gives; while it goes on [`Extremes::advise`] holds the present step against the limits
 //! of the present state, so that no change of a material, a liquid or a law goes unnoticed.
 //!
+//! Laws and bridges say their own limits ([`crate::physics::law::StepLimit`]): how long a contact
+//! of the smallest grains lasts, how quickly a wave goes round one, how soon a dashpot or a drag
+//! would stop one. A limit falls with the radius, so that the smallest grain of each material
+//! stands for all of it.
+//!
 //! Not here: changing the step. A command does that (the parameter `time-step`), so that it is
 //! recorded.
 

@@ -1,8 +1,14 @@
 //! Walls in the solver: where they are during a call, how they move, how far they have come.
 //!
 //! In: a world's container. Out: the walls at each step, and the container's surfaces and angle
-//! after the last one. Not here: the distance of a point from a wall, which is
-//! [`Surface::distance`] and, in lanes, the pair loop's.
+//! after the last one.
+//!
+//! Planes and tubes move by their velocity, a step at a time, so that where they are does not
+//! depend on how many steps a call takes. What turns about its own axis keeps its surface: a drum's
+//! rim and plates stay where they are, and their spin is felt as the velocity at a contact. Every
+//! worker of a batch has its own copy and moves it as all others do; so nobody waits for a wall.
+//!
+//! Not here: the distance of a point from a wall ([`Surface::distance`]).
 
 use crate::world::{Container, Surface, WallMotion};
 

@@ -1,4 +1,4 @@
-//! The solver's threads: a pool of workers, the barrier between two phases, and the memory they
+//! The solver's threads: a pool of workers, the phases in which they work, and the memory they
 //! write side by side.
 //!
 //! In: a share of the work for each worker. Out: what each of them returns. Every `unsafe` of the
@@ -17,8 +17,8 @@
 //! | [`MotionPhase`] | what pairs do to their sides | bodies, films, vertices and planes of faces |
 //!
 //! What only one worker ever touches (springs, bridges, lists of features, sums of forces) is cut
-//! into ranges by [`split`] and is an ordinary `&mut` slice. What one phase writes and the other
-//! reads is a [`Column`], of which each worker holds the part that is its own.
+//! into ranges by [`super::ranges::split`] and is an ordinary `&mut` slice. What one phase writes
+//! and the other reads is a [`Column`], of which each worker holds the part that is its own.
 //!
 //! Why that is sound: the parts of a column are disjoint, which is checked when the batch is
 //! prepared. A worker gets at a column only with an [`InPhase`], the proof that all workers of the
@@ -29,6 +29,8 @@
 //! acquire make what was written visible. A proof neither leaves its thread nor outlives the batch,
 //! and it opens only columns of its own batch, which is checked at each use.
 
+use super::barrier::{Barrier, OwnLine, PATIENCE, wait_until};
+use super::ranges::in_order;
 use std::cell::UnsafeCell;
 use std::hint::spin_loop;
 use std::marker::PhantomData;
@@ -59,11 +61,6 @@ struct Board {
     finished: Box<[OwnLine<AtomicUsize>]>,
     dismissed: AtomicBool,
 }
-
-/// On cache lines of its own: what one thread writes and others read again and again.
-#[derive(Default)]
-#[repr(align(128))]
-struct OwnLine<T>(T);
 
 #[expect(
     unsafe_code,
@@ -228,61 +225,9 @@ impl Board {
     }
 }
 
-/// Spins, and after a while gives its core to others at every turn, until `done`.
-fn wait_until(done: impl Fn() -> bool) {
-    let mut turns = 0;
-    while !done() {
-        if turns < PATIENCE {
-            turns += 1;
-            spin_loop();
-        } else {
-            std::thread::yield_now();
-        }
-    }
-}
-
-/// Turns of a spinning wait before the core is offered to others at every turn: a few microseconds,
-/// longer than workers that have a core each wait, far shorter than a worker without one would
-/// take.
-const PATIENCE: u32 = 64;
-
 /// How long a thread without work stays awake: longer than lists take to build, so that it is there
 /// for the next batch.
 const WAKEFULNESS: Duration = Duration::from_micros(300);
-
-/// The range of `count` items that is `worker`'s, of `size` workers.
-pub fn range_of(count: usize, worker: usize, size: usize) -> Range<usize> {
-    count * worker / size..count * (worker + 1) / size
-}
-
-/// Where workers wait for each other.
-struct Barrier {
-    /// How often each worker has arrived.
-    arrivals: Box<[OwnLine<AtomicUsize>]>,
-}
-
-impl Barrier {
-    /// A barrier for `size` workers.
-    fn new(size: usize) -> Self {
-        Self {
-            arrivals: (0..size).map(|_| OwnLine::default()).collect(),
-        }
-    }
-
-    /// Returns when every worker has called it as often as `worker` has.
-    #[inline]
-    fn wait(&self, worker: usize) {
-        if self.arrivals.len() == 1 {
-            return;
-        }
-        let own = &self.arrivals[worker].0;
-        let round = own.load(Ordering::Relaxed) + 1;
-        own.store(round, Ordering::Release);
-        for OwnLine(arrival) in &self.arrivals {
-            wait_until(|| arrival.load(Ordering::Acquire) >= round);
-        }
-    }
-}
 
 /// Steps that a pool's workers take together, from one meeting to the next.
 pub struct Batch {
@@ -301,7 +246,7 @@ impl Batch {
 
     /// Number of its workers.
     pub fn size(&self) -> usize {
-        self.barrier.arrivals.len()
+        self.barrier.size()
     }
 
     /// Lends `column`, which phase `P` writes and the other reads, to the workers: to each the part
@@ -345,45 +290,6 @@ impl Batch {
         self.lend(column, ranges.map(|range| vec![range]))
             .into_iter()
     }
-}
-
-/// All ranges with the workers they belong to, from the lowest to the highest.
-fn in_order(ranges: &[Vec<Range<usize>>]) -> Vec<(Range<usize>, usize)> {
-    let of_worker = |(worker, own): (usize, &Vec<Range<usize>>)| {
-        let own: Vec<_> = own.iter().map(|range| (range.clone(), worker)).collect();
-        own
-    };
-    let mut all: Vec<_> = ranges.iter().enumerate().flat_map(of_worker).collect();
-    all.sort_by_key(|(range, _)| (range.start, range.end));
-    all
-}
-
-/// Cuts `slice` into the workers' own `ranges`, given worker by worker.
-///
-/// # Panics
-/// When ranges overlap or do not lie within the slice.
-pub fn split<'a, T>(
-    mut slice: &'a mut [T],
-    ranges: impl IntoIterator<Item = Vec<Range<usize>>>,
-) -> Vec<Vec<&'a mut [T]>> {
-    let ranges: Vec<Vec<Range<usize>>> = ranges.into_iter().collect();
-    let mut parts: Vec<Vec<&'a mut [T]>> = ranges.iter().map(|_| Vec::new()).collect();
-    let mut begin = 0;
-    for (range, worker) in in_order(&ranges) {
-        let (part, rest) = slice[range.start - begin..].split_at_mut(range.len());
-        parts[worker].push(part);
-        (slice, begin) = (rest, range.end);
-    }
-    parts
-}
-
-/// Cuts `slice` into one range for each worker: see [`split`].
-pub fn split_once<T>(
-    slice: &mut [T],
-    ranges: impl Iterator<Item = Range<usize>>,
-) -> impl Iterator<Item = &mut [T]> {
-    let parts = split(slice, ranges.map(|range| vec![range]));
-    parts.into_iter().filter_map(|part| part.into_iter().next())
 }
 
 /// A phase of a step.
@@ -504,6 +410,7 @@ impl<T, P: Phase> Column<'_, T, P> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::ranges::range_of;
     use super::*;
 
     /// Sums over neighbours, `steps` times: what one phase writes the other reads.
@@ -561,13 +468,5 @@ mod tests {
             column.write_first(&phase).len()
         };
         WorkerPool::new(1).run(&batch, lent, read);
-    }
-
-    #[test]
-    fn slice_is_cut_into_the_ranges_of_each_worker() {
-        let mut numbers: Vec<usize> = (0..10).collect();
-        let parts = split(&mut numbers, [vec![0..2, 7..10], vec![2..2, 3..7]]);
-        assert_eq!(parts[0], [&[0, 1][..], &[7, 8, 9]]);
-        assert_eq!(parts[1], [&[][..], &[3, 4, 5, 6]]);
     }
 }

@@ -1,5 +1,6 @@
 //! Walls: analytic surfaces that move as rigid bodies.
 
+use crate::lanes::{Lanes, One, dot, minus, plus, splat_vector, times};
 use crate::physics::MaterialId;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -117,32 +118,59 @@ impl Surface {
     /// Distance of the point `x` from the wall, positive on the grains' side [m], and the unit
     /// vector from `x` towards the wall.
     pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
+        let x = x.to_array().map(|x| One::splat((), x));
+        let (distance, direction) = self.distance_in_lanes((), x);
+        (distance.get(), DVec3::from_array(direction.map(One::get)))
+    }
+
+    /// The same for points side by side.
+    ///
+    /// With the distance `ρ` of a point from the axis, a cylinder is `R − ρ` away, radially; the
+    /// nearest point of a tube stands at `R − ρ` radially and, below its rim, at that height. On the
+    /// axis itself any direction is radial, and x is taken.
+    #[inline(always)]
+    pub fn distance_in_lanes<N: Lanes>(
+        &self,
+        processor: N::Processor,
+        position: [N; 3],
+    ) -> (N, [N; 3]) {
+        let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
+        let [x, y, z] = position;
         match *self {
-            Self::Plane { point, normal } => ((x - point).dot(normal), -normal),
+            Self::Plane { point, normal } => {
+                let inward = splat_vector(processor, normal.to_array());
+                let away = minus(position, splat_vector(processor, point.to_array()));
+                (dot(away, inward), [-inward[0], -inward[1], -inward[2]])
+            }
             Self::Cylinder { radius } => {
-                let rho = (x.x * x.x + x.y * x.y).sqrt();
-                let outward = if rho > 0.0 {
-                    DVec3::new(x.x / rho, x.y / rho, 0.0)
-                } else {
-                    DVec3::X
-                };
-                (radius - rho, outward)
+                let rho = (x * x + y * y).sqrt();
+                let off_axis = rho.exceeds(zero);
+                let outward = [
+                    N::choose(off_axis, x / rho, one),
+                    N::choose(off_axis, y / rho, zero),
+                    zero,
+                ];
+                (N::splat(processor, radius) - rho, outward)
             }
             Self::Tube { radius, rim } => {
-                let rho = (x.x * x.x + x.z * x.z).sqrt();
-                let outward = if rho > 0.0 {
-                    DVec3::new(x.x / rho, 0.0, x.z / rho)
-                } else {
-                    DVec3::X
-                };
-                let below = (rim - x.y).max(0.0);
-                let nearest = (radius - rho) * outward + DVec3::new(0.0, below, 0.0);
-                let distance = nearest.length();
-                let direction = if distance > 0.0 {
-                    nearest / distance
-                } else {
-                    outward
-                };
+                let rho = (x * x + z * z).sqrt();
+                let off_axis = rho.exceeds(zero);
+                let outward = [
+                    N::choose(off_axis, x / rho, one),
+                    zero,
+                    N::choose(off_axis, z / rho, zero),
+                ];
+                let below = N::splat(processor, rim) - y;
+                let below = N::choose(below.exceeds(zero), below, zero);
+                let across = times(outward, N::splat(processor, radius) - rho);
+                let nearest = plus(across, [zero, below, zero]);
+                let distance = dot(nearest, nearest).sqrt();
+                let apart = distance.exceeds(zero);
+                let direction = [
+                    N::choose(apart, nearest[0] / distance, outward[0]),
+                    N::choose(apart, nearest[1] / distance, outward[1]),
+                    N::choose(apart, nearest[2] / distance, outward[2]),
+                ];
                 (distance, direction)
             }
         }

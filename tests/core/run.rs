@@ -577,7 +577,7 @@ fn grains_that_overlap_at_the_start_push_from_the_start() {
     let name = grains[0].material.clone();
     let material = scene.material(&name).unwrap().1.clone();
     let run = run_of(&scene);
-    // Hertz with E* = E / 2 (1 - ν²) and r* = r / 2, exact to rounding but for the step of 1e-12 that evaluates it.
+    // Hertz with E* = E / 2 (1 - ν²) and r* = r / 2, exact to rounding.
     let modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio.powi(2)));
     let (reduced, overlap) = (radius / 2.0, 0.02 * radius);
     let force = 4.0 / 3.0 * modulus * reduced.sqrt() * overlap.powf(1.5);

@@ -8,6 +8,7 @@ mod bridges;
 mod cloud;
 mod determinism;
 mod drum;
+mod evaluate;
 mod faults;
 mod golden;
 mod imex;

@@ -10,6 +10,9 @@
 //! limits on the time step with their reasons, what people call it and its equations, which grains
 //! it suits. So a new law takes a file with both traits here, and a line each in [`ContactLaw`] and
 //! [`ContactLaw::choose`].
+//!
+//! A law that stands in another program takes the two traits alone: a solver of spheres can be
+//! given it instead of the law that a world states ([`LawSource`]; `examples/own_force_law.rs`).
 
 mod bridge;
 mod hertz_mindlin;
@@ -239,6 +242,38 @@ pub trait LawUser {
     fn with<L: Law>(self, law: L) -> Self::Output;
 }
 
+/// Where a solver gets the contact law of spheres from: from the world ([`StatedLaw`]), or it has
+/// one of its own, which is any [`Law`].
+pub trait LawSource: Copy + Send + Sync {
+    /// Whether it is the law that worlds state.
+    const STATED: bool;
+
+    /// Does with the law what `user` does; `stated` is the world's.
+    fn choose<U: LawUser>(self, stated: ContactLaw, user: U) -> U::Output;
+}
+
+/// The law that the world states.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StatedLaw;
+
+impl LawSource for StatedLaw {
+    const STATED: bool = true;
+
+    #[inline(always)]
+    fn choose<U: LawUser>(self, stated: ContactLaw, user: U) -> U::Output {
+        stated.choose(user)
+    }
+}
+
+impl<L: Law> LawSource for L {
+    const STATED: bool = false;
+
+    #[inline(always)]
+    fn choose<U: LawUser>(self, _stated: ContactLaw, user: U) -> U::Output {
+        user.with(self)
+    }
+}
+
 impl ContactLaw {
     /// What a scene file can state.
     pub const FORMS: &'static str = "`HertzMindlin`, `Hooke(…)` or `SpringDashpot(…)`";
@@ -331,10 +366,19 @@ pub struct Pairing {
 impl Pairing {
     /// Constants of the pair under the world's contact law, `wet` or dry.
     pub fn constants(&self, law: ContactLaw, materials: &Materials, wet: bool) -> PairConstants {
+        law.told(|law| self.constants_by(law, materials, wet))
+    }
+
+    /// Constants of the pair under this law, `wet` or dry.
+    pub fn constants_by(
+        &self,
+        law: &dyn LawFacts,
+        materials: &Materials,
+        wet: bool,
+    ) -> PairConstants {
         let pair = materials.pair(self.materials.0, self.materials.1);
-        let coefficients = law.told(|law| law.constants(self, materials));
         PairConstants {
-            coefficients,
+            coefficients: law.constants(self, materials),
             contact: [
                 if wet {
                     pair.wet_friction

@@ -30,8 +30,8 @@ pub struct SmallestGrain<'a> {
 }
 
 impl SmallestGrain<'_> {
-    /// [kg]
-    pub(super) fn mass(&self) -> f64 {
+    /// Its mass [kg].
+    pub fn mass(&self) -> f64 {
         spheres_volume(1.0, self.radius) * self.material.density
     }
 }

@@ -3,12 +3,11 @@
 //! In: the working copy and its pairs. Out: shares that take about equally long, and the two phases
 //! of a step on a share.
 
+use super::super::ranges::{range_of, split_once};
 use super::super::row::{Row, length_squared, row, sub};
 use super::super::step::{Outcome, Share, Tally};
 use super::super::walls::{WallBody, Walls};
-use super::super::workers::{
-    Batch, Column, ForcePhase, InPhase, MotionPhase, range_of, split_once,
-};
+use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
 use super::Polyhedra;
 use super::bodies::{Body, Geometry, Load, Place, Shapes};
 use super::dashpots::{Response, SWEEPS, Sweep};

@@ -1,12 +1,12 @@
 //! The force of a contact of polyhedra, term by term: see [`super::super::terms`].
 
-use super::super::lanes::{Lanes, One, Row};
-use super::super::law::{Hooke, Law};
 use super::super::row::vector;
 use super::super::terms::{ForceTerms, velocity_half_a_step_ago};
 use super::bodies::{Body, Shapes};
 use super::listing::Listed;
 use super::nearest::{Jobs, Nearest, Places};
+use crate::lanes::{Lanes, One, Row};
+use crate::physics::law::{Hooke, Law};
 use crate::world::{Contact, Feature, FeatureContact, Partner, World};
 use glam::DVec3;
 

@@ -4,9 +4,20 @@
 //! In: gaps and relative motion of pairs of grains, their bridges. Out: the bridges' forces, what
 //! they lose, what their liquid does when they break. A bridge forms where grains touch, breaks at
 //! its rupture gap, and walls have none.
+//!
+//! A bridge takes its volume from the films of both grains when it forms and keeps it; a film
+//! counts its part all the while. When the bridge breaks, each side takes half of it home: what one
+//! film gains the other loses. Capillary attraction and drag are those of [`crate::physics::law`]
+//! (Kasper et al. 2021, Eqs. 11–17) at the gap, which is held within the bounds that the liquid's
+//! choices set. What a bridge loses is the mean of its old and its new force times the way between,
+//! booked apart for viscosity and for capillary forces, as the latter give back on the way together
+//! what they take on the way apart.
+//!
+//! Not here: what the bridges' forces depend on, how far lists must reach for them
+//! ([`super::neighbours`]).
 
 use super::super::row::{row, vector};
-use super::rows::{GROUP, Pair};
+use super::rows::{GROUP, SpherePair};
 use crate::lanes::{Lanes, Quad, Row, WIDEST, dot, plus, times};
 use crate::physics::Liquid;
 use crate::physics::law::{
@@ -63,7 +74,7 @@ pub struct BridgeGroup<'a> {
     /// What they depend on.
     pub wetting: Wetting<'a>,
     /// The pairs.
-    pub pairs: &'a [Pair],
+    pub pairs: &'a [SpherePair],
     /// The group that holds their bridges.
     pub columns: &'a mut BridgeColumns,
     /// Where in it the first of them stands.
@@ -228,7 +239,7 @@ impl BridgeGroup<'_> {
         for (k, pair) in self.pairs.iter().enumerate() {
             let lane = self.first + k;
             if depths[k] > 0.0 && !self.columns.row(lane).exists() {
-                let films = (films[pair.grain as usize], films[pair.partner as usize]);
+                let films = (films[pair.grain.index()], films[pair.partner.index()]);
                 let radii = (radii[0][k], radii[1][k]);
                 let row = BridgeRow::new(self.wetting.liquid, radii, films);
                 self.columns.set(lane, &row);

@@ -1,240 +1,49 @@
-//! The pair loop: geometry, contact law, sliding and rolling friction of every listed pair.
+//! The pair loop: contact law, sliding and rolling friction of every listed pair.
 //!
 //! In: bodies, listed pairs with their constants and histories. Out: forces, torques and exchanged
 //! energy per pair, new histories. Pairs are computed in lanes and each writes rows of its
 //! own; nothing is summed here, so the order of work never shows.
+//!
+//! With the overlap `δ`, the unit vector `n` from a grain to its partner, the speed of approach
+//! `v_n`, the slip `u` of the surfaces, and the law's `k_n`, `η_n`, `k_t`, `η_t` at that overlap:
+//!
+//! | | |
+//! |---|---|
+//! | repulsion | `R = k_n δ + η_n v_n`, where the law keeps it |
+//! | spring | `ξ + u Δt`, turned into the tangent plane, no longer than `μ B/k_t` |
+//! | across the normal | `T = −k_t ξ − η_t u`; no dashpot while the spring is at its bound |
+//! | force on the grain | `F = T − R n`, and the bridge's |
+//! | torques | `a n × T` on either side, with the arm `a` of that side |
+//! | rolling friction | the torque so far, changed against the relative spin: see [`rolling_gain`] |
+//!
+//! `B` is the force that bounds friction, by the law and, where bridges pull, by the liquid's
+//! choice (Kasper et al. 2021, Eqs. 5–10 and 20; Man et al. 2023, Eqs. 3.3–3.5). The partner gets
+//! `−F` and `−q`. What is lost is booked by pair: `Δt ((R − k_n δ) v_n + η_t u²)` in dashpots, what
+//! the spring gives back less than it took, `Δt q·ω` in rolling, and what a wall does on the grain.
+//!
+//! Not here: what a partner is ([`super::partners`]), bridges ([`super::bridges`]), formulas of
+//! laws ([`crate::physics::law`]).
 
 use super::super::tangential::update;
 use super::super::walls::WallBody;
 use super::bridges::{BridgeColumns, BridgeEffect, BridgeGroup, Encounter, LiquidForce, Wetting};
-use super::rows::{Body, ContactForce, GROUP, History, Pair};
-use crate::lanes::{
-    Lanes, Quad, Row, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times,
-};
+use super::partners::{GrainAndWall, Partners, TwoGrains};
+use super::rows::{ContactForce, GROUP, History, PairKind, Slot, Sphere, SpherePair, WallId};
+use crate::lanes::{Lanes, Quad, Work, cross, dot, minus, plus, side_by_side, times};
 use crate::physics::CoulombBound;
 use crate::physics::law::{
     FilmConstants, Law, NormalContact, PairConstants, normal_contact, rolling_gain,
 };
-use crate::world::Surface;
-use glam::DVec3;
-
-/// Partners side by side, as many as there are lanes: geometry and kinematics of a pair, for two
-/// grains and for a grain at a wall.
-///
-/// With centres `x`, radii `r`, velocities `v`, spins `ω` and arms `a` from the centres to the
-/// contact, the normal is `n = (x₂ − x₁)/|x₂ − x₁|`, the overlap `δ = r₁ + r₂ − |x₂ − x₁|`, the
-/// speed of approach `(v₁ − v₂) · n` and the slip of the surfaces `v − (v · n) n + (a₁ ω₁ + a₂ ω₂)
-/// × n` with `v = v₁ − v₂`. What a law needs of them is read when it is needed: registers are few.
-trait Partners<N: Lanes>: Copy {
-    /// Whether the second side is a wall: its velocity is taken at the contact, so that it needs no
-    /// arm.
-    const WALL: bool;
-
-    /// Unit vectors from the grains to their partners, and the overlaps (negative at a gap), for
-    /// these radii.
-    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N);
-    /// Velocity of the partner at the contact, where it is a wall.
-    fn wall_velocity(self, processor: N::Processor) -> [N; 3];
-    /// Velocity of the grain relative to its partner.
-    fn velocity(self, processor: N::Processor) -> [N; 3];
-    /// Spins of both.
-    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]);
-    /// Relative spin for rolling friction, and how much of it a unit of torque stops.
-    fn rolling(self, processor: N::Processor) -> ([N; 3], N);
-}
-
-/// Pairs of grains.
-#[derive(Clone, Copy)]
-struct TwoGrains<'a> {
-    /// The grains on which the computed forces act, then their partners.
-    first: [&'a Body; WIDEST],
-    second: [&'a Body; WIDEST],
-}
-
-/// Grains at one wall.
-#[derive(Clone, Copy)]
-struct GrainAndWall<'a, N> {
-    /// The grains.
-    grain: [&'a Body; WIDEST],
-    /// The wall that all of them meet.
-    wall: &'a WallBody,
-    /// Unit vectors from the grains to the wall.
-    normal: [N; 3],
-    /// Distances of their centres from it, not a number behind it [m].
-    gap: N,
-    /// Where the forces act [m].
-    contact: [N; 3],
-}
-
-/// One row of each body.
-#[inline(always)]
-fn rows<'a>(bodies: [&'a Body; WIDEST], row: impl Fn(&'a Body) -> &'a Row) -> Rows<'a> {
-    bodies.map(row)
-}
-
-/// Two grains: differences of their rows, column by column.
-impl<N: Lanes> Partners<N> for TwoGrains<'_> {
-    const WALL: bool = false;
-
-    #[inline(always)]
-    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
-        let (a, b) = (
-            rows(self.first, |body| &body.position),
-            rows(self.second, |body| &body.position),
-        );
-        let [x, y, z, _] = N::gather_difference(processor, b, a);
-        let length = dot([x, y, z], [x, y, z]).sqrt();
-        let inverse = N::splat(processor, 1.0) / length;
-        (times([x, y, z], inverse), radii[0] + radii[1] - length)
-    }
-
-    #[inline(always)]
-    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
-        [N::splat(processor, 0.0); 3]
-    }
-
-    #[inline(always)]
-    fn velocity(self, processor: N::Processor) -> [N; 3] {
-        let (a, b) = (
-            rows(self.first, |body| &body.velocity),
-            rows(self.second, |body| &body.velocity),
-        );
-        let [x, y, z, _] = N::gather_difference(processor, a, b);
-        [x, y, z]
-    }
-
-    #[inline(always)]
-    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]) {
-        let [ax, ay, az, _] = N::gather(processor, rows(self.first, |body| &body.spin));
-        let [bx, by, bz, _] = N::gather(processor, rows(self.second, |body| &body.spin));
-        ([ax, ay, az], [bx, by, bz])
-    }
-
-    #[inline(always)]
-    fn rolling(self, processor: N::Processor) -> ([N; 3], N) {
-        let (a, b) = (
-            rows(self.first, |body| &body.free_spin),
-            rows(self.second, |body| &body.free_spin),
-        );
-        let [x, y, z, compliance] = N::gather_difference_and_sum(processor, a, b);
-        ([x, y, z], compliance)
-    }
-}
-
-impl<'a, N: Lanes> GrainAndWall<'a, N> {
-    /// Grains at `wall`: the rule of [`Surface::distance`], in lanes.
-    #[inline(always)]
-    fn new(processor: N::Processor, grain: [&'a Body; WIDEST], wall: &'a WallBody) -> Self {
-        let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
-        let [_, _, _, radius] = N::gather(processor, rows(grain, |body| &body.spin));
-        let position = [x, y, z];
-        let (gap, normal) = match wall.surface {
-            Surface::Plane { point, normal } => {
-                let inward = splat_vector::<N>(processor, normal);
-                (
-                    dot(minus(position, splat_vector(processor, point)), inward),
-                    splat_vector(processor, -normal),
-                )
-            }
-            Surface::Cylinder { radius } => {
-                let rho = (x * x + y * y).sqrt();
-                (
-                    N::splat(processor, radius) - rho,
-                    [x / rho, y / rho, N::splat(processor, 0.0)],
-                )
-            }
-            Surface::Tube { radius, rim } => {
-                let zero = N::splat(processor, 0.0);
-                let rho = (x * x + z * z).sqrt();
-                let outward = (N::splat(processor, radius) - rho) / rho;
-                let below = N::splat(processor, rim) - y;
-                let below = N::choose(below.exceeds(zero), below, zero);
-                let nearest = [x * outward, below, z * outward];
-                let distance = dot(nearest, nearest).sqrt();
-                (
-                    distance,
-                    times(nearest, N::splat(processor, 1.0) / distance),
-                )
-            }
-        };
-        // A centre on or behind the surface is no contact any more: the check after the step
-        // reports it.
-        let gap = N::choose(
-            gap.exceeds(N::splat(processor, 0.0)),
-            gap,
-            N::splat(processor, f64::NAN),
-        );
-        Self {
-            grain,
-            wall,
-            normal,
-            gap,
-            // Where the force acts, half the overlap behind the surface: else a grain at rest on a
-            // turning wall would slip.
-            contact: plus(
-                position,
-                times(normal, N::splat(processor, 0.5) * (radius + gap)),
-            ),
-        }
-    }
-}
-
-/// A grain and a wall: a partner of infinite mass whose surface moves by the wall's velocity field.
-impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
-    const WALL: bool = true;
-
-    #[inline(always)]
-    fn geometry(self, _processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
-        (self.normal, radii[0] - self.gap)
-    }
-
-    #[inline(always)]
-    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
-        let motion = &self.wall.motion;
-        plus(
-            splat_vector(processor, motion.velocity),
-            cross(splat_vector(processor, motion.spin), self.contact),
-        )
-    }
-
-    #[inline(always)]
-    fn velocity(self, processor: N::Processor) -> [N; 3] {
-        let [x, y, z, _] = N::gather(processor, rows(self.grain, |body| &body.velocity));
-        minus([x, y, z], self.wall_velocity(processor))
-    }
-
-    #[inline(always)]
-    fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]) {
-        let [x, y, z, _] = N::gather(processor, rows(self.grain, |body| &body.spin));
-        ([x, y, z], splat_vector(processor, self.wall.motion.spin))
-    }
-
-    #[inline(always)]
-    fn rolling(self, processor: N::Processor) -> ([N; 3], N) {
-        let [x, y, z, compliance] = N::gather(processor, rows(self.grain, |body| &body.free_spin));
-        (
-            minus([x, y, z], splat_vector(processor, self.wall.motion.spin)),
-            compliance,
-        )
-    }
-}
-
-/// A vector in every lane.
-#[inline(always)]
-fn splat_vector<N: Lanes>(processor: N::Processor, v: DVec3) -> [N; 3] {
-    [
-        N::splat(processor, v.x),
-        N::splat(processor, v.y),
-        N::splat(processor, v.z),
-    ]
-}
 
 /// Constants of pairs side by side: the law's, then friction, rolling arm and both radii.
-type Constants<N> = ([N; 4], [N; 4]);
+pub type Constants<N> = ([N; 4], [N; 4]);
 
 /// Constants of pairs that are all of one kind.
 #[inline(always)]
-fn common_constants<N: Lanes>(processor: N::Processor, constants: &PairConstants) -> Constants<N> {
+pub fn common_constants<N: Lanes>(
+    processor: N::Processor,
+    constants: &PairConstants,
+) -> Constants<N> {
     (
         N::spread(processor, &constants.coefficients),
         N::spread(processor, &constants.contact),
@@ -243,12 +52,12 @@ fn common_constants<N: Lanes>(processor: N::Processor, constants: &PairConstants
 
 /// Constants of pairs of several kinds.
 #[inline(always)]
-fn own_constants<N: Lanes>(
+fn own_constants<N: Lanes, P>(
     processor: N::Processor,
     constants: &[PairConstants],
-    pairs: &[Pair],
+    pairs: &[SpherePair<P>],
 ) -> Constants<N> {
-    let kinds = side_by_side::<N, _>(|k| &constants[pairs[k].kind as usize]);
+    let kinds = side_by_side::<N, _>(|k| &constants[pairs[k].kind.index()]);
     (
         N::gather(processor, kinds.map(|kind| &kind.coefficients)),
         N::gather(processor, kinds.map(|kind| &kind.contact)),
@@ -277,29 +86,29 @@ fn roll<N: Lanes>(
 
 /// How pairs side by side press each other before anything drags them: geometry, normal force,
 /// slip.
-struct Meeting<N: Lanes> {
+pub struct Meeting<N: Lanes> {
     /// Unit vectors from the grains to their partners.
-    normal: [N; 3],
+    pub normal: [N; 3],
     /// Overlaps, negative at a gap [m].
-    depth: N,
+    pub depth: N,
     /// Where they are positive.
-    touching: N::Mask,
+    pub touching: N::Mask,
     /// Arms from both centres to the contact [m]; walls need none.
-    arms: [N; 2],
+    pub arms: [N; 2],
     /// What the law makes of them along the normal.
-    along: NormalContact<N>,
+    pub along: NormalContact<N>,
     /// Speeds of approach [m/s].
-    approach: N,
+    pub approach: N,
     /// Spins of both [rad/s].
-    spins: [[N; 3]; 2],
+    pub spins: [[N; 3]; 2],
     /// Velocities of the grains' surfaces over their partners' [m/s].
-    slip: [N; 3],
+    pub slip: [N; 3],
 }
 
 impl<N: Lanes> Meeting<N> {
     /// Pairs of `partners` with these constants.
     #[inline(always)]
-    fn of<L: Law, P: Partners<N>>(
+    pub fn of<L: Law, P: Partners<N>>(
         processor: N::Processor,
         law: L,
         partners: P,
@@ -346,7 +155,7 @@ impl<N: Lanes> Meeting<N> {
     fn wetted<L: Law>(
         &self,
         processor: N::Processor,
-        all: &Surroundings<'_, L>,
+        all: &PairSurroundings<'_, L>,
         liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
         (_, [_, _, radius, partner_radius]): &Constants<N>,
         compliance: N,
@@ -385,7 +194,7 @@ impl<N: Lanes> Meeting<N> {
 #[inline(always)]
 fn interact<N: Lanes, L: Law, P: Partners<N>>(
     processor: N::Processor,
-    all: &Surroundings<'_, L>,
+    all: &PairSurroundings<'_, L>,
     partners: P,
     constants: &Constants<N>,
     histories: &mut [History],
@@ -468,11 +277,11 @@ fn write<N: Lanes>(
 }
 
 /// A range of pairs with the rows they write.
-pub struct PairRows<'a> {
+pub struct PairRows<'a, P = Slot> {
     /// The pairs.
-    pub pairs: &'a [Pair],
+    pub pairs: &'a [SpherePair<P>],
     /// The kind of all of them, if it is one.
-    pub kind: Option<u32>,
+    pub kind: Option<PairKind>,
     /// What they remember.
     pub histories: &'a mut [History],
     /// Their contact forces.
@@ -484,13 +293,13 @@ pub struct PairRows<'a> {
 }
 
 /// What every pair's force depends on.
-pub struct Surroundings<'a, L> {
+pub struct PairSurroundings<'a, L> {
     /// The contact law.
     pub law: L,
     /// Length of the step [s].
     pub dt: f64,
     /// Every grain.
-    pub bodies: &'a [Body],
+    pub bodies: &'a [Sphere],
     /// Every wall.
     pub walls: &'a [WallBody],
     /// Constants of every kind of pair.
@@ -500,9 +309,9 @@ pub struct Surroundings<'a, L> {
 }
 
 /// The forces of a range of pairs of grains and of ranges of pairs with walls.
-pub struct Forces<'a, L, W> {
+pub struct PairLoop<'a, L, W> {
     /// What they depend on.
-    pub surroundings: Surroundings<'a, L>,
+    pub surroundings: PairSurroundings<'a, L>,
     /// Pairs of grains.
     pub of_grains: PairRows<'a>,
     /// Pairs of a grain and a wall, range by range.
@@ -526,9 +335,9 @@ fn common_film_constants<N: Lanes>(
 fn own_film_constants<N: Lanes>(
     processor: N::Processor,
     wetting: &Wetting<'_>,
-    pairs: &[Pair],
+    pairs: &[SpherePair],
 ) -> Constants<N> {
-    let kinds = side_by_side::<N, _>(|k| &wetting.constants[pairs[k].kind as usize]);
+    let kinds = side_by_side::<N, _>(|k| &wetting.constants[pairs[k].kind.index()]);
     (
         N::gather(processor, kinds.map(|kind| &kind.viscous)),
         N::gather(processor, kinds.map(|kind| &kind.gaps)),
@@ -540,11 +349,11 @@ fn own_film_constants<N: Lanes>(
 #[inline(always)]
 fn between_grains<N: Lanes, L: Law, const WET: bool>(
     processor: N::Processor,
-    all: &Surroundings<'_, L>,
+    all: &PairSurroundings<'_, L>,
     rows: PairRows<'_>,
 ) -> u64 {
     // As a rule all grains are of one class, and the constants are the same throughout.
-    let common = rows.kind.map(|kind| kind as usize);
+    let common = rows.kind.map(PairKind::index);
     let common_film = match all.wetting {
         Some(wetting) if WET => {
             common.map(|kind| common_film_constants::<N>(processor, &wetting.constants[kind]))
@@ -557,8 +366,8 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
         let group = first..first + N::COUNT;
         let pairs = &rows.pairs[group.clone()];
         let partners = TwoGrains {
-            first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]),
-            second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner as usize]),
+            first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]),
+            second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner.index()]),
         };
         let histories = &mut rows.histories[group.clone()];
         let forces = &mut rows.forces[group.clone()];
@@ -580,7 +389,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
         };
         let constants = match &common {
             Some(common) => *common,
-            None => own_constants::<N>(processor, all.constants, pairs),
+            None => own_constants::<N, _>(processor, all.constants, pairs),
         };
         ruptures += u64::from(interact(
             processor, all, partners, &constants, histories, forces, liquid,
@@ -593,23 +402,23 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
 #[inline(always)]
 fn at_walls<N: Lanes, L: Law>(
     processor: N::Processor,
-    all: &Surroundings<'_, L>,
-    rows: PairRows<'_>,
+    all: &PairSurroundings<'_, L>,
+    rows: PairRows<'_, WallId>,
 ) {
     let outputs = rows
         .histories
         .chunks_exact_mut(N::COUNT)
         .zip(rows.forces.chunks_exact_mut(N::COUNT));
     for (pairs, (histories, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
-        let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain as usize]);
+        let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]);
         let partners =
-            GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner as usize]);
-        let own = own_constants::<N>(processor, all.constants, pairs);
+            GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner.index()]);
+        let own = own_constants::<N, _>(processor, all.constants, pairs);
         interact(processor, all, partners, &own, histories, forces, None);
     }
 }
 
-impl<'a, L: Law, W: Iterator<Item = PairRows<'a>>> Work for Forces<'a, L, W> {
+impl<'a, L: Law, W: Iterator<Item = PairRows<'a, WallId>>> Work for PairLoop<'a, L, W> {
     type Output = u64;
 
     /// Returns how many bridges broke.

@@ -3,12 +3,31 @@
 //! In: forces per pair, the bodies half a step behind in velocity. Out: the bodies half a step
 //! ahead, at their next positions; or, at the last step of a call, with velocities at the time of
 //! the positions.
+//!
+//! ```text
+//! kick    v ← v + ½ Δt (F/m + g)      ω ← ω + ½ Δt (T + q)/I
+//! drift   x ← x + Δt v
+//! forces  at x, with v and ω of half a step before
+//! kick    v ← v + ½ Δt (F/m + g)      ω ← ω + ½ Δt (T + q)/I
+//! ```
+//!
+//! The last kick of one step and the first of the next are one pass over the grains. `T` is the
+//! torque of the contact forces, `q` that of rolling friction, which is found from the spin that
+//! there would be if all torques stayed. Spheres need no orientation.
+//!
+//! A grain's sum goes over its pairs in the order of [`super::parts`], partner by partner: one
+//! order for any number of workers, any list and any slot, hence one result.
 
+use super::super::row::row;
 use super::super::step::Outcome;
 use super::bridges::BridgeEffect;
-use super::neighbours::Parts;
-use super::rows::{Body, ContactForce};
+use super::parts::Parts;
+use super::rows::{ContactForce, Sphere};
 use crate::lanes::{Lanes, Quad, Row, Work};
+use crate::world::Grains;
+
+/// A grain that moves by more than this share of its radius in one step is lost.
+const LARGEST_MOVE: f64 = 0.1;
 
 /// Sum over the contact forces on one grain.
 #[derive(Clone, Copy, Debug, Default)]
@@ -79,7 +98,7 @@ impl<Q: Quad> Total<Q> {
 
     /// The sum that `load` holds, of a grain with so many open bridges.
     #[inline(always)]
-    fn load(processor: Q::Processor, load: &Load, open_bridges: f64) -> Self {
+    pub fn load(processor: Q::Processor, load: &SphereLoad, open_bridges: f64) -> Self {
         Self {
             force: Q::load(processor, &load.force),
             torque: Q::load(processor, &load.torque),
@@ -92,7 +111,7 @@ impl<Q: Quad> Total<Q> {
 
 /// What only the integration reads or writes of a grain.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Load {
+pub struct SphereLoad {
     /// Contact forces at the last evaluation [N].
     pub force: Row,
     /// Their torque [N m].
@@ -107,7 +126,20 @@ pub struct Load {
     pub speed_limit_squared: f64,
 }
 
-impl Load {
+impl SphereLoad {
+    /// What acts on grain `i` of the world, in steps of `dt` [s].
+    pub fn of(grains: &Grains, i: usize, dt: f64) -> Self {
+        let speed_limit = LARGEST_MOVE * grains.radius[i] / dt;
+        Self {
+            force: row(grains.force[i], 0.0),
+            torque: row(grains.torque[i], 0.0),
+            rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
+            exchanged: grains.exchanged[i],
+            compliance: dt / grains.inertia[i],
+            speed_limit_squared: speed_limit * speed_limit,
+        }
+    }
+
     /// Number of touching partners.
     pub fn contact_count(&self) -> f64 {
         self.rolling[3]
@@ -120,7 +152,7 @@ pub type BridgeLoad = [f64; 3];
 
 /// Constants of the integration.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Motion {
+pub struct StepConstants {
     /// Length of a step [s].
     pub dt: f64,
     /// Gravity [m/s²].
@@ -131,7 +163,7 @@ pub struct Motion {
 
 /// Where to find what the pairs of a grain do.
 #[derive(Clone, Copy)]
-pub struct Incidence<'a> {
+pub struct PairEffects<'a> {
     /// What every pair does.
     pub forces: &'a [ContactForce],
     /// What every bridge does; empty where nothing is wet.
@@ -140,7 +172,7 @@ pub struct Incidence<'a> {
     pub parts: &'a Parts,
 }
 
-impl Incidence<'_> {
+impl PairEffects<'_> {
     /// Sum over the pairs of grain `i`, in the pairs' order.
     #[inline(always)]
     fn total<Q: Quad, const WET: bool>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
@@ -164,7 +196,12 @@ impl Incidence<'_> {
 
 /// Half a step of velocity and spin: `v ← v + ½ Δt (F/m + g)`, `ω ← ω + ½ Δt T/I`.
 #[inline(always)]
-fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, motion: &Motion) {
+pub fn kick<Q: Quad>(
+    processor: Q::Processor,
+    body: &mut Sphere,
+    total: &Total<Q>,
+    motion: &StepConstants,
+) {
     let half = 0.5 * motion.dt;
     // The fourth number of a row is no velocity: it gets nothing added.
     let half = Q::load(processor, &[half, half, half, 0.0]);
@@ -181,40 +218,54 @@ fn kick<Q: Quad>(processor: Q::Processor, body: &mut Body, total: &Total<Q>, mot
 #[inline(always)]
 fn drift<Q: Quad>(
     processor: Q::Processor,
-    body: &mut Body,
-    load: &Load,
+    body: &mut Sphere,
+    load: &SphereLoad,
     total: &Total<Q>,
     reference: &Row,
-    motion: &Motion,
+    motion: &StepConstants,
 ) -> bool {
     let dt = motion.dt;
     let step = Q::load(processor, &[dt, dt, dt, 0.0]);
     let position = Q::load(processor, &body.position) + Q::load(processor, &body.velocity) * step;
+    set_free_spin(processor, body, load, total, dt);
+    body.position = position.row();
+    (position - Q::load(processor, reference)).length_squared() > motion.slack_squared
+}
+
+/// Sets the spin that the grain would have after a step of `dt` [s] if all torques stayed,
+/// and how much of it a unit of torque stops: rolling friction works against the one and stops at
+/// the other, shared by all partners.
+#[inline(always)]
+pub fn set_free_spin<Q: Quad>(
+    processor: Q::Processor,
+    body: &mut Sphere,
+    load: &SphereLoad,
+    total: &Total<Q>,
+    dt: f64,
+) {
     let partners = total.partners();
     let partners = if partners > 1.0 { partners } else { 1.0 };
     let free = Q::load(processor, &body.spin)
         + (total.torque + total.rolling) * Q::repeat(processor, dt * body.inverse_inertia());
     let free = free.row();
     body.free_spin = [free[0], free[1], free[2], load.compliance * partners];
-    body.position = position.row();
-    (position - Q::load(processor, reference)).length_squared() > motion.slack_squared
 }
 
 /// Starts the first step of a call from the forces that the loads hold.
-pub struct Start<'a> {
+pub struct StartStep<'a> {
     /// Constants.
-    pub motion: &'a Motion,
+    pub motion: &'a StepConstants,
     /// Every grain.
-    pub bodies: &'a mut [Body],
+    pub bodies: &'a mut [Sphere],
     /// What acts on it.
-    pub loads: &'a [Load],
+    pub loads: &'a [SphereLoad],
     /// What their bridges have done; empty where nothing is wet.
     pub bridge_loads: &'a [BridgeLoad],
     /// Where it was when the inner list was filtered.
     pub references: &'a [Row],
 }
 
-impl Work for Start<'_> {
+impl Work for StartStep<'_> {
     type Output = Outcome;
 
     #[inline(always)]
@@ -239,17 +290,17 @@ impl Work for Start<'_> {
 }
 
 /// Finishes a step for a range of grains and, unless it is the last of a call, starts the next.
-pub struct Finish<'a, const WET: bool> {
+pub struct FinishStep<'a, const WET: bool> {
     /// Constants.
-    pub motion: &'a Motion,
+    pub motion: &'a StepConstants,
     /// Where to find the grains' pairs.
-    pub pairs: Incidence<'a>,
+    pub pairs: PairEffects<'a>,
     /// Index of the first grain of the range.
     pub begin: usize,
     /// The range.
-    pub bodies: &'a mut [Body],
+    pub bodies: &'a mut [Sphere],
     /// What acts on it; written at the last step.
-    pub loads: &'a mut [Load],
+    pub loads: &'a mut [SphereLoad],
     /// Volume of the film on each; empty where nothing is wet [m³].
     pub films: &'a mut [f64],
     /// What the bridges of each have done; empty where nothing is wet.
@@ -260,7 +311,7 @@ pub struct Finish<'a, const WET: bool> {
     pub last: bool,
 }
 
-impl<const WET: bool> Work for Finish<'_, WET> {
+impl<const WET: bool> Work for FinishStep<'_, WET> {
     type Output = Outcome;
 
     #[inline(always)]

@@ -3,8 +3,14 @@
 //! In: a world. Out: an index for every pair of grains and every grain at a wall, and the constants
 //! of each such kind. Grains of one class (radius, mass, material) are alike to every law, so that
 //! a bed of a thousand pairs has a handful of kinds.
+//!
+//! A kind is met when a search first finds a pair of it, and stays: numbers of kinds stand in the
+//! lists. Constants are computed anew when a world is loaded, as materials and law may have been
+//! changed meanwhile; classes only when other grains come. Where all pairs of a list are of one
+//! kind, as in a bed of equal grains, the pair loop reads constants once instead of pair by pair.
 
-use crate::physics::law::{FilmConstants, PairConstants};
+use super::rows::PairKind;
+use crate::physics::law::{FilmConstants, Law, LawSource, LawUser, PairConstants, Pairing};
 use crate::world::{Partner, World};
 use std::collections::HashMap;
 
@@ -13,7 +19,7 @@ use std::collections::HashMap;
 pub struct Kinds {
     class_of: Vec<u32>,
     wall_materials: Vec<u16>,
-    index: HashMap<(u32, Side), u32>,
+    index: HashMap<(u32, PartnerClass), PairKind>,
     /// A pair of each kind, to compute its constants from.
     examples: Vec<(usize, Partner)>,
     /// What the contact law needs of each kind.
@@ -22,9 +28,10 @@ pub struct Kinds {
     pub films: Vec<FilmConstants>,
 }
 
-/// The second side of a kind of pair.
+/// The second side of a kind of pair: walls are told apart by their number, as each has its own
+/// material and motion.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Side {
+enum PartnerClass {
     Class(u32),
     Wall(u32),
 }
@@ -64,37 +71,55 @@ impl Kinds {
     }
 
     /// Computes the constants of every kind from the world's present materials.
-    pub fn compute(&mut self, world: &World) {
+    pub fn compute(&mut self, law: impl LawSource, world: &World) {
         self.constants.clear();
         self.films.clear();
         let liquid = world.wetting();
         for (grain, partner) in &self.examples {
             let pairing = world.pairing(*grain, *partner);
-            let constants = pairing.constants(world.law, &world.materials, liquid.is_some());
-            self.constants.push(constants);
+            let constants = ConstantsOf {
+                pairing: &pairing,
+                world,
+            };
+            self.constants.push(law.choose(world.law, constants));
             self.films
                 .extend(liquid.map(|liquid| FilmConstants::of(&pairing, liquid)));
         }
     }
 
     /// Computes the constants of kinds that have been met since they were last computed.
-    pub fn complete(&mut self, world: &World) {
+    pub fn complete(&mut self, law: impl LawSource, world: &World) {
         if self.constants.len() < self.examples.len() {
-            self.compute(world);
+            self.compute(law, world);
         }
     }
 
     /// The kind of `grain` and its `partner`.
-    pub fn of(&mut self, grain: u32, partner: Partner) -> u32 {
+    pub fn of(&mut self, grain: u32, partner: Partner) -> PairKind {
         let class = self.class_of[grain as usize];
         let side = match partner {
-            Partner::Grain(j) => Side::Class(self.class_of[j as usize]),
-            Partner::Wall(w) => Side::Wall(w),
+            Partner::Grain(j) => PartnerClass::Class(self.class_of[j as usize]),
+            Partner::Wall(w) => PartnerClass::Wall(w),
         };
-        let next = self.examples.len() as u32;
+        let next = PairKind(self.examples.len() as u32);
         *self.index.entry((class, side)).or_insert_with(|| {
             self.examples.push((grain as usize, partner));
             next
         })
+    }
+}
+
+/// The constants of a pair by whatever law acts.
+struct ConstantsOf<'a> {
+    pairing: &'a Pairing,
+    world: &'a World,
+}
+
+impl LawUser for ConstantsOf<'_> {
+    type Output = PairConstants;
+
+    fn with<L: Law>(self, law: L) -> PairConstants {
+        let wet = self.world.wetting().is_some();
+        (self.pairing).constants_by(&law, &self.world.materials, wet)
     }
 }

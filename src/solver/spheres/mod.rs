@@ -8,13 +8,25 @@
 //! |---|---|
 //! | `slots` | the spatial sort: where each grain's rows stand |
 //! | `neighbours` | who may touch whom: outer and inner Verlet list |
+//! | `pair_list` | pairs with their histories, which follow them from list to list |
+//! | `parts` | which pairs are whose, in the order in which forces are summed |
 //! | `kinds` | constants of each kind of pair |
 //! | `rows` | what the pair loop reads and writes of grains and pairs |
-//! | `contacts` | the pair loop: geometry, contact law, sliding, rolling |
+//! | `partners` | geometry and kinematics of two grains, and of a grain at a wall |
+//! | `contacts` | the pair loop: contact law, sliding, rolling |
 //! | `bridges` | liquid bridges in the pair loop |
 //! | `integrate` | sums of forces, velocity Verlet |
+//! | `terms` | a contact's force, term by term |
+//! | `normal_law` | a contact's normal force over the gap |
 //! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
+//!
+//! What a step reads of a grain stands in one place ([`rows::Sphere`], two cache lines), what only
+//! its integration reads in another ([`integrate::SphereLoad`]): the pair loop, which takes three
+//! quarters of a step, reads no more than it needs. Numbers of three kinds name things here, each
+//! with a type of its own: slots of rows, walls of the container, kinds of pairs; a bare number is
+//! a grain's in the world. Histories of contacts (springs, bridges) stand beside the pairs of the
+//! inner list and move with them; whatever is left of a call is in the world.
 //!
 //! Not here: the order of the stages (`super::step`), formulas of force laws
 //! ([`crate::physics::law`]).
@@ -24,9 +36,14 @@ mod contacts;
 mod integrate;
 mod kinds;
 mod neighbours;
+mod normal_law;
+mod pair_list;
+mod partners;
+mod parts;
 mod rows;
 mod share;
 mod slots;
+mod terms;
 mod working_copy;
 
 use super::FaultKind;
@@ -36,20 +53,23 @@ use super::walls::Walls;
 use super::workers::Batch;
 use crate::lanes::Processor;
 use crate::physics::Liquid;
-use crate::physics::law::{BridgeKinds, contributions, rupture_gap};
+use crate::physics::law::{BridgeKinds, LawSource, contributions, rupture_gap};
 use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
-use integrate::{Load, Motion, Start};
-use neighbours::{Neighbours, PairList, grain_key, wall_key};
-use rows::{Body, History, Pair};
+use integrate::{SphereLoad, StartStep, StepConstants};
+pub use normal_law::NormalLaw;
+use pair_list::{PairOrder, SpherePairs};
+use parts::Part;
+use rows::{History, PairKind, Sphere, SpherePair, WallId};
 use share::SphereShare;
-pub use working_copy::Spheres;
+pub use terms::force_terms;
+pub use working_copy::SphereKernel;
 
-/// A grain that moves by more than this share of its radius in one step is lost.
-const LARGEST_MOVE: f64 = 0.1;
-
-impl Kernel for Spheres {
-    type Share<'a> = SphereShare<'a>;
+impl<S: LawSource> Kernel for SphereKernel<S> {
+    type Share<'a>
+        = SphereShare<'a, S>
+    where
+        S: 'a;
 
     /// Lists and slots of the last call are kept where they still suit the world: they never show
     /// in a result. Histories are always the world's.
@@ -62,10 +82,10 @@ impl Kernel for Spheres {
             self.slots.sort(grains, searches);
             self.neighbours.forget();
         }
-        self.kinds.compute(world);
+        self.kinds.compute(self.source, world);
         self.law = world.law;
         self.walls.load(&world.container);
-        self.motion = Motion {
+        self.motion = StepConstants {
             dt: world.clock.time_step,
             gravity: row(world.gravity, 0.0),
             slack_squared: 0.0,
@@ -78,7 +98,7 @@ impl Kernel for Spheres {
 
     fn start(&mut self, processor: Processor) -> bool {
         let count = self.loads.len();
-        let start = Start {
+        let start = StartStep {
             motion: &self.motion,
             bodies: &mut self.bodies[..count],
             loads: &self.loads,
@@ -91,7 +111,7 @@ impl Kernel for Spheres {
     /// A search may meet kinds of pairs that there were none of before: they need constants.
     fn refresh_lists(&mut self, world: &World) -> u64 {
         let searches = self.refresh();
-        self.kinds.complete(world);
+        self.kinds.complete(self.source, world);
         searches
     }
 
@@ -104,7 +124,7 @@ impl Kernel for Spheres {
         self.walls.steps_within(slack, self.motion.dt)
     }
 
-    fn lend<'a>(&'a mut self, batch: &'a Batch) -> Vec<SphereShare<'a>> {
+    fn lend<'a>(&'a mut self, batch: &'a Batch) -> Vec<SphereShare<'a, S>> {
         SphereShare::all(self, batch)
     }
 
@@ -163,31 +183,17 @@ impl Kernel for Spheres {
     }
 }
 
-impl Spheres {
+impl<S: LawSource> SphereKernel<S> {
     /// Rows of the grains, slot by slot, and of the padding body.
     fn load_grains(&mut self, world: &World) {
         let (grains, dt) = (&world.grains, world.clock.time_step);
         self.bodies.clear();
         self.loads.clear();
         for i in self.slots.grains().iter().map(|grain| *grain as usize) {
-            let radius = grains.radius[i];
-            self.bodies.push(Body {
-                position: row(grains.position[i], 1.0 / grains.mass[i]),
-                velocity: row(grains.velocity[i], 1.0 / grains.inertia[i]),
-                spin: row(grains.spin[i], radius),
-                free_spin: [0.0; 4],
-            });
-            let speed_limit = LARGEST_MOVE * radius / dt;
-            self.loads.push(Load {
-                force: row(grains.force[i], 0.0),
-                torque: row(grains.torque[i], 0.0),
-                rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
-                exchanged: grains.exchanged[i],
-                compliance: dt / grains.inertia[i],
-                speed_limit_squared: speed_limit * speed_limit,
-            });
+            self.bodies.push(Sphere::of(grains, i));
+            self.loads.push(SphereLoad::of(grains, i, dt));
         }
-        self.bodies.push(Body::default());
+        self.bodies.push(Sphere::default());
     }
 
     /// Films, bridges and what bridges have done; the lists reach as far as any bridge can.
@@ -228,12 +234,13 @@ impl Spheres {
             let bridge = bridge.map_or(BridgeRow::default(), |bridge| {
                 BridgeRow::of(bridge, &mut kinds, radii)
             });
-            rows.push((self.pair(contact), history(contact), bridge));
+            let pair = self.pair(contact, self.slots.slot_of(partner));
+            rows.push((pair, history(contact), bridge));
         }
-        rows.sort_unstable_by_key(|(pair, ..)| grain_key(pair));
-        let mut list = PairList {
+        rows.sort_unstable_by_key(|(pair, ..)| pair.key());
+        let mut list = SpherePairs {
             bridges: Bridges::none(rows.len()),
-            ..PairList::default()
+            ..SpherePairs::default()
         };
         for (k, (pair, history, bridge)) in rows.into_iter().enumerate() {
             list.pairs.push(pair);
@@ -243,15 +250,12 @@ impl Spheres {
         self.neighbours.adopt(list);
     }
 
-    /// The pair of a contact, by slots.
-    fn pair(&self, contact: &Contact) -> Pair {
-        Pair {
+    /// The pair of a contact with this partner; its kind does not matter.
+    fn pair<P>(&self, contact: &Contact, partner: P) -> SpherePair<P> {
+        SpherePair {
             grain: self.slots.slot_of(contact.grain),
-            partner: match contact.partner {
-                Partner::Grain(j) => self.slots.slot_of(j),
-                Partner::Wall(w) => w,
-            },
-            kind: 0,
+            partner,
+            kind: PairKind::default(),
         }
     }
 
@@ -260,44 +264,35 @@ impl Spheres {
         if self.liquid.is_some() || !self.neighbours.inner_covers(&self.bodies, &self.walls) {
             self.refresh();
         }
-        self.kinds.compute(world);
+        self.kinds.compute(self.source, world);
         let slack = self.neighbours.slack();
         self.motion.slack_squared = slack * slack;
     }
 
     /// Gives the listed pairs the histories of the world's contacts; all others have none.
     fn load_histories(&mut self, contacts: &[Contact]) {
-        let rows = contacts.iter().map(|contact| (self.pair(contact), contact));
-        let (mut of_grains, mut of_walls): (Vec<_>, Vec<_>) =
-            rows.partition(|(_, contact)| matches!(contact.partner, Partner::Grain(_)));
-        let Neighbours { grains, walls, .. } = &mut self.neighbours;
-        for (list, rows, key) in [
-            (grains, &mut of_grains, grain_key as fn(&Pair) -> _),
-            (walls, &mut of_walls, wall_key),
-        ] {
-            rows.sort_unstable_by_key(|(pair, _)| key(pair));
-            let rows = rows.iter().map(|(pair, contact)| (*pair, history(contact)));
-            let (pairs, histories): (Vec<_>, Vec<_>) = rows.unzip();
-            list.load_histories(&pairs, &histories, key);
+        let (mut of_grains, mut of_walls) = (Vec::new(), Vec::new());
+        for contact in contacts {
+            match contact.partner {
+                Partner::Grain(j) => {
+                    let pair = self.pair(contact, self.slots.slot_of(j));
+                    of_grains.push((pair, history(contact)));
+                }
+                Partner::Wall(w) => {
+                    of_walls.push((self.pair(contact, WallId(w)), history(contact)))
+                }
+            }
         }
+        self.neighbours.grains.load_histories(of_grains);
+        self.neighbours.walls.load_histories(of_walls);
     }
 
     /// The contacts of the grains, sorted by grain and partner.
     fn collect_contacts(&self, contacts: &mut Vec<Contact>) {
-        let grains = self.slots.grains();
         for i in 0..self.loads.len() as u32 {
-            let parts = self.neighbours.parts.of(self.slots.slot_of(i) as usize);
-            let own = parts
-                .iter()
-                .filter_map(|part| self.neighbours.contact(*part));
-            contacts.extend(own.map(|contact| Contact {
-                grain: i,
-                partner: match contact.partner {
-                    Partner::Grain(slot) => Partner::Grain(grains[slot as usize]),
-                    wall @ Partner::Wall(_) => wall,
-                },
-                ..contact
-            }));
+            let parts = self.neighbours.parts.of(self.slots.slot_of(i));
+            let contact = |part: &Part| self.neighbours.contact(*part, &self.slots);
+            contacts.extend(parts.iter().filter_map(contact));
         }
     }
 
@@ -305,9 +300,9 @@ impl Spheres {
     /// for.
     fn refresh(&mut self) -> u64 {
         let before = self.neighbours.searches;
-        let (kinds, grains) = (&mut self.kinds, self.slots.grains());
+        let kinds = &mut self.kinds;
         self.neighbours
-            .refresh(&self.bodies, &self.walls, grains, |grain, partner| {
+            .refresh(&self.bodies, &self.walls, &self.slots, |grain, partner| {
                 kinds.of(grain, partner)
             });
         let slack = self.neighbours.slack();
@@ -316,7 +311,7 @@ impl Spheres {
     }
 
     /// What is wrong with a grain, if anything is.
-    fn judge(&self, body: &Body, load: &Load) -> Option<FaultKind> {
+    fn judge(&self, body: &Sphere, load: &SphereLoad) -> Option<FaultKind> {
         let position = vector(body.position);
         let behind = self
             .walls

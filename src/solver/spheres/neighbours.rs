@@ -12,147 +12,34 @@
 //! list however wide its gap. Histories and bridges follow their pair from list to list.
 //! The last of the bodies is a padding body, which fills groups of pairs up; nothing it does
 //! counts.
+//!
+//! Two grains that are farther apart than a skin cannot touch before one of them has moved by half
+//! of it: that half is the list's slack. Motion since the list was made is measured, not bounded:
+//! each grain's distance from where it was, squared, at every step ([`super::integrate`]). The
+//! inner skin adapts: lists that live too short get a wider one, lists that live long hold too many
+//! strangers and get a narrower one. The outer skin has room for the inner one and for the longest
+//! bridge.
+//!
+//! Not here: the search itself ([`super::super::grid`]), histories on their way from list to list
+//! ([`super::pair_list`]), sums ([`super::parts`]).
 
 use super::super::grid::for_each_near;
 use super::super::row::{Row, length_squared, sub, vector};
 use super::super::walls::Walls;
-use super::bridges::{BridgeEffect, Bridges};
-use super::rows::{Body, ContactForce, GROUP, History, Pair};
+use super::bridges::BridgeEffect;
+use super::pair_list::{PairOrder, SpherePairs, fill_group};
+use super::parts::{Part, Parts};
+use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
+use super::slots::Slots;
 use crate::world::{Contact, Partner, Surface};
-
-/// Pairs with what they remember, in whole groups: the last ones may be padding.
-#[derive(Default)]
-pub struct PairList {
-    /// The pairs, sorted by their key.
-    pub pairs: Vec<Pair>,
-    /// The kind of all of them, if it is one.
-    pub kind: Option<u32>,
-    /// Tangential spring and rolling friction of each.
-    pub histories: Vec<History>,
-    /// Bridge of each; empty where nothing is wet.
-    pub bridges: Bridges,
-}
-
-/// A grain's part in a pair.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Part(u32);
-
-impl Part {
-    /// A part in the pair of number `pair`.
-    fn new(pair: usize, second: bool) -> Self {
-        Self((pair as u32) << 1 | u32::from(second))
-    }
-
-    /// Index of the pair: pairs of grains come first, then pairs with walls.
-    #[inline(always)]
-    pub fn pair(self) -> usize {
-        (self.0 >> 1) as usize
-    }
-
-    /// 1 where the grain is the second partner, else 0.
-    #[inline(always)]
-    pub fn side(self) -> usize {
-        (self.0 & 1) as usize
-    }
-}
-
-/// The parts that each grain has in listed pairs: as the second partner, then as the first, each in
-/// the order of the partners' indices, then at walls.
-#[derive(Default)]
-pub struct Parts {
-    /// Where each grain's parts begin, those as the second partner.
-    first: Vec<u32>,
-    /// Where each grain's parts as the first partner begin.
-    own: Vec<u32>,
-    /// The parts, grain by grain.
-    list: Vec<Part>,
-}
-
-impl Parts {
-    /// The parts of grain `i`.
-    #[inline(always)]
-    pub fn of(&self, i: usize) -> &[Part] {
-        &self.list[self.first[i] as usize..self.first[i + 1] as usize]
-    }
-
-    /// How many parts the grains before slot `i` have.
-    pub fn before(&self, i: usize) -> usize {
-        self.first[i] as usize
-    }
-
-    /// The parts of grain `i` as the second partner, then those as the first.
-    #[inline(always)]
-    pub fn by_side(&self, i: usize) -> [&[Part]; 2] {
-        let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
-        [
-            &self.list[first as usize..own as usize],
-            &self.list[own as usize..end as usize],
-        ]
-    }
-
-    /// Sorts both sides of the pairs; slots from `indices`' end on are padding'.
-    fn fill(&mut self, grains: &[Pair], walls: &[Pair], indices: &[u32]) {
-        let count = indices.len();
-        let is_grain = |(slot, _): &(u32, Part)| (*slot as usize) < count;
-        let seconds = || {
-            let sides = grains.iter().enumerate();
-            sides
-                .map(|(k, pair)| (pair.partner, Part::new(k, true)))
-                .filter(is_grain)
-        };
-        let firsts = || {
-            let pairs = grains.iter().chain(walls).enumerate();
-            pairs
-                .map(|(k, pair)| (pair.grain, Part::new(k, false)))
-                .filter(is_grain)
-        };
-        self.first.clear();
-        self.first.resize(count + 1, 0);
-        self.own.clear();
-        self.own.resize(count, 0);
-        seconds().for_each(|(slot, _)| self.own[slot as usize] += 1);
-        firsts().for_each(|(slot, _)| self.first[slot as usize + 1] += 1);
-        for i in 0..count {
-            self.first[i + 1] += self.first[i] + self.own[i];
-            self.own[i] += self.first[i];
-        }
-        self.list
-            .resize(self.first[count] as usize, Part::default());
-        for (begins, sides) in [
-            (
-                &self.first[..count],
-                &mut seconds() as &mut dyn Iterator<Item = _>,
-            ),
-            (&self.own, &mut firsts()),
-        ] {
-            let mut next = begins.to_vec();
-            for (slot, part) in sides {
-                let slot = &mut next[slot as usize];
-                self.list[*slot as usize] = part;
-                *slot += 1;
-            }
-        }
-        let other = |part: &Part| match grains.get(part.pair()) {
-            Some(pair) if part.side() == 1 => indices[pair.grain as usize],
-            Some(pair) => indices[pair.partner as usize],
-            // Walls come last, in the order of the pairs, which is theirs.
-            None => u32::MAX,
-        };
-        for i in 0..count {
-            let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
-            self.list[first as usize..own as usize].sort_by_key(other);
-            self.list[own as usize..end as usize].sort_by_key(other);
-        }
-    }
-}
 
 /// Both lists.
 #[derive(Default)]
 pub struct Neighbours {
     /// Listed pairs of grains, sorted by their slots.
-    pub grains: PairList,
+    pub grains: SpherePairs,
     /// Listed pairs of a grain and a wall, sorted by wall and grain; a group meets one wall.
-    pub walls: PairList,
+    pub walls: SpherePairs<WallId>,
     /// What each listed pair does: first those of grains, then those with walls.
     pub forces: Vec<ContactForce>,
     /// What each listed bridge does; empty where nothing is wet.
@@ -160,9 +47,9 @@ pub struct Neighbours {
     /// The grains' parts in the listed pairs.
     pub parts: Parts,
     /// Pairs of grains on the outer list, sorted by their slots.
-    outer_grains: Vec<Pair>,
+    outer_grains: Vec<SpherePair>,
     /// Pairs of a grain and a wall on it, sorted by wall and grain.
-    outer_walls: Vec<Pair>,
+    outer_walls: Vec<SpherePair<WallId>>,
     /// Where the grains were when it was made, and their radii [m].
     outer_reference: Vec<Row>,
     /// Where the walls were then.
@@ -210,7 +97,7 @@ impl Neighbours {
     }
 
     /// Whether the inner list still covers these bodies and walls.
-    pub fn inner_covers(&self, bodies: &[Body], walls: &Walls) -> bool {
+    pub fn inner_covers(&self, bodies: &[Sphere], walls: &Walls) -> bool {
         let slack = self.slack();
         self.covers(bodies, walls)
             && self.reference.len() + 1 == bodies.len()
@@ -221,7 +108,7 @@ impl Neighbours {
     }
 
     /// Whether the outer list was built for these bodies and walls and still covers them.
-    fn covers(&self, bodies: &[Body], walls: &Walls) -> bool {
+    fn covers(&self, bodies: &[Sphere], walls: &Walls) -> bool {
         let inner = self.skins.inner.max(self.reach.unwrap_or(0.0));
         let slack = 0.5 * (self.skins.outer - inner);
         self.outer_reference.len() + 1 == bodies.len()
@@ -231,28 +118,26 @@ impl Neighbours {
             })
     }
 
-    /// The pair of which a grain has this part as a contact between slots, if it touches or has a
-    /// bridge and the grain is its first partner.
-    pub fn contact(&self, part: Part) -> Option<Contact> {
+    /// The pair of which a grain has this part as a contact, if it touches or has a bridge and the
+    /// grain is its first partner.
+    pub fn contact(&self, part: Part, slots: &Slots) -> Option<Contact> {
         let (index, force) = (part.pair(), &self.forces[part.pair()]);
         let touching = force.touches();
         let bridge = self.grains.bridges.get(index).bridge();
-        let (pair, partner, history) = match index.checked_sub(self.grains.pairs.len()) {
+        let (grain, partner, history) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
-                (
-                    pair,
-                    Partner::Grain(pair.partner),
-                    self.grains.histories[index],
-                )
+                let partner = Partner::Grain(slots.grain_in(pair.partner));
+                (pair.grain, partner, self.grains.histories[index])
             }
             Some(k) => {
                 let pair = self.walls.pairs[k];
-                (pair, Partner::Wall(pair.partner), self.walls.histories[k])
+                let partner = Partner::Wall(pair.partner.0);
+                (pair.grain, partner, self.walls.histories[k])
             }
         };
         ((touching || bridge.is_some()) && part.side() == 0).then(|| Contact {
-            grain: pair.grain,
+            grain: slots.grain_in(grain),
             partner,
             spring: vector(history.spring),
             stiffness: history.spring[3],
@@ -274,7 +159,7 @@ impl Neighbours {
 
     /// Takes over pairs with their histories and bridges, sorted by their slots, whatever was listed
     /// before. They are no whole groups: a refresh must follow.
-    pub fn adopt(&mut self, pairs: PairList) {
+    pub fn adopt(&mut self, pairs: SpherePairs) {
         self.grains = pairs;
     }
 
@@ -295,35 +180,31 @@ impl Neighbours {
             .clamp(INNER_SKIN.start() * radius, INNER_SKIN.end() * radius);
     }
 
-    /// Brings both lists up to date; histories follow their pairs. `indices` are those of the grains
-    /// in each slot; `kind(grain, partner)` names the constants of a pair of indices.
+    /// Brings both lists up to date; histories follow their pairs. `kind(grain, partner)` says of
+    /// which kind a pair is, by the grains' indices in the world.
     pub fn refresh(
         &mut self,
-        bodies: &[Body],
+        bodies: &[Sphere],
         walls: &Walls,
-        indices: &[u32],
-        mut kind: impl FnMut(u32, Partner) -> u32,
+        slots: &Slots,
+        mut kind: impl FnMut(u32, Partner) -> PairKind,
     ) {
         if !self.covers(bodies, walls) {
-            self.search(bodies, walls, indices, &mut kind);
+            self.search(bodies, walls, slots, &mut kind);
         }
         let count = bodies.len() - 1;
-        let padding = Pair {
-            grain: count as u32,
-            partner: count as u32,
-            kind: 0,
-        };
+        let padding = Slot(count as u32);
         let pairs = self.inner_pairs(bodies, padding);
-        self.grains.replace(pairs, grain_key, self.reach.is_some());
+        self.grains.replace(pairs, self.reach.is_some());
         let pairs = self.inner_pairs_at_walls(bodies, walls, padding);
-        self.walls.replace(pairs, wall_key, false);
+        self.walls.replace(pairs, false);
 
         let listed = self.grains.pairs.len() + self.walls.pairs.len();
         self.forces.resize(listed, ContactForce::default());
         let wet = self.grains.bridges.groups.len() * GROUP;
         self.bridge_effects.resize(wet, BridgeEffect::default());
         self.parts
-            .fill(&self.grains.pairs, &self.walls.pairs, indices);
+            .fill(&self.grains.pairs, &self.walls.pairs, slots);
         self.reference.clear();
         self.reference
             .extend(bodies[..count].iter().map(|body| body.position));
@@ -331,42 +212,51 @@ impl Neighbours {
 
     /// The pairs of grains on the outer list that belong on the inner one: near ones and those with
     /// a bridge.
-    fn inner_pairs(&self, bodies: &[Body], padding: Pair) -> Vec<Pair> {
+    fn inner_pairs(&self, bodies: &[Sphere], padding: Slot) -> Vec<SpherePair> {
         let skin = self.skins.inner;
-        let close = |pair: &&Pair| {
-            let (a, b) = (&bodies[pair.grain as usize], &bodies[pair.partner as usize]);
+        let close = |pair: &&SpherePair| {
+            let (a, b) = (&bodies[pair.grain.index()], &bodies[pair.partner.index()]);
             let reach = a.radius() + b.radius() + skin;
             length_squared(sub(b.position, a.position)) < reach * reach
         };
         let mut bridged = self.grains.bridged().peekable();
-        let mut is_bridged = |pair: &Pair| {
-            while bridged.next_if(|known| *known < grain_key(pair)).is_some() {}
-            bridged.next_if_eq(&grain_key(pair)).is_some()
+        let mut is_bridged = |pair: &SpherePair| {
+            while bridged.next_if(|known| *known < pair.key()).is_some() {}
+            bridged.next_if_eq(&pair.key()).is_some()
         };
         let outer = self.outer_grains.iter();
-        let mut pairs: Vec<Pair> = outer
+        let mut pairs: Vec<SpherePair> = outer
             .filter(|pair| is_bridged(pair) || close(pair))
             .copied()
             .collect();
+        let padding = SpherePair {
+            grain: padding,
+            partner: padding,
+            kind: PairKind::default(),
+        };
         fill_group(&mut pairs, padding);
         pairs
     }
 
     /// Those of a grain and a wall; each group meets one wall.
-    fn inner_pairs_at_walls(&self, bodies: &[Body], walls: &Walls, padding: Pair) -> Vec<Pair> {
+    fn inner_pairs_at_walls(
+        &self,
+        bodies: &[Sphere],
+        walls: &Walls,
+        padding: Slot,
+    ) -> Vec<SpherePair<WallId>> {
         let skin = self.skins.inner;
-        let close = |pair: &&Pair| {
-            let body = &bodies[pair.grain as usize];
-            let surface = &walls[pair.partner as usize].surface;
+        let close = |pair: &&SpherePair<WallId>| {
+            let body = &bodies[pair.grain.index()];
+            let surface = &walls[pair.partner.index()].surface;
             surface.distance(vector(body.position)).0 < body.radius() + skin
         };
         let mut pairs = Vec::new();
         for of_wall in self.outer_walls.chunk_by(|a, b| a.partner == b.partner) {
             pairs.extend(of_wall.iter().filter(close));
-            let of_same_wall = Pair {
-                partner: of_wall[0].partner,
-                kind: of_wall[0].kind,
-                ..padding
+            let of_same_wall = SpherePair {
+                grain: padding,
+                ..of_wall[0]
             };
             fill_group(&mut pairs, of_same_wall);
         }
@@ -376,28 +266,30 @@ impl Neighbours {
     /// Makes the outer lists anew.
     fn search(
         &mut self,
-        bodies: &[Body],
+        bodies: &[Sphere],
         walls: &Walls,
-        indices: &[u32],
-        kind: &mut impl FnMut(u32, Partner) -> u32,
+        slots: &Slots,
+        kind: &mut impl FnMut(u32, Partner) -> PairKind,
     ) {
         self.searches += 1;
         let bodies = &bodies[..bodies.len() - 1];
         self.set_skins(bodies);
         let outer = self.skins.outer;
-        let index = |slot: u32| indices[slot as usize];
+        let index = |slot: Slot| slots.grain_in(slot);
         let spheres = bodies.iter().map(with_radius);
         let pairs = &mut self.outer_grains;
         pairs.clear();
         for_each_near(spheres, outer, |slot, partners| {
+            let slot = Slot(slot);
             pairs.extend(partners.iter().map(|&other| {
+                let other = Slot(other);
                 let (grain, partner) = if index(slot) < index(other) {
                     (slot, other)
                 } else {
                     (other, slot)
                 };
                 let kind = kind(index(grain), Partner::Grain(index(partner)));
-                Pair {
+                SpherePair {
                     grain,
                     partner,
                     kind,
@@ -405,14 +297,14 @@ impl Neighbours {
             }));
         });
         self.outer_walls.clear();
-        for (partner, wall) in (0..).zip(walls.iter()) {
-            for (grain, body) in (0..).zip(bodies) {
+        for (partner, wall) in (0..).map(WallId).zip(walls.iter()) {
+            for (grain, body) in (0..).map(Slot).zip(bodies) {
                 let distance = wall.surface.distance(vector(body.position)).0;
                 if distance < body.radius() + outer {
-                    self.outer_walls.push(Pair {
+                    self.outer_walls.push(SpherePair {
                         grain,
                         partner,
-                        kind: kind(index(grain), Partner::Wall(partner)),
+                        kind: kind(index(grain), Partner::Wall(partner.0)),
                     });
                 }
             }
@@ -425,8 +317,8 @@ impl Neighbours {
 
     /// Widths of the skins for these bodies: the inner one as it has become, unless they are others
     /// than before.
-    fn set_skins(&mut self, bodies: &[Body]) {
-        let radii = bodies.iter().map(Body::radius);
+    fn set_skins(&mut self, bodies: &[Sphere]) {
+        let radii = bodies.iter().map(Sphere::radius);
         let smallest = radii.fold(f64::INFINITY, f64::min);
         let inner = if self.skins.radius == smallest {
             self.skins.inner
@@ -442,73 +334,7 @@ impl Neighbours {
 }
 
 /// Where a body is, and its radius.
-fn with_radius(body: &Body) -> Row {
+fn with_radius(body: &Sphere) -> Row {
     let [x, y, z, _] = body.position;
     [x, y, z, body.radius()]
-}
-
-impl PairList {
-    /// Takes over `pairs`, sorted by `key`; those that were listed before keep their histories.
-    fn replace(&mut self, pairs: Vec<Pair>, key: Key, wet: bool) {
-        let mut histories = vec![History::default(); pairs.len()];
-        let mut bridges = Bridges::none(if wet { pairs.len() } else { 0 });
-        for (old, new) in in_both(&self.pairs, &pairs, key) {
-            histories[new] = self.histories[old];
-            if wet {
-                bridges.set(new, &self.bridges.get(old));
-            }
-        }
-        self.histories = histories;
-        self.bridges = bridges;
-        let kind = pairs.first().map(|pair| pair.kind);
-        self.kind = kind.filter(|kind| pairs.iter().all(|pair| pair.kind == *kind));
-        self.pairs = pairs;
-    }
-
-    /// Sets the histories of the listed pairs from `known` pairs with their histories, sorted by
-    /// `key`; others have none.
-    pub fn load_histories(&mut self, known: &[Pair], histories: &[History], key: Key) {
-        self.histories.fill(History::default());
-        for (old, new) in in_both(known, &self.pairs, key) {
-            self.histories[new] = histories[old];
-        }
-    }
-
-    /// The keys of the pairs that have a bridge, in order.
-    fn bridged(&self) -> impl Iterator<Item = (u32, u32)> {
-        let pairs = self.pairs.iter().enumerate();
-        pairs
-            .filter(|(k, _)| self.bridges.get(*k).exists())
-            .map(|(_, pair)| grain_key(pair))
-    }
-}
-
-/// What a list is sorted by.
-type Key = fn(&Pair) -> (u32, u32);
-
-/// Order of pairs of grains: that of their first slots, so that pairs stand as their grains do.
-pub fn grain_key(pair: &Pair) -> (u32, u32) {
-    let (grain, partner) = (pair.grain, pair.partner);
-    (grain.min(partner), grain.max(partner))
-}
-
-/// Order of pairs with walls.
-pub fn wall_key(pair: &Pair) -> (u32, u32) {
-    (pair.partner, pair.grain)
-}
-
-/// Adds padding until the last group is whole.
-fn fill_group(pairs: &mut Vec<Pair>, padding: Pair) {
-    pairs.resize(pairs.len().next_multiple_of(GROUP), padding);
-}
-
-/// Where the pairs that stand in both lists, each sorted by `key`, stand in the old and in the new
-/// one.
-fn in_both(old: &[Pair], new: &[Pair], key: Key) -> impl Iterator<Item = (usize, usize)> {
-    let mut known = old.iter().enumerate().peekable();
-    new.iter().enumerate().filter_map(move |(k, pair)| {
-        while known.next_if(|(_, old)| key(old) < key(pair)).is_some() {}
-        let (known, _) = known.next_if(|(_, old)| key(old) == key(pair))?;
-        Some((known, k))
-    })
 }

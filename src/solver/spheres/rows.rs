@@ -2,7 +2,9 @@
 //!
 //! Each row is four numbers, as a rule a vector and a companion, which an accessor names.
 
+use super::super::row::row;
 use crate::lanes::{Row, WIDEST};
+use crate::world::Grains;
 
 /// Listed pairs come in groups of this many, filled up with padding lanes, whatever lanes the
 /// processor has.
@@ -11,7 +13,7 @@ pub const GROUP: usize = WIDEST;
 /// What the pair loop reads of a grain: two cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(128))]
-pub struct Body {
+pub struct Sphere {
     /// Centre [m]; inverse mass [1/kg].
     pub position: Row,
     /// Velocity half a step ago [m/s]; inverse moment of inertia [1/(kg m²)].
@@ -23,18 +25,72 @@ pub struct Body {
     pub free_spin: Row,
 }
 
-/// A pair on the list: a grain, its partner (a grain or a wall) and the index of its constants.
+/// Where the rows of a grain stand ([`super::slots`]). Bare numbers of grains are always those of
+/// the world's columns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Slot(pub u32);
+
+/// A wall, by its index in the container.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct WallId(pub u32);
+
+/// A kind of pair: where its constants stand ([`super::kinds`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Pair {
-    /// The grain on which the computed force acts.
-    pub grain: u32,
-    /// The other grain's index, or the wall's.
-    pub partner: u32,
-    /// Index into the pair constants.
-    pub kind: u32,
+pub struct PairKind(pub u32);
+
+impl Slot {
+    /// As an index of rows.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
 }
 
-impl Body {
+impl WallId {
+    /// As an index of walls.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl PairKind {
+    /// As an index of constants.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A pair on a list: a grain and its partner `P`, a grain ([`Slot`]) or a wall ([`WallId`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SpherePair<P = Slot> {
+    /// The grain on which the computed force acts.
+    pub grain: Slot,
+    /// The other side.
+    pub partner: P,
+    /// Which constants are the pair's.
+    pub kind: PairKind,
+}
+
+impl Sphere {
+    /// Grain `i` of the world, before anything says how it would spin freely.
+    pub fn of(grains: &Grains, i: usize) -> Self {
+        Self {
+            position: row(grains.position[i], 1.0 / grains.mass[i]),
+            velocity: row(grains.velocity[i], 1.0 / grains.inertia[i]),
+            spin: row(grains.spin[i], grains.radius[i]),
+            free_spin: [0.0; 4],
+        }
+    }
+
+    /// How much relative spin a unit of torque stops: time step and contact count over inertia
+    /// [1/(N m s)].
+    #[inline(always)]
+    pub fn compliance(&self) -> f64 {
+        self.free_spin[3]
+    }
+
     /// Inverse mass [1/kg].
     #[inline(always)]
     pub fn inverse_mass(&self) -> f64 {

@@ -4,37 +4,46 @@
 //! In: the working copy and its lists. Out: shares such that workers have about as much to do and
 //! few pairs have grains of two workers, as only what crosses has to travel between cores; and the
 //! two phases of a step on a share.
+//!
+//! Pairs are dealt out in equal numbers, whole groups each, as a pair takes as long whether it
+//! touches or not. Grains are dealt out by their number of partners, which is what summing takes,
+//! plus what moving takes ([`COST_OF_GRAIN`]). As slots are sorted in space and pairs by their
+//! slots, a worker's pairs are about those of its grains: what the other workers wrote is read
+//! along the cuts alone. A pair with a wall goes to whom its grain belongs.
+//!
+//! Rows that cross from one phase to the other are whole cache lines ([`super::rows`]), so that two
+//! workers never write the same one but where their ranges meet.
 
+use super::super::ranges::{range_of, split, split_once};
 use super::super::row::Row;
 use super::super::step::{Outcome, Share, Tally};
 use super::super::walls::Walls;
-use super::super::workers::{
-    Batch, Column, ForcePhase, InPhase, MotionPhase, range_of, split, split_once,
-};
-use super::Spheres;
+use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
+use super::SphereKernel;
 use super::bridges::{BridgeColumns, BridgeEffect, Wetting};
-use super::contacts::{Forces, PairRows, Surroundings};
-use super::integrate::{BridgeLoad, Finish, Incidence, Load, Motion};
-use super::neighbours::{Neighbours, Parts};
-use super::rows::{Body, ContactForce, GROUP, History, Pair};
+use super::contacts::{PairLoop, PairRows, PairSurroundings};
+use super::integrate::{BridgeLoad, FinishStep, PairEffects, SphereLoad, StepConstants};
+use super::neighbours::Neighbours;
+use super::parts::Parts;
+use super::rows::{ContactForce, GROUP, History, PairKind, Sphere, SpherePair, WallId};
 use crate::lanes::Processor;
-use crate::physics::law::{FilmConstants, Law, LawUser, PairConstants};
+use crate::physics::law::{FilmConstants, Law, LawSource, LawUser, PairConstants};
 use crate::physics::{ContactLaw, Liquid};
 use std::ops::Range;
 
 /// A worker's share of a world of spheres.
-pub struct SphereShare<'a> {
+pub struct SphereShare<'a, S> {
     ranges: WorkerRanges,
-    common: Common<'a>,
+    common: SphereInputs<'a, S>,
     /// Read by all in the force phase, as are films.
-    bodies: Column<'a, Body, MotionPhase>,
+    bodies: Column<'a, Sphere, MotionPhase>,
     films: Column<'a, f64, MotionPhase>,
     /// Read by all in the motion phase, as are the bridges' effects.
     forces: Column<'a, ContactForce, ForcePhase>,
     bridge_effects: Column<'a, BridgeEffect, ForcePhase>,
     /// What only this worker touches: loads and bridge loads of its grains, histories and bridges
     /// of its pairs.
-    loads: &'a mut [Load],
+    loads: &'a mut [SphereLoad],
     bridge_loads: &'a mut [BridgeLoad],
     grain_histories: &'a mut [History],
     wall_histories: Vec<&'a mut [History]>,
@@ -43,11 +52,13 @@ pub struct SphereShare<'a> {
 
 /// What all workers read and none writes.
 #[derive(Clone, Copy)]
-struct Common<'a> {
-    /// The contact law, chosen once per batch and worker, outside of the pair loop.
+struct SphereInputs<'a, S> {
+    /// Where the contact law comes from: chosen once per step and worker, outside of the pair loop.
+    source: S,
+    /// The law that the world states.
     law: ContactLaw,
     /// Step, gravity, slack of the inner list.
-    motion: &'a Motion,
+    motion: &'a StepConstants,
     /// The liquid, where there is any.
     liquid: Option<&'a Liquid>,
     /// Constants of every kind of pair.
@@ -55,21 +66,21 @@ struct Common<'a> {
     /// What bridges depend on, kind by kind; empty where nothing is wet.
     film_constants: &'a [FilmConstants],
     /// The inner list of pairs of grains.
-    grain_pairs: &'a [Pair],
+    grain_pairs: &'a [SpherePair],
     /// The kind of all of them, if it is one.
-    grain_kind: Option<u32>,
+    grain_kind: Option<PairKind>,
     /// The inner list of pairs of a grain and a wall.
-    wall_pairs: &'a [Pair],
+    wall_pairs: &'a [SpherePair<WallId>],
     /// The grains' parts in the pairs.
     parts: &'a Parts,
     /// Where every grain was when the inner list was filtered [m].
     reference: &'a [Row],
 }
 
-impl<'a> SphereShare<'a> {
+impl<'a, S: LawSource> SphereShare<'a, S> {
     /// The shares of a batch's workers. What one phase writes and the other reads is lent as
     /// columns, what stays with a worker is cut into slices.
-    pub fn all(spheres: &'a mut Spheres, batch: &'a Batch) -> Vec<Self> {
+    pub fn all(spheres: &'a mut SphereKernel<S>, batch: &'a Batch) -> Vec<Self> {
         let ranges = WorkerRanges::all(&spheres.neighbours, batch.size());
         let Neighbours {
             grains,
@@ -80,7 +91,8 @@ impl<'a> SphereShare<'a> {
             reference,
             ..
         } = &mut spheres.neighbours;
-        let common = Common {
+        let common = SphereInputs {
+            source: spheres.source,
             law: spheres.law,
             motion: &spheres.motion,
             liquid: spheres.liquid.as_ref(),
@@ -157,8 +169,8 @@ impl<'a> SphereShare<'a> {
             bridge_effects: &mut [],
         });
         let films = self.films.read(phase);
-        processor.run(Forces {
-            surroundings: Surroundings {
+        processor.run(PairLoop {
+            surroundings: PairSurroundings {
                 law,
                 dt: common.motion.dt,
                 bodies: self.bodies.read(phase),
@@ -183,9 +195,9 @@ impl<'a> SphereShare<'a> {
         phase: &InPhase<'_, MotionPhase>,
     ) -> Outcome {
         let own = self.ranges.grains.clone();
-        processor.run(Finish::<WET> {
+        processor.run(FinishStep::<WET> {
             motion: self.common.motion,
-            pairs: Incidence {
+            pairs: PairEffects {
                 forces: self.forces.read(phase),
                 bridge_effects: self.bridge_effects.read(phase),
                 parts: self.common.parts,
@@ -202,14 +214,14 @@ impl<'a> SphereShare<'a> {
 }
 
 /// The forces of a share, by a law that is chosen once for all pairs.
-struct ComputeForces<'s, 'a, 'p> {
-    share: &'s mut SphereShare<'a>,
+struct ComputeForces<'s, 'a, 'p, S> {
+    share: &'s mut SphereShare<'a, S>,
     processor: Processor,
     walls: &'s Walls,
     phase: &'s InPhase<'p, ForcePhase>,
 }
 
-impl LawUser for ComputeForces<'_, '_, '_> {
+impl<S: LawSource> LawUser for ComputeForces<'_, '_, '_, S> {
     type Output = Tally;
 
     fn with<L: Law>(self, law: L) -> Tally {
@@ -222,19 +234,21 @@ impl LawUser for ComputeForces<'_, '_, '_> {
     }
 }
 
-impl Share for SphereShare<'_> {
+impl<S: LawSource> Share for SphereShare<'_, S> {
     fn compute_forces(
         &mut self,
         processor: Processor,
         walls: &Walls,
         phase: &InPhase<'_, ForcePhase>,
     ) -> Tally {
-        self.common.law.choose(ComputeForces {
+        let (source, stated) = (self.common.source, self.common.law);
+        let forces = ComputeForces {
             share: self,
             processor,
             walls,
             phase,
-        })
+        };
+        source.choose(stated, forces)
     }
 
     fn move_grains(
@@ -319,10 +333,10 @@ fn cuts(neighbours: &Neighbours, size: usize) -> Vec<usize> {
 }
 
 /// Gives each group of pairs with a wall to whom its first grain belongs.
-fn share_walls(pairs: &[Pair], ranges: &mut [WorkerRanges]) {
+fn share_walls(pairs: &[SpherePair<WallId>], ranges: &mut [WorkerRanges]) {
     let last = ranges.len() - 1;
     for (group, own) in pairs.chunks(GROUP).enumerate() {
-        let slot = own[0].grain as usize;
+        let slot = own[0].grain.index();
         let owner = ranges.partition_point(|range| range.grains.end <= slot);
         let at_walls = &mut ranges[owner.min(last)].at_walls;
         let begin = group * GROUP;

@@ -5,6 +5,7 @@
 //! where the grains were some lists ago, and never show in a result, because forces are summed in
 //! the order of the grains' indices.
 
+use super::rows::Slot;
 use crate::world::Grains;
 use glam::DVec3;
 
@@ -14,7 +15,7 @@ pub struct Slots {
     /// The grain in each slot.
     grain: Vec<u32>,
     /// The slot of each grain.
-    slot: Vec<u32>,
+    slot: Vec<Slot>,
     /// Searches for neighbours when they were last sorted.
     searches: u64,
 }
@@ -46,9 +47,9 @@ impl Slots {
         };
         self.grain = (0..position.len() as u32).collect();
         self.grain.sort_by_cached_key(|i| slices(*i));
-        self.slot.resize(self.grain.len(), 0);
+        self.slot.resize(self.grain.len(), Slot::default());
         for (slot, grain) in self.grain.iter().enumerate() {
-            self.slot[*grain as usize] = slot as u32;
+            self.slot[*grain as usize] = Slot(slot as u32);
         }
         self.searches = searches;
     }
@@ -58,8 +59,13 @@ impl Slots {
         &self.grain
     }
 
+    /// The grain in this slot; padding holds none.
+    pub fn grain_in(&self, slot: Slot) -> u32 {
+        self.grain.get(slot.index()).copied().unwrap_or(u32::MAX)
+    }
+
     /// The slot of `grain`.
-    pub fn slot_of(&self, grain: u32) -> u32 {
+    pub fn slot_of(&self, grain: u32) -> Slot {
         self.slot[grain as usize]
     }
 }

@@ -1,22 +1,24 @@
 //! What the solver keeps of a world of spheres between loading and storing it.
 
 use super::super::walls::Walls;
-use super::integrate::{BridgeLoad, Load, Motion};
+use super::integrate::{BridgeLoad, SphereLoad, StepConstants};
 use super::kinds::Kinds;
 use super::neighbours::Neighbours;
-use super::rows::Body;
+use super::rows::Sphere;
 use super::slots::Slots;
+use crate::physics::law::StatedLaw;
 use crate::physics::{ContactLaw, Liquid};
 
-/// The working copy of a world of spheres.
-#[derive(Default)]
-pub struct Spheres {
+/// The working copy of a world of spheres, which press each other by the law of `S`.
+pub struct SphereKernel<S = StatedLaw> {
+    /// Where the contact law comes from.
+    pub(super) source: S,
     /// In which slot each grain's rows stand.
     pub(super) slots: Slots,
     /// What the pair loop reads of every grain, and the padding body behind them.
-    pub(super) bodies: Vec<Body>,
+    pub(super) bodies: Vec<Sphere>,
     /// What only the integration reads or writes of every grain.
-    pub(super) loads: Vec<Load>,
+    pub(super) loads: Vec<SphereLoad>,
     /// The walls at the time of the positions.
     pub(super) walls: Walls,
     /// Who may touch whom, with the histories of their contacts.
@@ -24,8 +26,8 @@ pub struct Spheres {
     /// Constants of each kind of pair.
     pub(super) kinds: Kinds,
     /// Step, gravity and the slack of the lists.
-    pub(super) motion: Motion,
-    /// Which contact law presses the grains.
+    pub(super) motion: StepConstants,
+    /// The contact law that the world states.
     pub(super) law: ContactLaw,
     /// The liquid, where there is any.
     pub(super) liquid: Option<Liquid>,
@@ -36,4 +38,25 @@ pub struct Spheres {
     pub(super) bridge_loads: Vec<BridgeLoad>,
     /// Bridges that broke since the world was taken in.
     pub(super) ruptures: u64,
+}
+
+impl<S> SphereKernel<S> {
+    /// A working copy of no world yet.
+    pub fn new(source: S) -> Self {
+        Self {
+            source,
+            slots: Slots::default(),
+            bodies: Vec::new(),
+            loads: Vec::new(),
+            walls: Walls::default(),
+            neighbours: Neighbours::default(),
+            kinds: Kinds::default(),
+            motion: StepConstants::default(),
+            law: ContactLaw::default(),
+            liquid: None,
+            films: Vec::new(),
+            bridge_loads: Vec::new(),
+            ruptures: 0,
+        }
+    }
 }

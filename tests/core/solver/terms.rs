@@ -4,7 +4,7 @@ use super::*;
 use glam::DVec3;
 use grainfall::physics::BridgeLaw;
 use grainfall::solver::{NormalLaw, advise, force_terms};
-use grainfall::world::{Contact, Surface};
+use grainfall::world::{Clock, Contact, Surface};
 
 /// The scene `name` after `time`, with settings.
 fn scene_after(name: &str, settings: &[(&str, &str)], time: f64) -> World {
@@ -47,8 +47,8 @@ fn terms_of_spheres_add_up_to_the_force_that_was_applied() {
         let (worst, contacts) = worst_difference(&world);
         println!("{name}: {contacts} contacts, {worst:.1e}");
         assert!(contacts > 150, "{name}: {contacts}");
-        // Rounding alone, some thousand times over.
-        assert!(worst < 1e-12, "{name}: {worst:e}");
+        // Velocities of half a step ago are computed back, which rounds them.
+        assert!(worst < 1e-13, "{name}: {worst:e}");
     }
     // Read literally, the Coulomb bound takes the liquid's normal force in.
     let text = include_str!("../../../scenes/gallery/water-drum.ron")
@@ -56,7 +56,7 @@ fn terms_of_spheres_add_up_to_the_force_that_was_applied() {
     let mut world = world(&text, 2e-5);
     run(&mut world, 0.15);
     let (worst, contacts) = worst_difference(&world);
-    assert!(contacts > 200 && worst < 1e-12, "{contacts} {worst:e}");
+    assert!(contacts > 200 && worst < 1e-13, "{contacts} {worst:e}");
 }
 
 #[test]
@@ -77,6 +77,29 @@ fn terms_of_polyhedra_add_up_to_the_force_that_was_applied() {
             .map(|contact| force_terms(&world, contact).len())
             .sum();
         assert_eq!(terms, features);
+    }
+}
+
+/// The same state with its forces at the velocities of now, half a step ago being now: what the terms
+/// are made from is to the bit what the loop saw.
+fn evaluated(mut world: World) -> World {
+    Solver::new(1).evaluate(&mut world).unwrap();
+    world.clock = Clock::new(0.0);
+    world
+}
+
+#[test]
+fn terms_from_what_the_loop_saw_differ_by_the_order_of_a_sum_alone() {
+    for (name, settings) in [
+        ("two-sizes-drum", vec![]),
+        ("honey-drum", vec![("bridge-law", "as-coded")]),
+    ] {
+        let world = evaluated(scene_after(name, &settings, 0.1));
+        let (worst, contacts) = worst_difference(&world);
+        println!("{name}: {contacts} contacts, {worst:.1e}");
+        assert!(contacts > 200, "{name}: {contacts}");
+        // A few last bits: seven terms are added in another order.
+        assert!(worst < 8.0 * f64::EPSILON, "{name}: {worst:e}");
     }
 }
 
