@@ -19,7 +19,7 @@ const LONGEST: u64 = 200;
 #[derive(Debug)]
 pub struct FolderLock {
     /// Closed, and so unlocked, when this is dropped; none where the file system has no locks.
-    _file: Option<File>,
+    file: Option<File>,
 }
 
 /// Why a folder cannot be locked.
@@ -43,7 +43,7 @@ impl FolderLock {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(LockError::Taken(holder(&mut file))),
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                return Ok(Self { _file: None });
+                return Ok(Self { file: None });
             }
             Err(TryLockError::Error(error)) => return Err(LockError::Unwritten(error)),
         }
@@ -51,12 +51,12 @@ impl FolderLock {
             .set_len(0)
             .and_then(|()| file.write_all(own_name().as_bytes()));
         noted.map_err(LockError::Unwritten)?;
-        Ok(Self { _file: Some(file) })
+        Ok(Self { file: Some(file) })
     }
 
     /// Whether the lock keeps others out: some network file systems have none.
     pub fn holds(&self) -> bool {
-        self._file.is_some()
+        self.file.is_some()
     }
 }
 

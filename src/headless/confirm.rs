@@ -30,7 +30,9 @@ pub fn confirm(file: &Path, threads: usize, interrupted: &AtomicBool) -> Result<
             tell(&format!(
                 "error: {name} comes to the state {stated}, but not to all that is stated:"
             ));
-            what.iter().for_each(|what| tell(&format!("  {what}")));
+            for what in what {
+                tell(&format!("  {what}"));
+            }
         }
         Verdict::Other(found) => tell(&format!(
             "error: {name} comes to state {found} at step {steps}, not to {stated}"

@@ -61,6 +61,7 @@ type Triangle<N> = [[N; 6]; 6];
 
 /// The lower triangular `C` with `C Cᵀ` the positive `matrix`, and the inverses of its diagonal.
 #[inline(always)]
+#[expect(clippy::eq_op, reason = "lanes have no zero of their own")]
 fn cholesky<N: Lanes>(one: N, matrix: &Matrix<N>) -> (Triangle<N>, [N; 6]) {
     let zero = one - one;
     let (mut c, mut inverse) = ([[zero; 6]; 6], [zero; 6]);
@@ -85,6 +86,7 @@ fn cholesky<N: Lanes>(one: N, matrix: &Matrix<N>) -> (Triangle<N>, [N; 6]) {
 /// `(G⁻¹ + h A)⁻¹`, of `G` that need not have an inverse: `G − h Y (1 + h Ĝ)⁻¹ Yᵀ` with `A = C Cᵀ`,
 /// `Y = G C`, `Ĝ = Cᵀ G C`.
 #[inline(always)]
+#[expect(clippy::eq_op, reason = "lanes have no zero of their own")]
 pub fn softened<N: Lanes>(one: N, damping: &Matrix<N>, response: &Matrix<N>, h: N) -> Matrix<N> {
     let zero = one - one;
     let (c, _) = cholesky(one, response);
