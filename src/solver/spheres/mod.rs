@@ -279,7 +279,7 @@ impl<S: LawSource> SphereKernel<S> {
                     of_grains.push((pair, history(contact)));
                 }
                 Partner::Wall(w) => {
-                    of_walls.push((self.pair(contact, WallId(w)), history(contact)))
+                    of_walls.push((self.pair(contact, WallId(w)), history(contact)));
                 }
             }
         }
