@@ -68,7 +68,7 @@ fn column_of_polyhedra_takes_less_than_twenty_kilobytes_a_grain_with_its_output(
 }
 
 #[test]
-fn paper_drum_takes_less_than_two_kilobytes_a_grain_and_no_more_with_time() {
+fn paper_drum_takes_some_kilobytes_a_grain_and_no_more_with_time() {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let scene = Scene::open("dry-r1.25").unwrap();
     let dt = advise(&scene).time_step;
@@ -95,7 +95,8 @@ fn paper_drum_takes_less_than_two_kilobytes_a_grain_and_no_more_with_time() {
     slices(12);
     let early = slices(4);
     let late = slices(8);
-    assert!(late < 2048.0, "{late} bytes per grain");
+    // Each listed pair has rows for what it remembers: a spring and a rolling torque.
+    assert!(late < 2600.0, "{late} bytes per grain");
     // Vectors may grow once more by doubling their capacity as the bed moves, but not step after step.
     assert!(late < 1.1 * early, "{early} bytes per grain, later {late}");
 }

@@ -102,7 +102,7 @@ fn polyhedra_whose_features_share_their_stiffness_have_the_bits_they_always_had(
 fn polyhedra_whose_dashpots_are_implicit_have_the_bits_they_always_had() {
     let mut scene = polyhedra("Full");
     scene.set("integrator", "imex").unwrap();
-    assert_golden(&scene, 1000, "d1b98208b12925f070ebd5780acffc0b");
+    assert_golden(&scene, 1000, "f4f3c8f0f5dc3be6757af07142ec0e0b");
 }
 
 /// A drum of cells.

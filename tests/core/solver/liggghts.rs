@@ -1,6 +1,6 @@
 //! Ten wet grains that fall into a corner, step by step as in LIGGGHTS 3.8.
 //!
-//! The deck is benches/liggghts/ten_grains.in: bridges form, hold several grains at once, break and
+//! The deck is `benches/liggghts/ten_grains.in`: bridges form, hold several grains at once, break and
 //! form again, grains hit and slide along three walls. All that a step of the wet drum does but for
 //! rolling friction, which at rest is another one there: that program turns the full torque round at
 //! every step.
@@ -41,6 +41,10 @@ const SCENE: &str = r#"(
 )"#;
 
 /// The centres after 4000 steps of 20 µs [m], as the deck writes them.
+#[allow(
+    clippy::unreadable_literal,
+    reason = "digits as the program prints them"
+)]
 const CENTRES: [[f64; 3]; 10] = [
     [3.571168093555e-03, 3.034088599881e-03, 2.992502673653e-03],
     [9.429969596290e-03, 4.330890476697e-03, 2.997647274578e-03],
