@@ -73,7 +73,7 @@ pub use time_step::{Extremes, Limit, TimeStepAdvice, advise};
 
 use crate::physics::law::{LawSource, StatedLaw};
 use crate::world::{Clock, Contact, World};
-use polyhedra::Polyhedra;
+use polyhedra::PolyhedronKernel;
 use spheres::SphereKernel;
 use std::time::Instant;
 use workers::WorkerPool;
@@ -97,7 +97,7 @@ pub struct Solver<S = StatedLaw> {
     pool: WorkerPool,
     processor: Processor,
     spheres: SphereKernel<S>,
-    polyhedra: Polyhedra,
+    polyhedra: PolyhedronKernel,
     profile: Profile,
 }
 
@@ -129,7 +129,7 @@ impl<S: LawSource> Solver<S> {
             pool: WorkerPool::new(threads),
             processor: Processor::detect(),
             spheres: SphereKernel::new(law),
-            polyhedra: Polyhedra::default(),
+            polyhedra: PolyhedronKernel::default(),
             profile: Profile::default(),
         }
     }

@@ -9,7 +9,7 @@
 //! Forces are those on the contact's first grain; those on its partner are opposite. A term that a
 //! law or a pair does not have is zero.
 
-use crate::world::{Feature, World};
+use crate::world::Feature;
 use glam::DVec3;
 
 /// A force within this share of the Coulomb bound is taken to slide: the loop makes it equal to the
@@ -64,11 +64,4 @@ impl ForceTerms {
             + self.viscous_normal
             + self.viscous_tangential
     }
-}
-
-/// Velocity of the centre of grain `i` half a step ago [m/s].
-pub(super) fn velocity_half_a_step_ago(world: &World, i: usize) -> DVec3 {
-    let grains = &world.grains;
-    let acceleration = grains.force[i] / grains.mass[i] + world.gravity;
-    grains.velocity[i] - acceleration * (0.5 * world.clock.time_step)
 }

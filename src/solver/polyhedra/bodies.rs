@@ -53,6 +53,16 @@ pub struct Place {
 }
 
 impl Load {
+    /// What acts on grain `i` of `world`.
+    pub fn of(world: &World, i: usize) -> Self {
+        let grains = &world.grains;
+        Self {
+            force: row(grains.force[i], f64::from(grains.contact_count[i])),
+            torque: row(grains.torque[i], 0.0),
+            exchanged: grains.exchanged[i],
+        }
+    }
+
     /// Number of touching partners.
     pub fn contact_count(&self) -> f64 {
         self.force[3]
@@ -91,31 +101,15 @@ pub struct Shapes {
 }
 
 impl Shapes {
-    /// The shapes of all grains of `world`.
-    pub fn of(world: &World) -> Self {
+    /// The shapes of these `grains` of `world`, body by body.
+    pub fn of(world: &World, grains: impl IntoIterator<Item = usize>) -> Self {
         let mut shapes = Self::default();
         if let Some(polyhedra) = &world.polyhedra {
-            (0..world.grains.len()).for_each(|i| shapes.push(polyhedra.shape_of(i)));
+            (grains.into_iter()).for_each(|i| shapes.push(polyhedra.shape_of(i)));
         }
-        shapes.close();
+        shapes.places.push(shapes.end());
+        shapes.loop_starts.push(shapes.loops.len() as u32);
         shapes
-    }
-
-    /// Adds a body of this shape after those that are there; returns its number.
-    pub fn add(&mut self, shape: &Polyhedron) -> usize {
-        // What closed the tables is where the next body begins.
-        self.places.pop();
-        self.loop_starts.pop();
-        let number = self.places.len();
-        self.push(shape);
-        self.close();
-        number
-    }
-
-    /// Closes the tables: where the last body ends.
-    fn close(&mut self) {
-        self.places.push(self.end());
-        self.loop_starts.push(self.loops.len() as u32);
     }
 
     /// The ends of the tables.

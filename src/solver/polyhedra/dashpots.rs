@@ -27,8 +27,9 @@
 use super::bodies::{Body, Load};
 use super::damping::{Matrix, Packed, ROWS, SUM, entry, softened};
 use super::nearest::group;
-use super::pairs::PairForce;
+use super::pairs::{PackedPartner, Pair, PairForce};
 use crate::lanes::{Lanes, Quad, Row, WIDEST, Work, cross, dot, minus, plus, side_by_side, times};
+use crate::world::Partner;
 
 /// How often the pairs are solved in a step.
 pub const SWEEPS: usize = 2;
@@ -38,8 +39,10 @@ pub const SWEEPS: usize = 2;
 pub struct Damper {
     /// The pair, among those of its worker.
     pub pair: u32,
-    /// Its sides.
-    pub sides: [u32; 2],
+    /// The grain on which its force acts.
+    first: u32,
+    /// The other side.
+    second: PackedPartner,
     /// `G` [N s/m, N s, N m s], after the first sweep `(G⁻¹ + θ Δt A)⁻¹`; the sum of the dashpots
     /// [N s/m].
     matrix: [Row; ROWS],
@@ -110,11 +113,12 @@ impl Body {
 }
 
 impl Damper {
-    /// The dashpots `of` the contacts of a pair; none where all have let go.
+    /// The `dashpots` of the contacts of `pair`, number `number` of its worker; none where all have
+    /// let go.
     #[inline(always)]
-    pub fn of(pair: u32, sides: [u32; 2], of: &[Dashpot]) -> Option<Self> {
+    pub fn of(number: u32, pair: &Pair, dashpots: &[Dashpot]) -> Option<Self> {
         let mut matrix: Packed = [0.0; 4 * ROWS];
-        for dashpot in of {
+        for dashpot in dashpots {
             let [nx, ny, nz, strength] = dashpot.normal;
             let [tx, ty, tz, _] = dashpot.moment;
             let along = [nx, ny, nz, tx, ty, tz];
@@ -131,8 +135,9 @@ impl Damper {
             row.copy_from_slice(&matrix[4 * k..4 * k + 4]);
         }
         (matrix[SUM] > 0.0).then_some(Self {
-            pair,
-            sides,
+            pair: number,
+            first: pair.first,
+            second: pair.second,
             matrix: rows,
             force: [0.0; 4],
             torque: [0.0; 4],
@@ -147,7 +152,7 @@ impl Damper {
 }
 
 /// One sweep over the dampers of a worker.
-pub struct Sweep<'a> {
+pub struct DampingSweep<'a> {
     /// Whether it is the first of the step.
     pub first: bool,
     /// Length of the step [s].
@@ -164,7 +169,7 @@ pub struct Sweep<'a> {
     pub forces: &'a mut [PairForce],
 }
 
-impl Work for Sweep<'_> {
+impl Work for DampingSweep<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -172,10 +177,10 @@ impl Work for Sweep<'_> {
         for start in (0..self.dampers.len()).step_by(N::COUNT) {
             let end = (start + N::COUNT).min(self.dampers.len());
             let own = group::<N, _>(&self.dampers[start..end]);
-            let meeting = Meeting::<N>::gather(processor, &self, own);
-            let matrix = meeting.matrix(processor, own, self.first);
-            let wrench = meeting.wrench(processor, &matrix, own, self.first);
-            let found = meeting.forces(processor, wrench);
+            let pairs = DampedPairs::<N>::gather(processor, &self, own);
+            let matrix = pairs.matrix(processor, own, self.first);
+            let wrench = pairs.wrench(processor, &matrix, own, self.first);
+            let found = pairs.forces(processor, wrench);
             if self.first {
                 for row in 0..ROWS {
                     let columns = matrix.row(row);
@@ -191,10 +196,8 @@ impl Work for Sweep<'_> {
                 damper.torque = first;
                 let effect = &mut self.forces[damper.pair as usize];
                 (effect.force, effect.first, effect.second) = (force, first, second);
-                if let Some(([_, velocity, spin], _)) = (damper.sides[1] as usize)
-                    .checked_sub(self.bodies.len())
-                    .map(|w| &self.walls[w])
-                {
+                if let Partner::Wall(w) = damper.second.unpack() {
+                    let ([_, velocity, spin], _) = &self.walls[w as usize];
                     let product = |a: &Row, b: &Row| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
                     effect.exchanged[3] =
                         self.dt * (product(&force, velocity) - product(&second, spin));
@@ -233,18 +236,16 @@ struct Side<N> {
 }
 
 impl<N: Lanes> Side<N> {
-    /// Side number `which` of each pair, whose dashpots add up to `strength`.
+    /// These sides of pairs whose dashpots add up to `strength`.
     #[inline(always)]
     fn gather(
         processor: N::Processor,
-        all: &Sweep<'_>,
-        own: [&Damper; WIDEST],
-        which: usize,
+        all: &DampingSweep<'_>,
+        sides: [PackedPartner; WIDEST],
         strength: N,
     ) -> Self {
-        let count = all.bodies.len();
-        let motions = side_by_side::<N, _>(|k| all.motion(own[k].sides[which] as usize, count));
-        let responses = side_by_side::<N, _>(|k| all.response(own[k].sides[which] as usize, count));
+        let motions = side_by_side::<N, _>(|k| all.motion(sides[k]));
+        let responses = side_by_side::<N, _>(|k| all.response(sides[k]));
         let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| motions[k][0]));
         let [vx, vy, vz, _] = N::gather(processor, side_by_side::<N, _>(|k| motions[k][1]));
         let [wx, wy, wz, _] = N::gather(processor, side_by_side::<N, _>(|k| motions[k][2]));
@@ -281,31 +282,31 @@ fn relative<N: Lanes>(between: [N; 3], [first, second]: [[[N; 3]; 2]; 2]) -> [N;
     [vx, vy, vz, wx, wy, wz]
 }
 
-impl Sweep<'_> {
-    /// Position, velocity and spin half a step ago of side `i`, of `count` bodies and the walls.
+impl DampingSweep<'_> {
+    /// Position, velocity and spin half a step ago of a side of a pair.
     #[inline(always)]
-    fn motion(&self, i: usize, count: usize) -> [&Row; 3] {
-        match i.checked_sub(count) {
-            None => {
-                let body = &self.bodies[i];
+    fn motion(&self, side: PackedPartner) -> [&Row; 3] {
+        match side.unpack() {
+            Partner::Grain(i) => {
+                let body = &self.bodies[i as usize];
                 [&body.position, &body.velocity, &body.spin]
             }
-            Some(wall) => self.walls[wall].0.each_ref(),
+            Partner::Wall(w) => self.walls[w as usize].0.each_ref(),
         }
     }
 
-    /// What side `i` has become so far.
+    /// What such a side has become so far.
     #[inline(always)]
-    fn response(&self, i: usize, count: usize) -> &Response {
-        match i.checked_sub(count) {
-            None => &self.responses[i],
-            Some(wall) => &self.walls[wall].1,
+    fn response(&self, side: PackedPartner) -> &Response {
+        match side.unpack() {
+            Partner::Grain(i) => &self.responses[i as usize],
+            Partner::Wall(w) => &self.walls[w as usize].1,
         }
     }
 }
 
 /// As many pairs as there are lanes, side by side.
-struct Meeting<N> {
+struct DampedPairs<N> {
     /// From the second's centroid to the first's [m].
     between: [N; 3],
     /// `(1 − θ) u⁻ + θ u` with the velocities so far.
@@ -316,16 +317,18 @@ struct Meeting<N> {
     sides: [Compliance<N>; 2],
 }
 
-impl<N: Lanes> Meeting<N> {
+impl<N: Lanes> DampedPairs<N> {
     #[inline(always)]
-    fn gather(processor: N::Processor, all: &Sweep<'_>, own: [&Damper; WIDEST]) -> Self {
+    fn gather(processor: N::Processor, all: &DampingSweep<'_>, own: [&Damper; WIDEST]) -> Self {
         let one = N::splat(processor, 1.0);
         let two = N::splat(processor, 2.0);
         let dt = N::splat(processor, all.dt);
         let strength = side_by_side::<N, _>(|k| &own[k].matrix[SUM / 4]);
         let strength = N::gather(processor, strength)[SUM % 4];
-        let first = Side::<N>::gather(processor, all, own, 0, strength);
-        let second = Side::<N>::gather(processor, all, own, 1, strength);
+        let firsts = side_by_side::<N, _>(|k| PackedPartner::grain(own[k].first));
+        let seconds = side_by_side::<N, _>(|k| own[k].second);
+        let first = Side::<N>::gather(processor, all, firsts, strength);
+        let second = Side::<N>::gather(processor, all, seconds, strength);
         let between = minus(first.position, second.position);
         let before = relative(between, [first.before, second.before]);
         let after = relative(between, [first.after, second.after]);

@@ -5,18 +5,21 @@
 //! spring and a dashpot and drag each other by a tangential spring (Man et al. 2023, Eqs. 3.1–3.6).
 //! The contacts of a pair are summed in the order of their features: neither lists nor threads nor
 //! lanes show in a sum.
+//!
+//! Not here: the contact law ([`super::contact_group`]), which features are measured
+//! ([`super::workspace`]).
 
 use super::super::row::{sub, vector};
 use super::super::step::Tally;
-use super::super::tangential::{UNLOADED, update};
+use super::super::tangential::UNLOADED;
+use super::contact_group::ContactGroup;
 use super::dashpots::{Damper, Dashpot};
 use super::motion::{Surroundings, crossed};
-use super::nearest::{Nearest, group};
+use super::nearest::group;
 use super::pairs::{BLOCK, Block, ContactPoint, Pair, PairForce, Terms};
 use super::workspace::{ActivePair, Effect, Workspace};
-use crate::lanes::{Lanes, Quad, Rows, WIDEST, Work, cross, dot, minus, plus, side_by_side, times};
+use crate::lanes::{Lanes, Quad, Work, side_by_side};
 use crate::physics::FeatureRule;
-use crate::physics::law::{Hooke, Law};
 
 /// Two cores that come nearer than the rest of this share of the touching distance could pass
 /// through each other.
@@ -95,7 +98,7 @@ impl Workspace {
     /// Finds the overlaps, how they share the stiffness, and how far nothing touches yet. True
     /// where two cores are so near each other that they might pass through.
     #[inline(always)]
-    fn evaluate_overlaps(&mut self, all: &Surroundings<'_>, block: &mut Block<'_>) -> bool {
+    pub fn evaluate_overlaps(&mut self, all: &Surroundings<'_>, block: &mut Block<'_>) -> bool {
         let mut fault = false;
         for number in 0..self.active.len() {
             let range = self.results_of(number);
@@ -150,7 +153,7 @@ impl Workspace {
             let law = side_by_side::<N, _>(|k| &terms[pair[k].pair as usize].law);
             let point = side_by_side::<N, _>(|k| &points[all[k].point as usize]);
             let contacts =
-                Contacts::<N>::gather(processor, pair, law, group::<N, _>(results), point);
+                ContactGroup::<N>::gather(processor, pair, law, group::<N, _>(results), point);
             let springs = side_by_side::<N, _>(|k| &point[k].spring);
             let found = contacts.forces::<IMPLICIT>(processor, dt, springs);
             if IMPLICIT {
@@ -167,7 +170,8 @@ impl Workspace {
                 effect.energy = found.energies[k].row();
                 let point = &mut points[number.point as usize];
                 point.overlap = effect.force[3];
-                // A spring that is let go leaves zeros without a sign, which would tell where it has been.
+                // A spring that is let go leaves zeros without a sign, which would tell where it
+                // has been.
                 let touches = point.overlap > 0.0;
                 point.spring = if touches {
                     found.springs[k].row()
@@ -218,161 +222,12 @@ impl Workspace {
             let dashpots = &self.dashpots[self.results_of(number)];
             let own = active.pair as usize;
             let pair = &block.pairs[own];
-            let sides = [pair.first, pair.second];
             let number = (first + own) as u32;
-            if let Some(damper) = Damper::of(number, sides, dashpots) {
+            if let Some(damper) = Damper::of(number, pair, dashpots) {
                 forces[own].first[3] = damper.strength();
                 resisting[own] = true;
                 self.dampers.push(damper);
             }
-        }
-    }
-}
-
-/// As many contacts as there are lanes, side by side.
-struct Contacts<N> {
-    /// Unit vectors from the first sides to the second.
-    normal: [N; 3],
-    /// Overlaps, negative at a gap [m].
-    depth: N,
-    /// Arms from the centroids of the first sides to the contacts [m].
-    arm: [N; 3],
-    /// Velocities of the first sides relative to the second at the first's centroids [m/s].
-    velocity: [N; 3],
-    /// Relative spins [rad/s].
-    spin: [N; 3],
-    /// Parts of the pairs' stiffness that the contacts have, now and a step ago.
-    parts: [N; 2],
-    /// `K_n`, the normal dashpot, `K_t`, μ.
-    law: [N; 4],
-    /// Overlaps [m] and pushes of the dashpots [N] a step ago.
-    before: [N; 2],
-}
-
-/// What contacts do: rows, of which the first [`Lanes::COUNT`] count.
-struct ContactForces<N: Lanes> {
-    /// Force on the first [N]; overlap [m].
-    forces: [N::Quad; WIDEST],
-    /// Its torque [N m]; push of the dashpot [N].
-    moments: [N::Quad; WIDEST],
-    /// Energy lost in the dashpot, by the tangential spring, put into the normal spring [J].
-    energies: [N::Quad; WIDEST],
-    /// Tangential springs [m] and their stiffness [N/m].
-    springs: [N::Quad; WIDEST],
-    /// Where dashpots are taken implicitly: normals and dashpots [N s/m], arms across the normals
-    /// [m].
-    dashpots: [[N::Quad; WIDEST]; 2],
-}
-
-impl<N: Lanes> Contacts<N> {
-    /// Contacts of these pairs, with their laws' constants, nearest points and memories.
-    #[inline(always)]
-    fn gather(
-        processor: N::Processor,
-        pair: [&ActivePair; WIDEST],
-        law: Rows<'_>,
-        nearest: [&Nearest; WIDEST],
-        point: [&ContactPoint; WIDEST],
-    ) -> Self {
-        let before = side_by_side::<N, _>(|k| [point[k].overlap, point[k].dashpot, 0.0, 0.0]);
-        let [nx, ny, nz, _] = N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].normal));
-        let normal = [nx, ny, nz];
-        let [mx, my, mz, depth] =
-            N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].middle));
-        let [cx, cy, cz, offset] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].centre));
-        let [vx, vy, vz, part] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].velocity));
-        let [wx, wy, wz, part_before] =
-            N::gather(processor, side_by_side::<N, _>(|k| &pair[k].spin));
-        let law = N::gather(processor, law);
-        let [overlap, dashpot, ..] = N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
-        Self {
-            normal,
-            depth,
-            arm: plus(minus([mx, my, mz], [cx, cy, cz]), times(normal, offset)),
-            velocity: [vx, vy, vz],
-            spin: [wx, wy, wz],
-            parts: [part, part_before],
-            law,
-            before: [overlap, dashpot],
-        }
-    }
-
-    /// Their forces: Hooke's spring and a dashpot along the normal, never pulling, and across it a
-    /// spring capped by Coulomb's law.
-    #[inline(always)]
-    fn forces<const IMPLICIT: bool>(
-        &self,
-        processor: N::Processor,
-        dt: f64,
-        springs: Rows<'_>,
-    ) -> ContactForces<N> {
-        let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
-        let (step, half_step) = (N::splat(processor, dt), N::splat(processor, 0.5 * dt));
-        let Self {
-            normal,
-            depth,
-            arm,
-            parts: [part, part_before],
-            law: [normal_stiffness, damping, tangential_stiffness, friction],
-            before: [overlap_before, dashpot_before],
-            ..
-        } = *self;
-        let touching = depth.exceeds(zero);
-        let overlap = N::choose(touching, depth, zero);
-        let velocity = plus(self.velocity, cross(self.spin, arm));
-        let approach = dot(velocity, normal);
-        let elastic = normal_stiffness * part * overlap;
-        let damped = N::choose(touching, damping * part * approach, zero);
-        let (repulsion, strength) = if IMPLICIT {
-            // A contact that would pull lets go, spring and dashpot.
-            let holds = (elastic + damped).exceeds(zero);
-            (
-                N::choose(holds, elastic, zero),
-                N::choose(holds, damping * part, zero),
-            )
-        } else {
-            (Hooke::default().normal_force(elastic, damped, zero), zero)
-        };
-        let slip = minus(velocity, times(normal, approach));
-        let stiffness = N::choose(touching, tangential_stiffness * part, zero);
-        let updated = update::<N>(
-            processor,
-            springs,
-            times(slip, step),
-            normal,
-            touching,
-            stiffness,
-            friction * Hooke::default().coulomb_force(elastic, repulsion, zero),
-        );
-        let pull = times(updated.spring, -stiffness);
-        let force = minus(pull, times(normal, repulsion));
-        let moment = cross(arm, force);
-        // The mean of the old and the new push, along the way from one to the other.
-        let dashpot = repulsion - elastic;
-        let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
-        let elastic_before = normal_stiffness * part_before * overlap_before;
-        let pressed = half * ((elastic_before + elastic) * (overlap - overlap_before));
-        let in_dashpot = if IMPLICIT {
-            // Where a contact begins or ends within a step, the spring takes more than it stores.
-            let taken = half_step * ((elastic_before + elastic) * approach);
-            in_dashpot + (taken - pressed)
-        } else {
-            in_dashpot
-        };
-        ContactForces {
-            forces: N::rows([force[0], force[1], force[2], overlap]),
-            moments: N::rows([moment[0], moment[1], moment[2], dashpot]),
-            energies: N::rows([in_dashpot, updated.lost, pressed, zero]),
-            springs: updated.rows,
-            dashpots: if IMPLICIT {
-                let [tx, ty, tz] = cross(arm, normal);
-                [
-                    N::rows([normal[0], normal[1], normal[2], strength]),
-                    N::rows([tx, ty, tz, zero]),
-                ]
-            } else {
-                [updated.rows; 2]
-            },
         }
     }
 }

@@ -31,13 +31,13 @@ impl Listed {
         Self { feature, marks }
     }
 
-    /// Two features of `bodies` wherever they are: of a face the whole outline matters.
-    pub fn of(shapes: &Shapes, bodies: [usize; 2], feature: Feature) -> Self {
+    /// Two features of bodies 0 and 1 wherever they are: of a face the whole outline matters.
+    pub fn of(shapes: &Shapes, feature: Feature) -> Self {
         match feature {
             Feature::VertexFace(..) | Feature::FaceVertex(..) => Self::face(feature, u32::MAX),
             Feature::VertexVertex => Self::edges(feature, [0; 2], [0; 2]),
             Feature::EdgeEdge(first, second) => {
-                let [along, across] = bodies.map(|body| shapes.edges_of(body));
+                let [along, across] = [0, 1].map(|body| shapes.edges_of(body));
                 let (along, across) = (along[usize::from(first)], across[usize::from(second)]);
                 Self::edges(feature, along, across)
             }

@@ -14,10 +14,12 @@
 //! | `neighbours` | pairs of bodies near each other, and which are whose |
 //! | `pairs` | what is kept of a pair from step to step |
 //! | `motion` | how two bodies move relative to each other, and how far at most |
+//! | `extents` | sizes of bodies and walls that bound distances and motions |
 //! | `listing` | which features of a pair may touch before long |
 //! | `nearest` | nearest points of two features |
 //! | `workspace` | which features are measured in a step, and their measurement |
-//! | `forces` | contact forces |
+//! | `contact_group` | the contact law between features, lane by lane |
+//! | `forces` | contact forces of blocks of pairs |
 //! | `damping` | matrices of the dashpots of pairs |
 //! | `dashpots` | the dashpots of all pairs, taken implicitly |
 //! | `working_copy` | what is kept between loading a world and storing it |
@@ -28,8 +30,10 @@
 //! sphere is a core of one vertex.
 
 mod bodies;
+mod contact_group;
 mod damping;
 mod dashpots;
+mod extents;
 mod forces;
 mod listing;
 mod motion;
@@ -50,18 +54,17 @@ use super::walls::Walls;
 use super::workers::Batch;
 use crate::lanes::Processor;
 use crate::physics::FeatureRule;
-use crate::physics::law::PairConstants;
-use crate::world::{Contact, Surface, World};
+use crate::world::{Contact, World};
 use bodies::{Body, Load, Placing, Shapes};
+use extents::Extents;
 use forces::DEEPEST;
 use glam::DVec3;
-use motion::Extents;
-use neighbours::{PairList, Sides, partner};
+use neighbours::{PairList, PairsOfBodies};
 use pairs::PairForce;
 use share::PolyhedraShare;
 use std::sync::Arc;
 use working_copy::Known;
-pub use working_copy::Polyhedra;
+pub use working_copy::PolyhedronKernel;
 
 /// Width of the skin in which pairs are kept, relative to the smallest bounding radius.
 const SKIN: f64 = 0.2;
@@ -70,7 +73,7 @@ const SKIN: f64 = 0.2;
 /// than half of it, by more than rounding.
 const SLACK: f64 = 0.499;
 
-impl Kernel for Polyhedra {
+impl Kernel for PolyhedronKernel {
     type Share<'a> = PolyhedraShare<'a>;
 
     /// Pairs and lists of the last call are kept where the world is as that call left it; else all
@@ -86,12 +89,12 @@ impl Kernel for Polyhedra {
         let unmoved = self.load_bodies(world);
         if !unmoved {
             self.known_shapes = world.polyhedra.as_ref().map(|p| p.shapes.clone());
-            self.shapes = Shapes::of(world);
+            self.shapes = Shapes::of(world, 0..world.grains.len());
             self.place_all(processor);
             self.pairs = PairList::default();
             self.find_pairs(world);
             if let Some(polyhedra) = &world.polyhedra {
-                self.pairs.adopt(&polyhedra.features, self.bodies.len());
+                self.pairs.adopt(&polyhedra.features);
             }
         }
         self.compute_constants(world);
@@ -150,18 +153,17 @@ impl Kernel for Polyhedra {
                 polyhedra.orientation[i] = body.quaternion();
                 polyhedra.angular_momentum[i] = vector(body.angular_momentum);
             }
-            let contacts = self.pairs.contacts(self.bodies.len());
+            let contacts = self.pairs.contacts();
             polyhedra.features.clear();
             polyhedra.features.reserve_exact(contacts.clone().count());
             polyhedra.features.extend(contacts);
         }
-        let count = self.bodies.len();
         let pairs = self.pairs.list.iter().enumerate();
         let touching = pairs
             .filter(|(k, _)| self.acting[*k] && self.forces[*k].touches())
             .map(|(k, pair)| Contact {
                 grain: pair.first,
-                partner: partner(pair, count),
+                partner: pair.partner(),
                 spring: DVec3::ZERO,
                 stiffness: 0.0,
                 rolling: DVec3::ZERO,
@@ -209,11 +211,11 @@ impl Kernel for Polyhedra {
     }
 }
 
-impl Polyhedra {
+impl PolyhedronKernel {
     /// Takes bodies, what acts on them and walls in; true when all of it, with the contacts'
     /// histories, is as it was left.
     fn load_bodies(&mut self, world: &World) -> bool {
-        let (grains, count) = (&world.grains, world.grains.len());
+        let count = world.grains.len();
         let before = std::mem::take(&mut self.walls);
         self.walls.load(&world.container);
         let bodies: Vec<Body> = (0..count).map(|i| Body::of(world, i, self.dt)).collect();
@@ -222,11 +224,7 @@ impl Polyhedra {
             && self.holds(world);
         self.bodies = bodies;
         self.loads.clear();
-        self.loads.extend((0..count).map(|i| Load {
-            force: row(grains.force[i], f64::from(grains.contact_count[i])),
-            torque: row(grains.torque[i], 0.0),
-            exchanged: grains.exchanged[i],
-        }));
+        self.loads.extend((0..count).map(|i| Load::of(world, i)));
         unmoved
     }
 
@@ -245,7 +243,7 @@ impl Polyhedra {
         let (Some(polyhedra), Some(shapes)) = (&world.polyhedra, &self.known_shapes) else {
             return false;
         };
-        let contacts = self.pairs.contacts(self.bodies.len());
+        let contacts = self.pairs.contacts();
         Arc::ptr_eq(shapes, &polyhedra.shapes) && contacts.eq(polyhedra.features.iter().copied())
     }
 
@@ -282,7 +280,7 @@ impl Polyhedra {
         self.resistances.resize(list.len(), PairForce::default());
         self.resisting.clear();
         self.resisting.resize(list.len(), false);
-        self.sides = Sides::of(list, count);
+        self.pairs_of = PairsOfBodies::of(list, count);
         let positions = self.bodies.iter().map(|body| body.position);
         self.reference.clear();
         self.reference.extend(positions);
@@ -293,38 +291,11 @@ impl Polyhedra {
         self.compute_constants(world);
     }
 
-    /// Sizes of the bodies and of where they and the walls are.
-    fn extents(&self) -> Extents {
-        let largest = |v: DVec3| v.abs().max_element();
-        let bodies = self.bodies.iter().map(|body| largest(body.centre()));
-        let walls = self.walls.surfaces().map(|surface| match surface {
-            Surface::Plane { point, .. } => largest(point),
-            Surface::Cylinder { radius } => radius,
-            Surface::Tube { radius, rim } => radius.max(rim.abs()),
-        });
-        let reach = self.bodies.iter().map(Body::reach);
-        Extents::new(
-            bodies.chain(walls).fold(0.0, f64::max),
-            reach.fold(0.0, f64::max),
-            self.skin,
-        )
-    }
-
     /// What the pairs' contacts depend on of the bodies' sizes and shapes.
     fn set_geometry_constants(&mut self) {
-        let extents = self.extents();
+        let extents = Extents::of(&self.bodies, &self.walls, self.skin);
         for (pair, terms) in self.pairs.list.iter().zip(&mut self.pairs.terms) {
-            let first = &self.bodies[pair.first as usize];
-            let other = self.bodies.get(pair.second as usize);
-            let (own, other) = (
-                first.sphero_radius(),
-                other.map_or(0.0, Body::sphero_radius),
-            );
-            terms.touch = own + other;
-            terms.offset = 0.5 * (own - other);
-            let uneven = |body: u32| self.shapes.uneven.get(body as usize).unwrap_or(&0.0);
-            let uneven = uneven(pair.first) + uneven(pair.second);
-            terms.margin = extents.margin(first.reach(), terms.touch, uneven);
+            terms.set_geometry(pair, &self.bodies, &self.shapes, &extents);
         }
         self.extents = extents;
     }
@@ -341,15 +312,8 @@ impl Polyhedra {
             return;
         }
         self.known = known;
-        let count = self.bodies.len();
         for (pair, terms) in self.pairs.list.iter().zip(&mut self.pairs.terms) {
-            let pairing = world.pairing(pair.first as usize, partner(pair, count));
-            let PairConstants {
-                coefficients,
-                contact,
-            } = pairing.constants(world.law, &world.materials, false);
-            let [stiffness, damping, tangential_stiffness, _] = coefficients;
-            terms.law = [stiffness, damping, tangential_stiffness, contact[0]];
+            terms.set_law(world, pair.first as usize, pair.partner());
         }
     }
 }

@@ -4,14 +4,14 @@
 //! the way that any point of the first has come in the step, seen from the second. The bound holds
 //! to the last bit: it counts what bodies that turn do beyond their velocities, and rounding.
 
-use super::super::row::{Row, length_squared, sub};
-use super::super::walls::WallBody;
+use super::super::row::{Row, length_squared, row, sub};
+use super::super::walls::{WallBody, Walls};
 use super::bodies::{Body, Geometry};
-use super::nearest::PARALLEL;
-use super::pairs::Pair;
+use super::extents::Extents;
+use super::pairs::{PackedPartner, Pair};
 use crate::lanes::prefetch;
 use crate::physics::FeatureRule;
-use crate::world::Surface;
+use crate::world::{Partner, Surface};
 
 /// What the speed of two bodies makes in a step is taken this much larger: more than its rounding.
 const CAUTION: f64 = 1.01;
@@ -35,43 +35,14 @@ pub struct Surroundings<'a> {
     pub extents: Extents,
 }
 
-/// Sizes that bound how far two bodies move relative to each other in a step, to the last bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extents {
-    /// Distance of any point of a body from the centroid of another that is near it, at most [m].
-    pub between_grains: f64,
-    /// Distance of any point of a body from the origin, about which walls move, at most [m].
-    pub to_origin: f64,
-    /// What rounding adds to the relative motion of two bodies in a step, at most [m].
-    pub rounding: f64,
-}
-
-/// Roundings that a coordinate meets in a step and in the computation of a distance, generously
-/// counted, each of half the distance of two neighbouring numbers of its size.
-const ROUNDINGS: f64 = 32.0;
-
-impl Extents {
-    /// For bodies whose coordinates and those of the walls' points are at most `coordinate`, and
-    /// whose points are at most `reach` from their centroids; pairs are nearer than their reaches
-    /// and `skin` [m].
-    pub fn new(coordinate: f64, reach: f64, skin: f64) -> Self {
-        let to_origin = 2.0 * coordinate + reach + skin;
-        Self {
-            between_grains: 3.0 * reach + 2.0 * skin,
-            to_origin,
-            rounding: ROUNDINGS * f64::EPSILON * to_origin,
-        }
-    }
-
-    /// How much a computed distance of features of two bodies may jump, the first of which reaches
-    /// to `reach`, that touch at `touch` and whose faces are as `uneven` [m]. Edges change from
-    /// crossing to parallel where their sine is that of [`PARALLEL`]; a vertex leaves a face across
-    /// an edge that is not quite in its plane.
-    pub fn margin(&self, reach: f64, touch: f64, uneven: f64) -> f32 {
-        let parallel = 2.0 * PARALLEL * reach * reach / touch;
-        let margin = 4.0 * (parallel + uneven + self.rounding);
-        margin as f32
-    }
+/// The origin, and the velocity [m/s] and the spin [rad/s] of every wall: what the motion of a side
+/// of a pair is where that is a wall.
+pub fn motions_of(walls: &Walls) -> Vec<[Row; 3]> {
+    let motion = |wall: &WallBody| {
+        let motion = &wall.motion;
+        [[0.0; 4], row(motion.velocity, 0.0), row(motion.spin, 0.0)]
+    };
+    walls.iter().map(motion).collect()
 }
 
 /// How the bodies of a pair move relative to each other.
@@ -105,27 +76,29 @@ impl Surroundings<'_> {
     /// The wall that is the second side of `pair`, if it is one.
     #[inline(always)]
     pub fn wall(&self, pair: &Pair) -> Option<&WallBody> {
-        let wall = (pair.second as usize).checked_sub(self.bodies.len())?;
-        Some(&self.walls[wall])
+        match pair.partner() {
+            Partner::Grain(_) => None,
+            Partner::Wall(w) => Some(&self.walls[w as usize]),
+        }
     }
 
-    /// Position, velocity and spin of a side of a pair; a wall moves about the origin.
+    /// Position, velocity and spin of the second side of a pair; a wall moves about the origin.
     #[inline(always)]
-    pub fn motion(&self, side: u32) -> [&Row; 3] {
-        match (side as usize).checked_sub(self.bodies.len()) {
-            None => {
-                let body = &self.bodies[side as usize];
+    pub fn motion(&self, second: PackedPartner) -> [&Row; 3] {
+        match second.unpack() {
+            Partner::Grain(j) => {
+                let body = &self.bodies[j as usize];
                 [&body.position, &body.velocity, &body.spin]
             }
-            Some(wall) => self.wall_motions[wall].each_ref(),
+            Partner::Wall(w) => self.wall_motions[w as usize].each_ref(),
         }
     }
 
     /// Asks for the second side of `pair`.
     #[inline(always)]
     pub fn fetch(&self, pair: &Pair) {
-        if let Some(body) = self.bodies.get(pair.second as usize) {
-            prefetch::<_, 3>(std::slice::from_ref(body));
+        if let Some(j) = pair.second.as_grain() {
+            prefetch::<_, 3>(std::slice::from_ref(&self.bodies[j]));
         }
     }
 
@@ -144,10 +117,9 @@ impl Surroundings<'_> {
         let turning = crossed(*other_spin, sub(first.position, *position));
         let velocity = sub(sub(first.velocity, *velocity), turning);
         let (reach, spin) = (first.reach(), sub(first.spin, *other_spin));
-        let arm = if (pair.second as usize) < self.bodies.len() {
-            self.extents.between_grains
-        } else {
-            self.extents.to_origin
+        let arm = match pair.partner() {
+            Partner::Grain(_) => self.extents.between_grains,
+            Partner::Wall(_) => self.extents.to_origin,
         };
         let speed_squared = length_squared(velocity);
         let spins_squared = length_squared(first.spin) + length_squared(*other_spin);

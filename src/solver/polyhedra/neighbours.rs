@@ -9,8 +9,8 @@ use super::super::row::{row, vector};
 use super::super::walls::Walls;
 use super::bodies::Body;
 use super::listing::Listed;
-use super::pairs::{BLOCK, ContactPoint, Pair, PointRange, Terms};
-use crate::world::{FeatureContact, Partner};
+use super::pairs::{BLOCK, ContactPoint, PackedPartner, Pair, PointRange, Terms};
+use crate::world::FeatureContact;
 use std::ops::Range;
 
 /// The pairs near each other, sorted by [`key`].
@@ -24,17 +24,9 @@ pub struct PairList {
     pub points: Vec<Vec<ContactPoint>>,
 }
 
-/// Key by which pairs are sorted: grains before walls, as [`Partner`] sorts.
-fn key(pair: &Pair) -> (u32, u32) {
+/// Key by which pairs are sorted.
+fn key(pair: &Pair) -> (u32, PackedPartner) {
     (pair.first, pair.second)
-}
-
-/// The other side of `pair` in a world of `count` grains.
-pub fn partner(pair: &Pair, count: usize) -> Partner {
-    match pair.wall(count) {
-        None => Partner::Grain(pair.second),
-        Some(wall) => Partner::Wall(wall as u32),
-    }
 }
 
 impl PairList {
@@ -47,7 +39,7 @@ impl PairList {
         } = known;
         let mut known = list.into_iter().zip(terms).enumerate().peekable();
         let mut pairs = Self::default();
-        let mut push = |wanted: (u32, u32)| {
+        let mut push = |wanted: (u32, PackedPartner)| {
             while known.next_if(|(_, (pair, _))| key(pair) < wanted).is_some() {}
             match known.next_if(|(_, (pair, _))| key(pair) == wanted) {
                 Some((k, (pair, terms))) => {
@@ -57,16 +49,15 @@ impl PairList {
                 None => pairs.push(Pair::new(wanted), Terms::default(), &[]),
             }
         };
-        let count = bodies.len() as u32;
         let spheres = bodies.iter().map(|body| row(body.centre(), body.reach()));
         for_each_near(spheres, skin, |i, near| {
             for j in near {
-                push((i, *j));
+                push((i, PackedPartner::grain(*j)));
             }
             let body = &bodies[i as usize];
-            for (w, wall) in (count..).zip(walls.iter()) {
+            for (w, wall) in (0..).zip(walls.iter()) {
                 if wall.surface.distance(body.centre()).0 < body.reach() + skin {
-                    push((i, w));
+                    push((i, PackedPartner::wall(w)));
                 }
             }
         });
@@ -91,15 +82,15 @@ impl PairList {
         &self.points[k / BLOCK][self.list[k].points.range()]
     }
 
-    /// Every feature contact with its history, in a world of `count` grains.
-    pub fn contacts(&self, count: usize) -> impl Iterator<Item = FeatureContact> + Clone {
+    /// Every feature contact with its history.
+    pub fn contacts(&self) -> impl Iterator<Item = FeatureContact> + Clone {
         let pairs = self.list.iter().enumerate();
-        pairs.flat_map(move |(k, pair)| {
+        pairs.flat_map(|(k, pair)| {
             let points = self.points_of(k).iter();
             let touching = points.filter(|point| point.overlap > 0.0);
             touching.map(move |point| FeatureContact {
                 grain: pair.first,
-                partner: partner(pair, count),
+                partner: pair.partner(),
                 feature: point.listed.feature,
                 overlap: point.overlap,
                 dashpot: point.dashpot,
@@ -109,24 +100,22 @@ impl PairList {
         })
     }
 
-    /// Gives the pairs the contacts that a world of `count` grains holds, sorted like them.
-    pub fn adopt(&mut self, contacts: &[FeatureContact], count: usize) {
+    /// Gives the pairs the contacts that a world holds, sorted like them.
+    pub fn adopt(&mut self, contacts: &[FeatureContact]) {
         let mut contacts = contacts.iter().peekable();
         let mut points = Vec::new();
         let Self { list, terms, .. } = std::mem::take(self);
         for (pair, terms) in list.into_iter().zip(terms) {
-            let wanted = (pair.first, partner(&pair, count));
+            let wanted = (pair.first, pair.partner());
             while contacts
                 .next_if(|contact| (contact.grain, contact.partner) < wanted)
                 .is_some()
             {}
             let next = || contacts.next_if(|contact| (contact.grain, contact.partner) == wanted);
             points.clear();
-            points.extend(std::iter::from_fn(next).map(|contact| ContactPoint {
-                spring: row(contact.spring, contact.stiffness),
-                overlap: contact.overlap,
-                dashpot: contact.dashpot,
-                listed: Listed::face(contact.feature, 0),
+            points.extend(std::iter::from_fn(next).map(|contact| {
+                // Its place in the order is all that is read of it before it is listed anew.
+                ContactPoint::known(contact, Listed::face(contact.feature, 0))
             }));
             self.push(pair, terms, &points);
         }
@@ -155,7 +144,7 @@ impl PairList {
 
 /// The pairs of each body.
 #[derive(Default)]
-pub struct Sides {
+pub struct PairsOfBodies {
     /// Where in `second` each body's begin.
     second_starts: Vec<u32>,
     /// Pairs of which it is the second.
@@ -164,33 +153,33 @@ pub struct Sides {
     first_starts: Vec<u32>,
 }
 
-impl Sides {
+impl PairsOfBodies {
     /// Those of `pairs` of `count` bodies.
     pub fn of(pairs: &[Pair], count: usize) -> Self {
-        let mut sides = Self {
+        let mut found = Self {
             second_starts: vec![0; count + 1],
             second: Vec::new(),
             first_starts: vec![0; count + 1],
         };
-        let between = |pair: &&Pair| pair.wall(count).is_none();
         for pair in pairs {
-            sides.first_starts[pair.first as usize + 1] += 1;
-        }
-        for pair in pairs.iter().filter(between) {
-            sides.second_starts[pair.second as usize + 1] += 1;
+            found.first_starts[pair.first as usize + 1] += 1;
+            if let Some(j) = pair.second.as_grain() {
+                found.second_starts[j + 1] += 1;
+            }
         }
         for i in 0..count {
-            sides.first_starts[i + 1] += sides.first_starts[i];
-            sides.second_starts[i + 1] += sides.second_starts[i];
+            found.first_starts[i + 1] += found.first_starts[i];
+            found.second_starts[i + 1] += found.second_starts[i];
         }
-        let mut next = sides.second_starts.clone();
-        sides.second = vec![0; sides.second_starts[count] as usize];
-        for (k, pair) in pairs.iter().enumerate().filter(|(_, pair)| between(pair)) {
-            let place = &mut next[pair.second as usize];
-            sides.second[*place as usize] = k as u32;
-            *place += 1;
+        let mut next = found.second_starts.clone();
+        found.second = vec![0; found.second_starts[count] as usize];
+        for (k, pair) in (0..).zip(pairs) {
+            if let Some(j) = pair.second.as_grain() {
+                found.second[next[j] as usize] = k;
+                next[j] += 1;
+            }
         }
-        sides
+        found
     }
 
     /// Number of bodies.

@@ -18,9 +18,12 @@
 
 use super::super::row::{Row, row, vector};
 use super::super::tangential::UNLOADED;
+use super::bodies::{Body, Shapes};
+use super::extents::Extents;
 use super::listing::Listed;
 use super::nearest::Nearest;
-use crate::world::Surface;
+use crate::physics::law::PairConstants;
+use crate::world::{FeatureContact, Partner, Surface, World};
 use std::ops::Range;
 
 /// Pairs that are worked on in one go, whose contact points lie together: enough to fill the lanes,
@@ -33,8 +36,8 @@ pub const BLOCK: usize = 32;
 pub struct Pair {
     /// The grain on which the computed force acts.
     pub first: u32,
-    /// The other grain; from the number of grains on, a wall.
-    pub second: u32,
+    /// The other side.
+    pub second: PackedPartner,
     /// How far the two may still move relative to each other until [`Self::outer`] must be made
     /// anew [m].
     pub outer_slack: f64,
@@ -52,7 +55,7 @@ pub struct Pair {
 
 impl Pair {
     /// Two sides of which nothing is known yet.
-    pub fn new((first, second): (u32, u32)) -> Self {
+    pub fn new((first, second): (u32, PackedPartner)) -> Self {
         Self {
             first,
             second,
@@ -61,11 +64,48 @@ impl Pair {
         }
     }
 
-    /// The number of the wall that is the second side, in a world of `count` grains: none where it
-    /// is a grain.
+    /// What the world calls the second side.
+    pub fn partner(&self) -> Partner {
+        self.second.unpack()
+    }
+}
+
+/// The second side of a pair, a [`Partner`] in four bytes, so that a [`Pair`] is one cache line.
+/// Sorted as partners are: grains before walls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PackedPartner(u32);
+
+impl PackedPartner {
+    /// The bit that tells walls; no world has so many grains.
+    const WALL: u32 = 1 << 31;
+
+    /// Grain `j`.
+    pub fn grain(j: u32) -> Self {
+        Self(j)
+    }
+
+    /// Wall `w` of the container.
+    pub fn wall(w: u32) -> Self {
+        Self(w | Self::WALL)
+    }
+
+    /// As the world tells it.
     #[inline(always)]
-    pub fn wall(&self, count: usize) -> Option<usize> {
-        (self.second as usize).checked_sub(count)
+    pub fn unpack(self) -> Partner {
+        if self.0 < Self::WALL {
+            Partner::Grain(self.0)
+        } else {
+            Partner::Wall(self.0 & !Self::WALL)
+        }
+    }
+
+    /// Its index among the grains, if it is one.
+    #[inline(always)]
+    pub fn as_grain(self) -> Option<usize> {
+        match self.unpack() {
+            Partner::Grain(j) => Some(j as usize),
+            Partner::Wall(_) => None,
+        }
     }
 }
 
@@ -116,6 +156,37 @@ pub struct Terms {
     pub margin: f32,
 }
 
+impl Terms {
+    /// Takes over the law's constants for grain `first` of `world` and its `partner`.
+    pub fn set_law(&mut self, world: &World, first: usize, partner: Partner) {
+        let pairing = world.pairing(first, partner);
+        let PairConstants {
+            coefficients: [stiffness, damping, tangential_stiffness, _],
+            contact: [friction, ..],
+        } = pairing.constants(world.law, &world.materials, false);
+        self.law = [stiffness, damping, tangential_stiffness, friction];
+    }
+
+    /// Takes over what follows from the sizes and shapes of the pair's sides; walls are not rounded
+    /// and have no uneven faces.
+    pub fn set_geometry(
+        &mut self,
+        pair: &Pair,
+        bodies: &[Body],
+        shapes: &Shapes,
+        extents: &Extents,
+    ) {
+        let first = pair.first as usize;
+        let second = pair.second.as_grain();
+        let radius = bodies[first].sphero_radius();
+        let other_radius = second.map_or(0.0, |j| bodies[j].sphero_radius());
+        let uneven = shapes.uneven[first] + second.map_or(0.0, |j| shapes.uneven[j]);
+        self.touch = radius + other_radius;
+        self.offset = 0.5 * (radius - other_radius);
+        self.margin = extents.margin(bodies[first].reach(), self.touch, uneven);
+    }
+}
+
 /// What an active feature of a pair remembers: a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
@@ -131,6 +202,16 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// Features that touch, with the history that a world holds of them.
+    pub fn known(contact: &FeatureContact, listed: Listed) -> Self {
+        Self {
+            spring: row(contact.spring, contact.stiffness),
+            overlap: contact.overlap,
+            dashpot: contact.dashpot,
+            listed,
+        }
+    }
+
     /// Features that do not touch.
     pub const fn apart(listed: Listed) -> Self {
         Self {

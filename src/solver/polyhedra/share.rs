@@ -4,17 +4,18 @@
 //! of a step on a share.
 
 use super::super::ranges::{range_of, split_once};
-use super::super::row::{Row, length_squared, row, sub};
+use super::super::row::{Row, length_squared, sub};
 use super::super::step::{Outcome, Share, Tally};
-use super::super::walls::{WallBody, Walls};
+use super::super::walls::Walls;
 use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
-use super::Polyhedra;
+use super::PolyhedronKernel;
 use super::bodies::{Body, Geometry, Load, Place, Shapes};
-use super::dashpots::{Response, SWEEPS, Sweep};
+use super::dashpots::{DampingSweep, Response, SWEEPS};
+use super::extents::Extents;
 use super::forces::Forces;
-use super::motion::{Extents, Surroundings};
+use super::motion::{Surroundings, motions_of};
 use super::nearest::Places;
-use super::neighbours::Sides;
+use super::neighbours::PairsOfBodies;
 use super::pairs::{BLOCK, ContactPoint, Pair, PairForce, Terms};
 use super::workspace::Workspace;
 use crate::lanes::{Lanes, Processor, Work, prefetch};
@@ -56,7 +57,7 @@ struct Common<'a> {
     /// The shapes of all bodies.
     shapes: &'a Shapes,
     /// Which pairs are whose.
-    sides: &'a Sides,
+    pairs_of: &'a PairsOfBodies,
     /// Where every body was when the pairs were found [m].
     reference: &'a [Row],
     /// Square of the distance from there at which they must be found anew [m²].
@@ -76,7 +77,7 @@ struct Common<'a> {
 impl<'a> PolyhedraShare<'a> {
     /// The shares of a batch's workers: whole blocks of pairs, and bodies in equal numbers with
     /// their vertices and faces.
-    pub fn all(world: &'a mut Polyhedra, batch: &'a Batch) -> Vec<Self> {
+    pub fn all(world: &'a mut PolyhedronKernel, batch: &'a Batch) -> Vec<Self> {
         let (size, count) = (batch.size(), world.bodies.len());
         let (slack, pair_count) = (world.slack(), world.pairs.list.len());
         let needed = size.max(world.workspaces.len());
@@ -84,7 +85,7 @@ impl<'a> PolyhedraShare<'a> {
         world.responses.resize(count, Response::default());
         let common = Common {
             shapes: &world.shapes,
-            sides: &world.sides,
+            pairs_of: &world.pairs_of,
             reference: &world.reference,
             slack_squared: slack * slack,
             dt: world.dt,
@@ -149,15 +150,6 @@ impl<'a> PolyhedraShare<'a> {
     }
 }
 
-/// The origin, and the velocity and the spin of every wall.
-fn motions_of(walls: &Walls) -> Vec<[Row; 3]> {
-    let motion = |wall: &WallBody| {
-        let motion = &wall.motion;
-        [[0.0; 4], row(motion.velocity, 0.0), row(motion.spin, 0.0)]
-    };
-    walls.iter().map(motion).collect()
-}
-
 impl Share for PolyhedraShare<'_> {
     fn compute_forces(
         &mut self,
@@ -207,7 +199,7 @@ impl Share for PolyhedraShare<'_> {
             acting: self.acting.read(phase),
             resistances: self.resistances.read(phase),
             resisting: self.resisting.read(phase),
-            sides: self.common.sides,
+            pairs_of: self.common.pairs_of,
         };
         let bodies = self.bodies.write_first(phase);
         let responses = self.responses.write_first(phase);
@@ -229,7 +221,7 @@ impl Share for PolyhedraShare<'_> {
     }
 
     fn resist(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, ForcePhase>) {
-        processor.run(Sweep {
+        processor.run(DampingSweep {
             first: sweep == 0,
             dt: self.common.dt,
             dampers: &mut self.workspace.dampers,
@@ -257,7 +249,7 @@ impl Share for PolyhedraShare<'_> {
                 acting: self.acting.read(phase),
                 resistances: self.resistances.read(phase),
                 resisting: self.resisting.read(phase),
-                sides: self.common.sides,
+                pairs_of: self.common.pairs_of,
             },
             common: self.common,
             last,
@@ -276,7 +268,7 @@ struct Incidence<'a> {
     resistances: &'a [PairForce],
     resisting: &'a [bool],
     /// Which pairs are whose.
-    sides: &'a Sides,
+    pairs_of: &'a PairsOfBodies,
 }
 
 /// Finishes a step for a range of bodies and, unless it is the last of a call, starts the next.
@@ -339,8 +331,8 @@ impl Incidence<'_> {
     /// Asks for what the pairs do of which body `i` is the second: it lies scattered.
     #[inline(always)]
     fn fetch(&self, i: usize) {
-        if i < self.sides.count() {
-            for &pair in self.sides.of_body(i).0 {
+        if i < self.pairs_of.count() {
+            for &pair in self.pairs_of.of_body(i).0 {
                 if self.acting[pair as usize] {
                     prefetch::<_, 2>(&self.forces[pair as usize..=pair as usize]);
                 }
@@ -351,7 +343,7 @@ impl Incidence<'_> {
     /// Sums what the dashpots of its pairs do to body `i`, in the pairs' order.
     #[inline(always)]
     fn resistance(&self, i: usize) -> Load {
-        let (as_second, as_first) = self.sides.of_body(i);
+        let (as_second, as_first) = self.pairs_of.of_body(i);
         let mut load = Load::default();
         for pair in as_second.iter().map(|&pair| pair as usize) {
             if self.resisting[pair] {
@@ -397,7 +389,7 @@ impl Incidence<'_> {
     #[inline(always)]
     fn sum(&self, i: usize, load: &mut Load) -> f64 {
         let mut strength = 0.0;
-        let (as_second, as_first) = self.sides.of_body(i);
+        let (as_second, as_first) = self.pairs_of.of_body(i);
         self.fetch(i + 2);
         load.force = [0.0; 4];
         load.torque = [0.0; 4];

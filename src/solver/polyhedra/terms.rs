@@ -1,13 +1,28 @@
-//! The force of a contact of polyhedra, term by term: see [`super::super::terms`].
+//! The force of a contact of polyhedra, term by term.
+//!
+//! In: a world as a solver left it and one of its contacts. Out: what each term gives, feature by
+//! feature. The pair is put before the functions of the pair loop ([`super::workspace`],
+//! [`super::contact_group`]) as a block of its own, with the velocities of half a step ago: so
+//! nothing of a force is derived twice.
+//!
+//! Dashpots that are taken implicitly act for the pair as one ([`super::dashpots`]): of the force
+//! that was applied they are what all else leaves, and each feature is told its share, in
+//! proportion to its own dashpot.
 
-use super::super::row::vector;
-use super::super::terms::{ForceTerms, velocity_half_a_step_ago};
-use super::bodies::{Body, Shapes};
+use super::super::row::{row, vector};
+use super::super::terms::{AT_THE_BOUND, ForceTerms};
+use super::super::walls::Walls;
+use super::bodies::{Body, Geometry, Load, Placing, Shapes};
+use super::contact_group::ContactGroup;
+use super::extents::Extents;
 use super::listing::Listed;
-use super::nearest::{Jobs, Nearest, Places};
-use crate::lanes::{Lanes, One, Row};
-use crate::physics::law::{Hooke, Law};
-use crate::world::{Contact, Feature, FeatureContact, Partner, World};
+use super::motion::{Surroundings, motions_of};
+use super::nearest::Places;
+use super::pairs::{Block, ContactPoint, PackedPartner, Pair, PointRange, Terms};
+use super::workspace::Workspace;
+use crate::lanes::{Lanes, One, Row, WIDEST, Work};
+use crate::physics::{FeatureRule, Integrator};
+use crate::world::{Contact, FeatureContact, Partner, World};
 use glam::DVec3;
 
 /// The terms of `contact`, one entry for each pair of features.
@@ -18,151 +33,187 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     let of_pair = |feature: &&FeatureContact| {
         (feature.grain, feature.partner) == (contact.grain, contact.partner)
     };
-    let features: Vec<&FeatureContact> = polyhedra.features.iter().filter(of_pair).collect();
-    let meeting = Meeting::of(world, contact);
-    let sum: f64 = features.iter().map(|feature| feature.overlap).sum();
-    let squares: f64 = features.iter().map(|f| f.overlap * f.overlap).sum();
-    let springs = world.law.feature_springs();
-    let part = springs.map_or(1.0, |springs| springs.rule.part(sum, squares));
-    let term = |feature: &FeatureContact| meeting.terms(feature, part);
-    features.into_iter().map(term).collect()
+    let features: Vec<FeatureContact> =
+        polyhedra.features.iter().filter(of_pair).copied().collect();
+    let alone = PairAlone::of(world, contact);
+    match polyhedra.integrator {
+        Integrator::Explicit => alone.terms::<false>(world, &features),
+        Integrator::Imex => {
+            let mut terms = alone.terms::<true>(world, &features);
+            share_dashpots(&mut terms, contact.force);
+            terms
+        }
+    }
+    .into_iter()
+    .map(|(terms, _)| terms)
+    .collect()
 }
 
-/// Two bodies near each other.
-struct Meeting<'a> {
-    world: &'a World,
-    partner: Partner,
+/// Gives each feature its share of what the implicit dashpots of the pair do, which is what the
+/// terms so far leave of the `applied` force; beside each feature's terms stands its own dashpot.
+fn share_dashpots(terms: &mut [(ForceTerms, f64)], applied: DVec3) {
+    let so_far: DVec3 = terms.iter().map(|(terms, _)| terms.force()).sum();
+    let all: f64 = terms.iter().map(|(_, dashpot)| dashpot).sum();
+    for (terms, dashpot) in terms.iter_mut().filter(|(_, dashpot)| *dashpot > 0.0) {
+        terms.normal_dashpot = (applied - so_far) * (*dashpot / all);
+    }
+}
+
+/// Two bodies, or a body and a wall, as the pair loop saw them: bodies 0 and 1 of a small world.
+struct PairAlone {
+    pair: Pair,
+    constants: Terms,
+    bodies: Vec<Body>,
     shapes: Shapes,
     vertices: Vec<Row>,
     planes: Vec<Row>,
-    /// Centroid of the first [m].
-    centre: DVec3,
-    /// Velocity of the first relative to the second at the first's centroid [m/s].
-    velocity: DVec3,
-    /// Relative spin [rad/s].
-    spin: DVec3,
-    /// Rounding radii of both [m].
-    rounding: [f64; 2],
-    /// `K_n`, the normal dashpot, `K_t`, μ.
-    law: Row,
+    walls: Walls,
+    wall_motions: Vec<[Row; 3]>,
+    extents: Extents,
 }
 
-impl<'a> Meeting<'a> {
-    fn of(world: &'a World, contact: &Contact) -> Self {
+impl PairAlone {
+    /// The two sides of `contact`.
+    fn of(world: &World, contact: &Contact) -> Self {
         let first = contact.grain as usize;
-        let (centre, velocity, spin) = motion(world, first);
-        let (second, rounding) = match contact.partner {
-            Partner::Grain(j) => (motion(world, j as usize), rounding(world, j as usize)),
-            Partner::Wall(w) => {
-                let motion = &world.container.walls[w as usize].motion;
-                ((DVec3::ZERO, motion.velocity, motion.spin), 0.0)
-            }
+        let (second, grains) = match contact.partner {
+            Partner::Grain(j) => (PackedPartner::grain(1), vec![first, j as usize]),
+            Partner::Wall(w) => (PackedPartner::wall(w), vec![first]),
         };
-        let pairing = world.pairing(first, contact.partner);
-        let constants = pairing.constants(world.law, &world.materials, false);
-        let [normal, damping, tangential, _] = constants.coefficients;
-        let mut meeting = Self {
-            world,
-            partner: contact.partner,
-            shapes: Shapes::default(),
-            vertices: Vec::new(),
-            planes: Vec::new(),
-            centre,
-            velocity: velocity - second.1 - second.2.cross(centre - second.0),
-            spin: spin - second.2,
-            rounding: [self::rounding(world, first), rounding],
-            law: [normal, damping, tangential, constants.contact[0]],
+        let bodies: Vec<Body> = (grains.iter())
+            .map(|i| half_a_step_ago(world, *i))
+            .collect();
+        let shapes = Shapes::of(world, grains);
+        let mut vertices = vec![[0.0; 4]; shapes.body_vertices.len()];
+        let mut planes = vec![[0.0; 4]; shapes.body_normals.len()];
+        let placing = Placing {
+            shapes: &shapes,
+            bodies: &bodies,
+            vertices: &mut vertices,
+            planes: &mut planes,
         };
-        meeting.place(first);
-        if let Partner::Grain(j) = contact.partner {
-            meeting.place(j as usize);
+        placing.run::<One>(());
+        let mut walls = Walls::default();
+        walls.load(&world.container);
+        let extents = Extents::of(&bodies, &walls, 0.0);
+        let pair = Pair {
+            // Whatever the two have moved, nothing is to be listed.
+            outer_slack: f64::INFINITY,
+            inner_slack: f64::INFINITY,
+            ..Pair::new((0, second))
+        };
+        let mut constants = Terms::default();
+        constants.set_geometry(&pair, &bodies, &shapes, &extents);
+        constants.set_law(world, first, contact.partner);
+        Self {
+            pair,
+            constants,
+            bodies,
+            shapes,
+            vertices,
+            planes,
+            wall_motions: motions_of(&walls),
+            walls,
+            extents,
         }
-        meeting
     }
 
-    /// Puts the features of grain `i` after those that are there.
-    fn place(&mut self, i: usize) {
-        let Some(polyhedra) = &self.world.polyhedra else {
-            return;
-        };
-        let body = self.shapes.add(polyhedra.shape_of(i));
-        let (from, to) = (self.shapes.places[body], self.shapes.places[body + 1]);
-        self.vertices.resize(to.vertex as usize, [0.0; 4]);
-        self.planes.resize(to.face as usize, [0.0; 4]);
-        self.shapes.place::<<One as Lanes>::Quad>(
-            (),
-            body,
-            &Body::of(self.world, i, self.world.clock.time_step),
-            &mut self.vertices[from.vertex as usize..],
-            &mut self.planes[from.face as usize..],
-        );
+    /// What every force of `world` depends on, as it is for these two.
+    fn surroundings(&self, world: &World) -> Surroundings<'_> {
+        let springs = world.law.feature_springs();
+        Surroundings {
+            dt: world.clock.time_step,
+            rule: springs.map_or(FeatureRule::Full, |springs| springs.rule),
+            bodies: &self.bodies,
+            geometry: Geometry {
+                shapes: &self.shapes,
+                places: Places {
+                    vertices: &self.vertices,
+                    planes: &self.planes,
+                    corners: &self.shapes.loops,
+                },
+            },
+            walls: &self.walls,
+            wall_motions: &self.wall_motions,
+            extents: self.extents,
+        }
     }
 
-    /// Nearest points of two features.
-    fn nearest(&self, feature: Feature) -> Nearest {
-        if let (Partner::Wall(w), Feature::VertexFace(vertex, _)) = (self.partner, feature) {
-            let surface = &self.world.container.walls[w as usize].surface;
-            return super::pairs::to_wall(surface, self.vertices[usize::from(vertex)]);
-        }
-        let starts = [0, 1].map(|body| self.shapes.places[body]);
-        let listed = Listed::of(&self.shapes, [0, 1], feature);
-        let mut jobs = Jobs::default();
-        jobs.extend_sorted(&self.shapes, &starts, &[listed], 0);
-        let places = Places {
-            vertices: &self.vertices,
-            planes: &self.planes,
-            corners: &self.shapes.loops,
+    /// The terms of each of the `features`, and its dashpot where those are `IMPLICIT` [N s/m]: by
+    /// the stages of the pair loop, with these features active.
+    fn terms<const IMPLICIT: bool>(
+        &self,
+        world: &World,
+        features: &[FeatureContact],
+    ) -> Vec<(ForceTerms, f64)> {
+        let point = |contact: &FeatureContact| {
+            ContactPoint::known(contact, Listed::of(&self.shapes, contact.feature))
         };
-        let mut results = [Nearest::default()];
-        jobs.run::<One, false>((), &places, &mut results);
-        results[0]
-    }
-
-    fn terms(&self, contact: &FeatureContact, part: f64) -> ForceTerms {
-        let one = |x: f64| One::splat((), x);
-        let nearest = self.nearest(contact.feature);
-        let (normal, middle) = (vector(nearest.normal), vector(nearest.middle));
-        let point = middle + normal * (0.5 * (self.rounding[0] - self.rounding[1]));
-        let velocity = self.velocity + self.spin.cross(point - self.centre);
-        let approach = velocity.dot(normal);
-        let [stiffness, damping, _, friction] = self.law;
-        let elastic = stiffness * part * contact.overlap;
-        let damping = damping * part * approach;
-        let repulsion = (Hooke::default().normal_force(one(elastic), one(damping), one(0.0))).get();
-        let bounding =
-            (Hooke::default().coulomb_force(one(elastic), one(repulsion), one(0.0))).get();
-        let spring = -contact.spring * contact.stiffness;
-        let coulomb_bound = friction * bounding;
-        ForceTerms {
-            feature: Some(contact.feature),
-            normal,
-            point,
-            overlap: contact.overlap,
-            approach,
-            slip: velocity - normal * approach,
-            slides: spring.length() >= coulomb_bound * (1.0 - super::super::terms::AT_THE_BOUND),
-            coulomb_bound,
-            normal_spring: -normal * elastic,
-            normal_dashpot: -normal * (repulsion - elastic),
-            tangential_spring: spring,
-            ..ForceTerms::default()
-        }
+        let mut points: Vec<ContactPoint> = features.iter().map(point).collect();
+        let mut pair = self.pair.clone();
+        pair.points = PointRange::at(0, &points);
+        let mut block = Block {
+            pairs: std::slice::from_mut(&mut pair),
+            terms: &mut [self.constants],
+            points: &mut points,
+        };
+        let (all, mut workspace) = (self.surroundings(world), Workspace::default());
+        workspace.gather::<One>((), &all, &mut block);
+        workspace.measure::<One>((), &all, &block);
+        workspace.evaluate_overlaps(&all, &mut block);
+        let Some(active) = workspace.active.first() else {
+            return Vec::new();
+        };
+        let measured = workspace.results.iter().zip(features).zip(&*block.points);
+        let terms = measured.map(|((nearest, contact), point)| {
+            let law = [&self.constants.law; WIDEST];
+            let group = ContactGroup::<One>::gather(
+                (),
+                [active; WIDEST],
+                law,
+                [nearest; WIDEST],
+                [point; WIDEST],
+            );
+            terms_of::<IMPLICIT>(&group, contact, vector(active.centre))
+        });
+        terms.collect()
     }
 }
 
-/// Centroid [m], velocity [m/s] and spin [rad/s] of grain `i` as the pair loop saw them.
-fn motion(world: &World, i: usize) -> (DVec3, DVec3, DVec3) {
-    let grains = &world.grains;
-    let spin = world.polyhedra.as_ref().map_or(DVec3::ZERO, |polyhedra| {
-        let half = grains.torque[i] * (0.5 * world.clock.time_step);
-        let turn = polyhedra.orientation[i];
-        let momentum = polyhedra.angular_momentum[i] - half;
-        turn * ((turn.conjugate() * momentum) / polyhedra.inertia[i])
-    });
-    let velocity = velocity_half_a_step_ago(world, i);
-    (grains.position[i], velocity, spin)
+/// The terms of one contact, the first side's centroid being at `centre` [m], and its dashpot where
+/// that is `IMPLICIT` [N s/m]. What the tangential spring does is read where the loop left it.
+fn terms_of<const IMPLICIT: bool>(
+    group: &ContactGroup<One>,
+    contact: &FeatureContact,
+    centre: DVec3,
+) -> (ForceTerms, f64) {
+    let along = |v: [One; 3]| DVec3::from_array(v.map(One::get));
+    let pressed = group.normal_forces::<IMPLICIT>(One::splat((), 0.0));
+    let (elastic, repulsion) = (pressed.along.elastic.get(), pressed.repulsion.get());
+    let coulomb_bound = (group.friction() * pressed.along.bounding).get();
+    let (normal, spring) = (along(group.normal), -contact.spring * contact.stiffness);
+    let terms = ForceTerms {
+        feature: Some(contact.feature),
+        normal,
+        point: centre + along(group.arm),
+        overlap: group.depth.get(),
+        approach: pressed.approach.get(),
+        slip: along(pressed.slip),
+        slides: spring.length() >= coulomb_bound * (1.0 - AT_THE_BOUND),
+        coulomb_bound,
+        normal_spring: -normal * elastic,
+        normal_dashpot: -normal * (repulsion - elastic),
+        tangential_spring: spring,
+        ..ForceTerms::default()
+    };
+    (terms, pressed.dashpot.get())
 }
 
-fn rounding(world: &World, i: usize) -> f64 {
-    (world.polyhedra.as_ref()).map_or(0.0, |polyhedra| polyhedra.shape_of(i).rounding)
+/// Grain `i` as the pair loop saw it: where it is now, with the velocities of half a step ago.
+fn half_a_step_ago(world: &World, i: usize) -> Body {
+    let dt = world.clock.time_step;
+    let mut body = Body::of(world, i, dt);
+    body.kick(&Load::of(world, i), -0.5 * dt, row(world.gravity, 0.0));
+    body.update_spin();
+    body
 }

@@ -4,8 +4,8 @@ use super::super::row::Row;
 use super::super::walls::Walls;
 use super::bodies::{Body, Load, Shapes};
 use super::dashpots::Response;
-use super::motion::Extents;
-use super::neighbours::{PairList, Sides};
+use super::extents::Extents;
+use super::neighbours::{PairList, PairsOfBodies};
 use super::pairs::PairForce;
 use super::workspace::Workspace;
 use crate::physics::{ContactLaw, FeatureRule, Integrator, Materials};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The working copy of a world of polyhedra.
 #[derive(Default)]
-pub struct Polyhedra {
+pub struct PolyhedronKernel {
     /// What moves of every grain.
     pub(super) bodies: Vec<Body>,
     /// What acts on every grain.
@@ -41,7 +41,7 @@ pub struct Polyhedra {
     /// How each body responds to them.
     pub(super) responses: Vec<Response>,
     /// Which pairs are whose.
-    pub(super) sides: Sides,
+    pub(super) pairs_of: PairsOfBodies,
     /// Where the bodies were when the pairs were found.
     pub(super) reference: Vec<Row>,
     /// Where the walls were then.

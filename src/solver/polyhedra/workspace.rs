@@ -11,7 +11,7 @@ use super::motion::Surroundings;
 use super::nearest::{Jobs, Nearest};
 use super::pairs::{Block, ContactPoint, Pair, Terms, to_wall};
 use crate::lanes::{Lanes, prefetch};
-use crate::world::{Feature, Surface};
+use crate::world::{Feature, Partner, Surface};
 use std::ops::Range;
 
 /// Steps that an outer list is made to last at the pace at which its bodies move.
@@ -125,8 +125,8 @@ impl Workspace {
                 continue;
             }
             prefetch::<_, 16>(&block.points[pair.points.range()]);
-            if (pair.second as usize) < all.bodies.len() {
-                all.geometry.fetch(pair.second as usize);
+            if let Some(j) = pair.second.as_grain() {
+                all.geometry.fetch(j);
             }
             let [vx, vy, vz, _] = relative.velocity;
             let [wx, wy, wz, _] = relative.spin;
@@ -157,22 +157,26 @@ impl Workspace {
     ) {
         let [least, most] = [OUTER_SKIN.start(), OUTER_SKIN.end()].map(|skin| skin * terms.touch);
         let skin = (OUTER_LIFE * moved).clamp(least, most);
-        let slack = if let Some(wall) = all.wall(pair) {
-            let (first, reach) = (pair.first as usize, [terms.touch, skin]);
-            list_at_wall(all, &wall.surface, first, reach, &mut self.found)
-        } else {
-            let wanted = Wanted {
-                bodies: [pair.first as usize, pair.second as usize],
-                axis: terms.axis.map(f64::from),
-                reach: all.bodies[pair.first as usize].reach(),
-                touch: terms.touch,
-                skin,
-            };
-            let found = self
-                .search
-                .run::<N>(processor, &all.geometry, &wanted, &mut self.found);
-            terms.axis = found.axis.map(|x| x as f32);
-            found.slack
+        let first = pair.first as usize;
+        let slack = match pair.partner() {
+            Partner::Wall(w) => {
+                let (surface, reach) = (&all.walls[w as usize].surface, [terms.touch, skin]);
+                list_at_wall(all, surface, first, reach, &mut self.found)
+            }
+            Partner::Grain(j) => {
+                let wanted = Wanted {
+                    bodies: [first, j as usize],
+                    axis: terms.axis.map(f64::from),
+                    reach: all.bodies[first].reach(),
+                    touch: terms.touch,
+                    skin,
+                };
+                let found =
+                    self.search
+                        .run::<N>(processor, &all.geometry, &wanted, &mut self.found);
+                terms.axis = found.axis.map(|x| x as f32);
+                found.slack
+            }
         };
         pair.outer_slack = slack - f64::from(terms.margin);
         pair.outer = self.found.as_slice().into();
@@ -188,18 +192,22 @@ impl Workspace {
         pair: &Pair,
         [faces, edges]: [impl ExactSizeIterator<Item = Listed>; 2],
     ) {
-        let shapes = all.geometry.shapes;
-        if let Some(wall) = all.wall(pair) {
-            let vertices = all.geometry.vertices_of(pair.first as usize);
-            self.results.extend(faces.map(|listed| {
-                let Feature::VertexFace(vertex, _) = listed.feature else {
-                    return Nearest::default();
-                };
-                to_wall(&wall.surface, vertices[usize::from(vertex)])
-            }));
-            return;
-        }
-        let starts = [pair.first, pair.second].map(|body| shapes.places[body as usize]);
+        let (shapes, first) = (all.geometry.shapes, pair.first as usize);
+        let second = match pair.partner() {
+            Partner::Grain(j) => j as usize,
+            Partner::Wall(w) => {
+                let surface = &all.walls[w as usize].surface;
+                let vertices = all.geometry.vertices_of(first);
+                self.results.extend(faces.map(|listed| {
+                    let Feature::VertexFace(vertex, _) = listed.feature else {
+                        return Nearest::default();
+                    };
+                    to_wall(surface, vertices[usize::from(vertex)])
+                }));
+                return;
+            }
+        };
+        let starts = [first, second].map(|body| shapes.places[body]);
         let out = self.results.len();
         let end = out + faces.len() + edges.len();
         self.jobs

@@ -1,0 +1,220 @@
+//! The contact law between features of polyhedra, as many contacts at a time as there are lanes.
+//!
+//! In: pairs with their constants and relative motion, nearest points of features, what the
+//! contacts remember. Out: forces, torques, energies, tangential springs one step on.
+//!
+//! With the unit vector `n` from the first side to the second, the overlap `δ`, the speed of
+//! approach `v_n` and the slip `u`, a feature that has the part `p` of its pair's stiffness presses
+//! with `R = max(0, p (K_n δ + m_e γ_n v_n))` and drags with `−p K_t ξ`, capped at `μ p K_n δ` (Man
+//! et al. 2023, Eqs. 3.1–3.6): Hooke's law ([`Hooke`]) with the pair's constants times `p`. The
+//! force on the first side is `−p K_t ξ − R n`, its torque that about the centroid.
+//!
+//! Not here: which features are measured ([`super::workspace`]), sums over a pair's contacts
+//! ([`super::forces`]), dashpots that are taken implicitly ([`super::dashpots`]).
+
+use super::super::tangential::update;
+use super::nearest::Nearest;
+use super::pairs::ContactPoint;
+use super::workspace::ActivePair;
+use crate::lanes::{Lanes, Rows, WIDEST, cross, dot, minus, plus, side_by_side, times};
+use crate::physics::law::{Hooke, NormalContact, normal_contact};
+
+/// As many contacts as there are lanes, side by side.
+pub struct ContactGroup<N> {
+    /// Unit vectors from the first sides to the second.
+    pub normal: [N; 3],
+    /// Overlaps, negative at a gap [m].
+    pub depth: N,
+    /// Arms from the centroids of the first sides to the contacts [m].
+    pub arm: [N; 3],
+    /// Velocities of the first sides relative to the second at the first's centroids [m/s].
+    velocity: [N; 3],
+    /// Relative spins [rad/s].
+    spin: [N; 3],
+    /// Parts of the pairs' stiffness that the contacts have, now and a step ago.
+    parts: [N; 2],
+    /// `K_n`, the normal dashpot, `K_t`, μ.
+    law: [N; 4],
+    /// Overlaps [m] and pushes of the dashpots [N] a step ago.
+    before: [N; 2],
+}
+
+/// How contacts side by side press each other before anything drags them.
+pub struct NormalForces<N: Lanes> {
+    /// Where features overlap.
+    pub touching: N::Mask,
+    /// Overlaps, none at a gap [m].
+    pub overlap: N,
+    /// Speeds of approach along the normal [m/s].
+    pub approach: N,
+    /// Velocities of the firsts' surfaces over the seconds' [m/s].
+    pub slip: [N; 3],
+    /// What the law makes of them.
+    pub along: NormalContact<N>,
+    /// Repulsion, but for dashpots that are taken implicitly [N].
+    pub repulsion: N,
+    /// Those dashpots, none where the contact has let go [N s/m].
+    pub dashpot: N,
+}
+
+/// What contacts do: rows, of which the first [`Lanes::COUNT`] count.
+pub struct ContactForces<N: Lanes> {
+    /// Force on the first [N]; overlap [m].
+    pub forces: [N::Quad; WIDEST],
+    /// Its torque [N m]; push of the dashpot [N].
+    pub moments: [N::Quad; WIDEST],
+    /// Energy lost in the dashpot, by the tangential spring, put into the normal spring [J].
+    pub energies: [N::Quad; WIDEST],
+    /// Tangential springs [m] and their stiffness [N/m].
+    pub springs: [N::Quad; WIDEST],
+    /// Where dashpots are taken implicitly: normals and dashpots [N s/m], arms across the normals
+    /// [m].
+    pub dashpots: [[N::Quad; WIDEST]; 2],
+}
+
+impl<N: Lanes> ContactGroup<N> {
+    /// Contacts of these pairs, with their laws' constants, nearest points and memories.
+    #[inline(always)]
+    pub fn gather(
+        processor: N::Processor,
+        pair: [&ActivePair; WIDEST],
+        law: Rows<'_>,
+        nearest: [&Nearest; WIDEST],
+        point: [&ContactPoint; WIDEST],
+    ) -> Self {
+        let before = side_by_side::<N, _>(|k| [point[k].overlap, point[k].dashpot, 0.0, 0.0]);
+        let [nx, ny, nz, _] = N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].normal));
+        let normal = [nx, ny, nz];
+        let [mx, my, mz, depth] =
+            N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].middle));
+        let [cx, cy, cz, offset] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].centre));
+        let [vx, vy, vz, part] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].velocity));
+        let [wx, wy, wz, part_before] =
+            N::gather(processor, side_by_side::<N, _>(|k| &pair[k].spin));
+        let law = N::gather(processor, law);
+        let [overlap, dashpot, ..] = N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
+        Self {
+            normal,
+            depth,
+            arm: plus(minus([mx, my, mz], [cx, cy, cz]), times(normal, offset)),
+            velocity: [vx, vy, vz],
+            spin: [wx, wy, wz],
+            parts: [part, part_before],
+            law,
+            before: [overlap, dashpot],
+        }
+    }
+
+    /// What they do along the normal: Hooke's spring and a dashpot, together never pulling. Where
+    /// dashpots are `IMPLICIT` the spring alone presses, and a contact that would pull lets go of
+    /// both.
+    #[inline(always)]
+    pub fn normal_forces<const IMPLICIT: bool>(&self, zero: N) -> NormalForces<N> {
+        let ([part, _], [stiffness, damping, tangential_stiffness, _]) = (self.parts, self.law);
+        let touching = self.depth.exceeds(zero);
+        let overlap = N::choose(touching, self.depth, zero);
+        let velocity = plus(self.velocity, cross(self.spin, self.arm));
+        let approach = dot(velocity, self.normal);
+        let constants = [
+            stiffness * part,
+            damping * part,
+            tangential_stiffness * part,
+            zero,
+        ];
+        let met = (touching, overlap);
+        let along = normal_contact(Hooke::default(), constants, met, approach, zero);
+        let (repulsion, dashpot) = if IMPLICIT {
+            let holds = along.repulsion.exceeds(zero);
+            (
+                N::choose(holds, along.elastic, zero),
+                N::choose(holds, along.coefficients.normal_damping, zero),
+            )
+        } else {
+            (along.repulsion, zero)
+        };
+        NormalForces {
+            touching,
+            overlap,
+            approach,
+            slip: minus(velocity, times(self.normal, approach)),
+            along,
+            repulsion,
+            dashpot,
+        }
+    }
+
+    /// Coefficients of friction.
+    #[inline(always)]
+    pub fn friction(&self) -> N {
+        self.law[3]
+    }
+
+    /// Their forces, with the tangential `springs` of a step ago.
+    #[inline(always)]
+    pub fn forces<const IMPLICIT: bool>(
+        &self,
+        processor: N::Processor,
+        dt: f64,
+        springs: Rows<'_>,
+    ) -> ContactForces<N> {
+        let zero = N::splat(processor, 0.0);
+        let pressed = self.normal_forces::<IMPLICIT>(zero);
+        let (normal, arm, touching) = (self.normal, self.arm, pressed.touching);
+        let tangential_stiffness = pressed.along.coefficients.tangential_stiffness;
+        let stiffness = N::choose(touching, tangential_stiffness, zero);
+        let updated = update::<N>(
+            processor,
+            springs,
+            times(pressed.slip, N::splat(processor, dt)),
+            normal,
+            touching,
+            stiffness,
+            self.friction() * pressed.along.bounding,
+        );
+        let pull = times(updated.spring, -stiffness);
+        let force = minus(pull, times(normal, pressed.repulsion));
+        let moment = cross(arm, force);
+        let dashpot = pressed.repulsion - pressed.along.elastic;
+        let [in_dashpot, stored] = self.normal_energies::<IMPLICIT>(processor, dt, &pressed);
+        ContactForces {
+            forces: N::rows([force[0], force[1], force[2], pressed.overlap]),
+            moments: N::rows([moment[0], moment[1], moment[2], dashpot]),
+            energies: N::rows([in_dashpot, updated.lost, stored, zero]),
+            springs: updated.rows,
+            dashpots: if IMPLICIT {
+                let [tx, ty, tz] = cross(arm, normal);
+                [
+                    N::rows([normal[0], normal[1], normal[2], pressed.dashpot]),
+                    N::rows([tx, ty, tz, zero]),
+                ]
+            } else {
+                [updated.rows; 2]
+            },
+        }
+    }
+
+    /// Energy that the step cost along the normal: lost in the dashpot, and put into the spring, by
+    /// the mean of what each did before and does now [J].
+    #[inline(always)]
+    fn normal_energies<const IMPLICIT: bool>(
+        &self,
+        processor: N::Processor,
+        dt: f64,
+        pressed: &NormalForces<N>,
+    ) -> [N; 2] {
+        let (half, half_step) = (N::splat(processor, 0.5), N::splat(processor, 0.5 * dt));
+        let ([_, part_before], [overlap_before, dashpot_before]) = (self.parts, self.before);
+        let (elastic, approach) = (pressed.along.elastic, pressed.approach);
+        let dashpot = pressed.repulsion - elastic;
+        let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
+        let elastic_before = self.law[0] * part_before * overlap_before;
+        let springs = elastic_before + elastic;
+        let stored = half * (springs * (pressed.overlap - overlap_before));
+        if IMPLICIT {
+            // Where a contact begins or ends within a step, the spring takes more than it stores.
+            let taken = half_step * (springs * approach);
+            return [in_dashpot + (taken - stored), stored];
+        }
+        [in_dashpot, stored]
+    }
+}
