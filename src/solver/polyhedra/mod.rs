@@ -16,6 +16,8 @@
 //! | `motion` | how two bodies move relative to each other, and how far at most |
 //! | `extents` | sizes of bodies and walls that bound distances and motions |
 //! | `listing` | which features of a pair may touch before long |
+//! | `listed` | two such features, and what is to be computed of them |
+//! | `separating_axis` | the direction that separates two bodies best |
 //! | `nearest` | nearest points of two features |
 //! | `workspace` | which features are measured in a step, and their measurement |
 //! | `contact_group` | the contact law between features, lane by lane |
@@ -35,11 +37,13 @@ mod damping;
 mod dashpots;
 mod extents;
 mod forces;
+mod listed;
 mod listing;
 mod motion;
 mod nearest;
 mod neighbours;
 mod pairs;
+mod separating_axis;
 mod share;
 mod terms;
 mod working_copy;

@@ -8,7 +8,7 @@ use super::super::grid::for_each_near;
 use super::super::row::{row, vector};
 use super::super::walls::Walls;
 use super::bodies::Body;
-use super::listing::Listed;
+use super::listed::Listed;
 use super::pairs::{BLOCK, ContactPoint, PackedPartner, Pair, PointRange, Terms};
 use crate::world::FeatureContact;
 use std::ops::Range;

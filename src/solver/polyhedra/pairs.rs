@@ -20,7 +20,7 @@ use super::super::row::{Row, row, vector};
 use super::super::tangential::UNLOADED;
 use super::bodies::{Body, Shapes};
 use super::extents::Extents;
-use super::listing::Listed;
+use super::listed::Listed;
 use super::nearest::Nearest;
 use crate::physics::law::PairConstants;
 use crate::world::{FeatureContact, Partner, Surface, World};

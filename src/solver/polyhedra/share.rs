@@ -74,15 +74,64 @@ struct Common<'a> {
     extents: Extents,
 }
 
+/// Which part of each column is whose, worker by worker.
+struct Division {
+    /// Whole blocks of pairs.
+    blocks: Vec<Range<usize>>,
+    /// The pairs in them.
+    pairs: Vec<Range<usize>>,
+    /// Bodies, in equal numbers.
+    bodies: Vec<Range<usize>>,
+    /// Their vertices.
+    vertices: Vec<Range<usize>>,
+    /// Their faces.
+    planes: Vec<Range<usize>>,
+}
+
+impl Division {
+    /// That of `world` among `size` workers.
+    fn of(world: &PolyhedronKernel, size: usize) -> Self {
+        let (count, pair_count) = (world.bodies.len(), world.pairs.list.len());
+        let blocks = world.pairs.shares(size);
+        let first_of = |block: usize| (block * BLOCK).min(pair_count);
+        let pairs = blocks
+            .iter()
+            .map(|own| first_of(own.start)..first_of(own.end));
+        let pairs = pairs.collect();
+        let bodies: Vec<_> = (0..size)
+            .map(|worker| range_of(count, worker, size))
+            .collect();
+        let features = |first: fn(&Place) -> u32| {
+            let place = |i: usize| first(&world.shapes.places[i]) as usize;
+            let own = bodies.iter().map(|own| place(own.start)..place(own.end));
+            own.collect()
+        };
+        Self {
+            vertices: features(|place| place.vertex),
+            planes: features(|place| place.face),
+            blocks,
+            pairs,
+            bodies,
+        }
+    }
+}
+
 impl<'a> PolyhedraShare<'a> {
     /// The shares of a batch's workers: whole blocks of pairs, and bodies in equal numbers with
     /// their vertices and faces.
     pub fn all(world: &'a mut PolyhedronKernel, batch: &'a Batch) -> Vec<Self> {
-        let (size, count) = (batch.size(), world.bodies.len());
-        let (slack, pair_count) = (world.slack(), world.pairs.list.len());
-        let needed = size.max(world.workspaces.len());
+        let needed = batch.size().max(world.workspaces.len());
         world.workspaces.resize_with(needed, Workspace::default);
-        world.responses.resize(count, Response::default());
+        world
+            .responses
+            .resize(world.bodies.len(), Response::default());
+        let division = Division::of(world, batch.size());
+        let wall_motions = motions_of(&world.walls);
+        let unmoved = |motion: &[Row; 3]| (*motion, Response::of_wall(motion));
+        let wall_responses: Vec<_> = wall_motions.iter().map(unmoved).collect();
+        let each = |ranges: &[Range<usize>]| ranges.to_vec().into_iter();
+
+        let slack = world.slack();
         let common = Common {
             shapes: &world.shapes,
             pairs_of: &world.pairs_of,
@@ -94,37 +143,19 @@ impl<'a> PolyhedraShare<'a> {
             rule: world.rule,
             extents: world.extents,
         };
-        let blocks = world.pairs.shares(size);
-        let first_of = |block: usize| (block * BLOCK).min(pair_count);
-        let own_pairs = || {
-            blocks
-                .iter()
-                .map(|own| first_of(own.start)..first_of(own.end))
-        };
-        let own_bodies = || (0..size).map(|worker| range_of(count, worker, size));
-        let features_of = |own: Range<usize>, first: fn(&Place) -> u32| {
-            let [from, to] = [own.start, own.end].map(|i| &common.shapes.places[i]);
-            first(from) as usize..first(to) as usize
-        };
-        let own_vertices = own_bodies().map(|own| features_of(own, |place| place.vertex));
-        let own_planes = own_bodies().map(|own| features_of(own, |place| place.face));
-
-        let mut bodies = batch.lend_ranges(&mut world.bodies, own_bodies());
-        let mut vertices = batch.lend_ranges(&mut world.vertices, own_vertices);
-        let mut planes = batch.lend_ranges(&mut world.planes, own_planes);
-        let mut forces = batch.lend_ranges(&mut world.forces, own_pairs());
-        let mut acting = batch.lend_ranges(&mut world.acting, own_pairs());
-        let mut resistances = batch.lend_ranges(&mut world.resistances, own_pairs());
-        let mut resisting = batch.lend_ranges(&mut world.resisting, own_pairs());
-        let mut responses = batch.lend_ranges(&mut world.responses, own_bodies());
-        let mut loads = split_once(&mut world.loads, own_bodies());
-        let mut pairs = split_once(&mut world.pairs.list, own_pairs());
-        let mut terms = split_once(&mut world.pairs.terms, own_pairs());
-        let mut points = split_once(&mut world.pairs.points, blocks.iter().cloned());
+        let mut bodies = batch.lend_ranges(&mut world.bodies, each(&division.bodies));
+        let mut vertices = batch.lend_ranges(&mut world.vertices, each(&division.vertices));
+        let mut planes = batch.lend_ranges(&mut world.planes, each(&division.planes));
+        let mut forces = batch.lend_ranges(&mut world.forces, each(&division.pairs));
+        let mut acting = batch.lend_ranges(&mut world.acting, each(&division.pairs));
+        let mut resistances = batch.lend_ranges(&mut world.resistances, each(&division.pairs));
+        let mut resisting = batch.lend_ranges(&mut world.resisting, each(&division.pairs));
+        let mut responses = batch.lend_ranges(&mut world.responses, each(&division.bodies));
+        let mut loads = split_once(&mut world.loads, each(&division.bodies));
+        let mut pairs = split_once(&mut world.pairs.list, each(&division.pairs));
+        let mut terms = split_once(&mut world.pairs.terms, each(&division.pairs));
+        let mut points = split_once(&mut world.pairs.points, each(&division.blocks));
         let mut workspaces = world.workspaces.iter_mut();
-        let wall_motions = motions_of(&world.walls);
-        let unmoved = |motion: &[Row; 3]| (*motion, Response::of_wall(motion));
-        let wall_responses: Vec<_> = wall_motions.iter().map(unmoved).collect();
         let share = |own: Range<usize>| {
             Some(Self {
                 common,
@@ -146,7 +177,7 @@ impl<'a> PolyhedraShare<'a> {
                 wall_responses: wall_responses.clone(),
             })
         };
-        own_bodies().filter_map(share).collect()
+        each(&division.bodies).filter_map(share).collect()
     }
 }
 

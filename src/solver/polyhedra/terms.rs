@@ -15,7 +15,7 @@ use super::super::walls::Walls;
 use super::bodies::{Body, Geometry, Load, Placing, Shapes};
 use super::contact_group::ContactGroup;
 use super::extents::Extents;
-use super::listing::Listed;
+use super::listed::Listed;
 use super::motion::{Surroundings, motions_of};
 use super::nearest::Places;
 use super::pairs::{Block, ContactPoint, PackedPartner, Pair, PointRange, Terms};

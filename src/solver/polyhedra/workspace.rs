@@ -6,7 +6,8 @@
 
 use super::super::row::{Row, vector};
 use super::dashpots::{Damper, Dashpot};
-use super::listing::{Listed, Search, Wanted, choose};
+use super::listed::Listed;
+use super::listing::{Search, Wanted, choose};
 use super::motion::Surroundings;
 use super::nearest::{Jobs, Nearest};
 use super::pairs::{Block, ContactPoint, Pair, Terms, to_wall};
