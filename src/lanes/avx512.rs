@@ -84,12 +84,12 @@ impl Neg for Eight {
 }
 
 /// Rows of the first and of the last four numbers.
-type Half = Four<Avx512>;
+type FourNumbers = Four<Avx512>;
 
 impl Eight {
     /// Columns of eight from columns of the first four and of the last four.
     #[inline(always)]
-    fn join(first: [Half; 4], last: [Half; 4]) -> [Self; 4] {
+    fn join(first: [FourNumbers; 4], last: [FourNumbers; 4]) -> [Self; 4] {
         [
             Self::of_halves(first[0], last[0]),
             Self::of_halves(first[1], last[1]),
@@ -99,7 +99,7 @@ impl Eight {
     }
 
     #[inline(always)]
-    fn of_halves(first: Half, last: Half) -> Self {
+    fn of_halves(first: FourNumbers, last: FourNumbers) -> Self {
         // SAFETY: AVX-512 is there, as `first.0` proves.
         Self(first.0, unsafe {
             _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(first.1), last.1)
@@ -107,7 +107,7 @@ impl Eight {
     }
 
     #[inline(always)]
-    fn halves(self) -> [Half; 2] {
+    fn halves(self) -> [FourNumbers; 2] {
         // SAFETY: AVX-512 is there, as `self.0` proves.
         unsafe {
             [
@@ -122,7 +122,7 @@ impl Lanes for Eight {
     const COUNT: usize = 8;
     type Processor = Avx512;
     type Mask = __mmask8;
-    type Quad = Half;
+    type Quad = FourNumbers;
 
     #[inline(always)]
     fn splat(proof: Avx512, x: f64) -> Self {
@@ -147,24 +147,24 @@ impl Lanes for Eight {
     #[inline(always)]
     fn gather(proof: Avx512, rows: Rows) -> [Self; 4] {
         Self::join(
-            Half::gather_four(proof, rows, 0),
-            Half::gather_four(proof, rows, 4),
+            FourNumbers::gather_four(proof, rows, 0),
+            FourNumbers::gather_four(proof, rows, 4),
         )
     }
 
     #[inline(always)]
     fn gather_difference(proof: Avx512, a: Rows, b: Rows) -> [Self; 4] {
         Self::join(
-            Half::gather_four_differences(proof, a, b, 0),
-            Half::gather_four_differences(proof, a, b, 4),
+            FourNumbers::gather_four_differences(proof, a, b, 0),
+            FourNumbers::gather_four_differences(proof, a, b, 4),
         )
     }
 
     #[inline(always)]
     fn gather_difference_and_sum(proof: Avx512, a: Rows, b: Rows) -> [Self; 4] {
         Self::join(
-            Half::gather_four_differences_and_sums(proof, a, b, 0),
-            Half::gather_four_differences_and_sums(proof, a, b, 4),
+            FourNumbers::gather_four_differences_and_sums(proof, a, b, 0),
+            FourNumbers::gather_four_differences_and_sums(proof, a, b, 4),
         )
     }
 
@@ -179,15 +179,15 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
-    fn rows(columns: [Self; 4]) -> [Half; WIDEST] {
+    fn rows(columns: [Self; 4]) -> [FourNumbers; WIDEST] {
         let [a, b, c, d] = [
             columns[0].halves(),
             columns[1].halves(),
             columns[2].halves(),
             columns[3].halves(),
         ];
-        let [r0, r1, r2, r3] = Half::transpose([a[0], b[0], c[0], d[0]]);
-        let [r4, r5, r6, r7] = Half::transpose([a[1], b[1], c[1], d[1]]);
+        let [r0, r1, r2, r3] = FourNumbers::transpose([a[0], b[0], c[0], d[0]]);
+        let [r4, r5, r6, r7] = FourNumbers::transpose([a[1], b[1], c[1], d[1]]);
         [r0, r1, r2, r3, r4, r5, r6, r7]
     }
 

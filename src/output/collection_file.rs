@@ -15,7 +15,7 @@ const TAIL: &str = "  </Collection>\n</VTKFile>\n";
 
 /// A file of grains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Frame {
+pub struct CollectedFile {
     /// Simulated time of the state in it [s].
     pub time: f64,
     /// Its name, relative to the folder.
@@ -24,7 +24,7 @@ pub struct Frame {
     pub digest: String,
 }
 
-impl Frame {
+impl CollectedFile {
     fn entry(&self) -> String {
         let Self { time, name, .. } = self;
         format!("    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{name}\"/>\n")
@@ -41,7 +41,7 @@ impl CollectionFile {
     /// When it cannot be written.
     pub fn begin(
         folder: &OutputFolder,
-        frames: &[Frame],
+        frames: &[CollectedFile],
         from: &Provenance,
     ) -> Result<Self, OutputError> {
         let head = from.in_xml(&opening(frames));
@@ -53,7 +53,7 @@ impl CollectionFile {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn add(&mut self, folder: &OutputFolder, frame: &Frame) -> Result<(), OutputError> {
+    pub fn add(&mut self, folder: &OutputFolder, frame: &CollectedFile) -> Result<(), OutputError> {
         let added = self.0.add(frame.entry().as_bytes());
         folder.named(COLLECTION, added)
     }
@@ -73,7 +73,7 @@ impl CollectionFile {
 /// When it cannot be written.
 pub fn write_collection(
     folder: &OutputFolder,
-    frames: &[Frame],
+    frames: &[CollectedFile],
     from: &Provenance,
 ) -> Result<String, OutputError> {
     let text = from.in_xml(&(opening(frames) + TAIL));
@@ -81,7 +81,7 @@ pub fn write_collection(
 }
 
 /// All but the end of the list of `frames`.
-fn opening(frames: &[Frame]) -> String {
-    let entries: String = frames.iter().map(Frame::entry).collect();
+fn opening(frames: &[CollectedFile]) -> String {
+    let entries: String = frames.iter().map(CollectedFile::entry).collect();
     format!("{HEAD}{entries}")
 }

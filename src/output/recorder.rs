@@ -5,7 +5,7 @@
 //! of the grains' files grow with the run, and are made durable with them at an output, at most once
 //! a second. Bytes written grow like what there is to say: nothing but the summary is written twice.
 
-use super::collection_file::{COLLECTION, CollectionFile, Frame, write_collection};
+use super::collection_file::{COLLECTION, CollectedFile, CollectionFile, write_collection};
 use super::folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY};
 use super::grains_file::{extension, write_grains};
 use super::profile_files::{FLOW, PROFILE, write_flow, write_profile};
@@ -58,7 +58,7 @@ pub struct Subject {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Written {
     /// The grains' files.
-    frames: Vec<Frame>,
+    frames: Vec<CollectedFile>,
     /// Outputs that are done or past.
     outputs: u64,
     /// Wall-clock time that it took [s].
@@ -281,7 +281,7 @@ impl Recorder {
             .folder
             .write_unsynced(&name, |file| write_grains(world, &from, file))?;
         self.unsynced.push(name.clone());
-        let frame = Frame {
+        let frame = CollectedFile {
             time: world.time(),
             name,
             digest,

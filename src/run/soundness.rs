@@ -25,9 +25,7 @@ const MOST_STEPS: u64 = 1 << 53;
 /// Longest time of a run, beyond what scenes may ask for because a window goes on [s].
 const LONGEST: f64 = 2e6;
 
-type Checked = Result<(), String>;
-
-fn require(is_so: bool, what: &str) -> Checked {
+fn require(is_so: bool, what: &str) -> Result<(), String> {
     if is_so { Ok(()) } else { Err(what.to_owned()) }
 }
 
@@ -89,7 +87,7 @@ impl Archive {
         require(entries.all(leads_somewhere), "a change in it leads nowhere")
     }
 
-    fn check_state(&self, state: &ArchivedState) -> Checked {
+    fn check_state(&self, state: &ArchivedState) -> Result<(), String> {
         let shared = state.snapshot.clone().sharing(Some(&self.bed));
         shared.world().check().map_err(|error| error.to_string())?;
         require(
@@ -113,7 +111,7 @@ fn is_moment(moment: Moment) -> bool {
 }
 
 /// Whether `world` is a state of a run of `scene`, as far as that can be told without making one.
-fn is_of_scene(world: &World, scene: &Scene) -> Checked {
+fn is_of_scene(world: &World, scene: &Scene) -> Result<(), String> {
     let materials = world.materials.list().iter().map(|material| &material.name);
     let species = world.species.iter().map(|species| species.name.as_str());
     let stated = scene.species();
@@ -138,7 +136,7 @@ fn are_alike(world: &World, bed: &World) -> bool {
         && world.liquid.is_some() == bed.liquid.is_some()
 }
 
-fn check_branch(branch: &Branch, parameters: &[ParameterInfo], bed: &World) -> Checked {
+fn check_branch(branch: &Branch, parameters: &[ParameterInfo], bed: &World) -> Result<(), String> {
     require(
         is_moment(branch.end) && branch.number <= MOST_BEGUN,
         "a branch in it ends nowhere",
@@ -152,7 +150,7 @@ fn check_branch(branch: &Branch, parameters: &[ParameterInfo], bed: &World) -> C
     (planned.map(drop)).map_err(|error| format!("a planned change in it: {error}"))
 }
 
-fn check_measured(series: &Series, flow: &FlowHistory) -> Checked {
+fn check_measured(series: &Series, flow: &FlowHistory) -> Result<(), String> {
     require(
         series.is_whole() && flow.is_whole(),
         "its samples do not fit together",
@@ -164,7 +162,7 @@ fn check_commands<'a>(
     commands: impl Iterator<Item = (u64, f64, &'a Command)>,
     parameters: &[ParameterInfo],
     world: &World,
-) -> Checked {
+) -> Result<(), String> {
     let mut last = (0, 0.0);
     for (step, time, command) in commands {
         require(

@@ -19,8 +19,8 @@ pub fn apply_settings<S: AsRef<str>>(
     let mut of_scene = Vec::new();
     for setting in settings.iter().map(AsRef::as_ref) {
         match read_setting(setting)? {
-            Setting::Scene(key, text) => of_scene.push((key, text)),
-            Setting::Live(command) => script.push(command),
+            SettingTarget::Scene(key, text) => of_scene.push((key, text)),
+            SettingTarget::Live(command) => script.push(command),
         }
     }
     scene.set_all(&of_scene)?;
@@ -28,21 +28,21 @@ pub fn apply_settings<S: AsRef<str>>(
 }
 
 /// What one `--set` changes.
-enum Setting<'a> {
+enum SettingTarget<'a> {
     /// A key of the scene, to which the text is given.
     Scene(&'a str, &'a str),
     /// A live parameter.
     Live(ScriptedCommand),
 }
 
-fn read_setting(setting: &str) -> Result<Setting<'_>, RunnerError> {
+fn read_setting(setting: &str) -> Result<SettingTarget<'_>, RunnerError> {
     let refuse = |reason: String| RunnerError::Input(format!("--set {setting}: {reason}"));
     let Some((key, text)) = setting.split_once('=') else {
         return Err(refuse("expected KEY=VALUE, such as drum-speed=1rpm".into()));
     };
     let mut known = Parameter::of_key(key).into_iter();
     if known.any(|parameter| parameter.row().in_scene.is_some()) {
-        return Ok(Setting::Scene(key, text));
+        return Ok(SettingTarget::Scene(key, text));
     }
     let (parameter, value) = parameter_value(key, text).map_err(|reason| match reason {
         SettingMistake::Key(reason) => {
@@ -51,7 +51,7 @@ fn read_setting(setting: &str) -> Result<Setting<'_>, RunnerError> {
         }
         SettingMistake::Value(reason) => refuse(reason),
     })?;
-    Ok(Setting::Live(ScriptedCommand {
+    Ok(SettingTarget::Live(ScriptedCommand {
         step: Some(0),
         time: None,
         command: Command::Set { parameter, value },

@@ -126,7 +126,7 @@ enum Token {
 }
 
 /// What is open at some depth of the scan.
-struct Frame {
+struct OpenLevel {
     path: String,
     /// The entry whose value is being read.
     current: Option<usize>,
@@ -140,7 +140,7 @@ struct Scan<'a> {
     text: &'a str,
     at: usize,
     entries: Vec<OutlineEntry>,
-    frames: Vec<Frame>,
+    frames: Vec<OpenLevel>,
 }
 
 impl<'a> Scan<'a> {
@@ -236,7 +236,7 @@ impl<'a> Scan<'a> {
                 .current
                 .map_or_else(|| frame.path.clone(), |i| self.entries[i].path.clone())
         });
-        self.frames.push(Frame {
+        self.frames.push(OpenLevel {
             path,
             current: None,
             element: 0,

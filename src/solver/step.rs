@@ -221,7 +221,7 @@ impl Resources<'_> {
 
     /// Takes up to `remaining` steps on the lists as they are; the workers stay in step from
     /// beginning to end.
-    fn take_batch(&mut self, kernel: &mut impl Kernel, remaining: u64) -> Report {
+    fn take_batch(&mut self, kernel: &mut impl Kernel, remaining: u64) -> BatchReport {
         let dt = kernel.time_step();
         let course = Course {
             processor: self.processor,
@@ -236,7 +236,7 @@ impl Resources<'_> {
         let reports = self
             .pool
             .run(&batch, shares, |share, phase| course.follow(share, phase));
-        let mut whole = Report::default();
+        let mut whole = BatchReport::default();
         for (worker, report) in reports.iter().enumerate() {
             if worker == 0 {
                 (whole.steps, whole.times) = (report.steps, report.times);
@@ -253,7 +253,7 @@ impl Resources<'_> {
 
 /// What a batch of steps came to, for one worker or for all.
 #[derive(Default)]
-struct Report {
+struct BatchReport {
     steps: u64,
     fault: bool,
     tally: Tally,
@@ -261,7 +261,7 @@ struct Report {
     times: [Duration; 2],
 }
 
-impl Report {
+impl BatchReport {
     /// Books the times, scaled up to all steps, and what was counted.
     fn book(&self, profile: &mut Profile) {
         let scale = STEPS_PER_TIMING.min(self.steps.max(1)) as u32;
@@ -296,8 +296,12 @@ struct BatchRequests {
 
 impl Course {
     /// One worker's way through the batch.
-    fn follow<'a>(&self, mut share: impl Share, mut forces: InPhase<'a, ForcePhase>) -> Report {
-        let mut report = Report::default();
+    fn follow<'a>(
+        &self,
+        mut share: impl Share,
+        mut forces: InPhase<'a, ForcePhase>,
+    ) -> BatchReport {
+        let mut report = BatchReport::default();
         // A copy of its own, which moves as all others do.
         let mut walls = self.walls.clone();
         while report.steps < self.limit && !self.is_over() {

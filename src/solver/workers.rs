@@ -49,12 +49,12 @@ pub struct WorkerPool {
 }
 
 /// Work for the workers, by number.
-type Job = dyn Fn(usize) + Sync;
+type RoundWork = dyn Fn(usize) + Sync;
 
 /// Where the workers find their work.
 struct Board {
     /// What to do in the present round; valid until every thread has finished that round.
-    job: UnsafeCell<Option<NonNull<Job>>>,
+    job: UnsafeCell<Option<NonNull<RoundWork>>>,
     /// How many pieces of work there have been.
     round: OwnLine<AtomicUsize>,
     /// The last round that each thread has finished.
@@ -146,8 +146,9 @@ impl WorkerPool {
         let job: NonNull<dyn Fn(usize) + Sync + 'a> = NonNull::from(&work);
         // SAFETY: only the lifetime changes; `work` goes out of scope after every thread has
         // finished the round.
-        let job =
-            unsafe { std::mem::transmute::<NonNull<dyn Fn(usize) + Sync + 'a>, NonNull<Job>>(job) };
+        let job = unsafe {
+            std::mem::transmute::<NonNull<dyn Fn(usize) + Sync + 'a>, NonNull<RoundWork>>(job)
+        };
         // SAFETY: no round is under way: `self` is borrowed mutably, and the last call waited for
         // its own.
         unsafe { *self.board.job.get() = Some(job) };

@@ -25,33 +25,31 @@ const MOST_FEATURES: usize = 1 << 12;
 #[error("the state in it is none that a run comes to: {0}")]
 pub struct Unsound(String);
 
-type Checked = Result<(), Unsound>;
-
 /// Refuses where something is not as it has to be; `what` says it of the state.
-fn require(is_so: bool, what: impl FnOnce() -> String) -> Checked {
+fn require(is_so: bool, what: impl FnOnce() -> String) -> Result<(), Unsound> {
     if is_so { Ok(()) } else { Err(Unsound(what())) }
 }
 
-fn number(value: f64, name: impl FnOnce() -> String) -> Checked {
+fn number(value: f64, name: impl FnOnce() -> String) -> Result<(), Unsound> {
     require(value.abs() <= LARGEST, || {
         format!("{} is {value:?}", name())
     })
 }
 
-fn vector(value: DVec3, most: f64, name: impl FnOnce() -> String) -> Checked {
+fn vector(value: DVec3, most: f64, name: impl FnOnce() -> String) -> Result<(), Unsound> {
     let [x, y, z] = value.to_array();
     let is_so = [x, y, z].iter().all(|x| x.abs() <= most);
     require(is_so, || format!("{} is ({x:?}, {y:?}, {z:?})", name()))
 }
 
-fn within(limits: &Limits, value: f64, name: impl FnOnce() -> String) -> Checked {
+fn within(limits: &Limits, value: f64, name: impl FnOnce() -> String) -> Result<(), Unsound> {
     require(limits.accept(value), || {
         format!("{} is {value:?}; expected {}", name(), limits.expected)
     })
 }
 
 /// A size that is divided by.
-fn positive(value: f64, name: impl FnOnce() -> String) -> Checked {
+fn positive(value: f64, name: impl FnOnce() -> String) -> Result<(), Unsound> {
     require(value > 0.0 && value <= LARGEST, || {
         format!("{} is {value:?}; expected a number above 0", name())
     })
@@ -91,7 +89,7 @@ impl World {
         self.ledger.check()
     }
 
-    fn check_species(&self) -> Checked {
+    fn check_species(&self) -> Result<(), Unsound> {
         let materials = self.materials.list().len();
         require(!self.species.is_empty(), || "it has no species".to_owned())?;
         self.species.iter().try_for_each(|species| {
@@ -101,7 +99,7 @@ impl World {
         })
     }
 
-    fn check_contacts(&self) -> Checked {
+    fn check_contacts(&self) -> Result<(), Unsound> {
         let (grains, walls) = (self.grains.len(), self.container.walls.len());
         let order = |contact: &Contact| (contact.grain, contact.partner);
         for (index, contact) in self.contacts.iter().enumerate() {
@@ -139,7 +137,7 @@ fn is_between(
     grains: usize,
     walls: usize,
     name: impl FnOnce() -> String,
-) -> Checked {
+) -> Result<(), Unsound> {
     let exists = match partner {
         Partner::Grain(other) => grain < other && (other as usize) < grains,
         Partner::Wall(wall) => (grain as usize) < grains && (wall as usize) < walls,
@@ -153,7 +151,7 @@ fn is_between(
 }
 
 impl super::Clock {
-    fn check(&self) -> Checked {
+    fn check(&self) -> Result<(), Unsound> {
         within(&limits::TIME_STEP, self.time_step, || {
             "the time step".to_owned()
         })?;
@@ -174,7 +172,7 @@ impl super::Clock {
 }
 
 impl super::Ledger {
-    fn check(&self) -> Checked {
+    fn check(&self) -> Result<(), Unsound> {
         let energies = [
             self.initial_energy,
             self.gravity_work,
@@ -187,7 +185,7 @@ impl super::Ledger {
     }
 }
 
-fn check_materials(materials: &Materials) -> Checked {
+fn check_materials(materials: &Materials) -> Result<(), Unsound> {
     require(materials.is_whole(), || {
         "its materials and their pairs do not fit together".to_owned()
     })?;
@@ -216,7 +214,7 @@ fn check_materials(materials: &Materials) -> Checked {
     })
 }
 
-fn check_liquid(liquid: &Liquid) -> Checked {
+fn check_liquid(liquid: &Liquid) -> Result<(), Unsound> {
     let values = [
         (
             &limits::SURFACE_TENSION,
@@ -242,7 +240,7 @@ fn check_liquid(liquid: &Liquid) -> Checked {
 }
 
 impl Container {
-    fn check(&self, materials: usize) -> Checked {
+    fn check(&self, materials: usize) -> Result<(), Unsound> {
         let walls = self.walls.len();
         let fits = match self.shape {
             Shape::Planes => walls <= 1000,
@@ -268,7 +266,7 @@ impl Container {
 }
 
 impl Wall {
-    fn check(&self, materials: usize) -> Checked {
+    fn check(&self, materials: usize) -> Result<(), Unsound> {
         let name = || format!("the wall `{}`", self.name);
         require(usize::from(self.material.0) < materials, || {
             format!("{} has no material", name())
@@ -294,7 +292,7 @@ impl Wall {
 }
 
 impl Grains {
-    fn check(&self, species: usize) -> Checked {
+    fn check(&self, species: usize) -> Result<(), Unsound> {
         let count = self.len();
         require(limits::GRAINS.accept(count as f64), || {
             format!(
@@ -331,7 +329,7 @@ impl Grains {
         Ok(())
     }
 
-    fn check_lengths(&self) -> Checked {
+    fn check_lengths(&self) -> Result<(), Unsound> {
         let lengths = [
             (self.velocity.len(), "velocity"),
             (self.spin.len(), "spin"),
@@ -360,7 +358,7 @@ impl Grains {
 }
 
 impl Polyhedra {
-    fn check(&self, grains: usize, walls: usize) -> Checked {
+    fn check(&self, grains: usize, walls: usize) -> Result<(), Unsound> {
         let lengths = [
             self.shape.len(),
             self.orientation.len(),
@@ -394,7 +392,7 @@ impl Polyhedra {
         self.check_features(grains, walls)
     }
 
-    fn check_features(&self, grains: usize, walls: usize) -> Checked {
+    fn check_features(&self, grains: usize, walls: usize) -> Result<(), Unsound> {
         let order = |index: usize| {
             let contact = &self.features[index];
             (contact.grain, contact.partner, contact.feature)
