@@ -47,18 +47,22 @@ impl Place {
 
     /// Runs the small drum into the folder `out`, which must work, and returns its summary.
     pub(crate) fn run_small_drum(&self, out: &str, more: &[&str]) -> Value {
-        let mut arguments = vec![
-            "small-drum",
-            "--no-render",
-            "--duration",
-            "200ms",
-            "--out",
-            out,
-        ];
-        arguments.extend(more);
-        let output = self.run(&arguments);
+        let output = self.run(&[&small_drum("200ms", out)[..], more].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
         summary(&self.path(out))
+    }
+
+    /// Starts what runs the small drum for an hour into the folder `out`; it has left `file` there.
+    #[cfg(unix)]
+    pub(crate) fn start_long_run(&self, file: &str) -> Child {
+        let mut command = self.command(&small_drum("1h", "out"));
+        let mut child = command
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        wait_for(&self.path("out").join(file), &mut child);
+        child
     }
 
     pub(crate) fn write(&self, name: &str, content: &str) -> PathBuf {
@@ -66,6 +70,30 @@ impl Place {
         fs::write(&path, content).unwrap();
         path
     }
+}
+
+/// What a run leaves in its folder.
+const FILES_OF_A_RUN: [&str; 8] = [
+    ".grainfall.lock",
+    "checkpoint-samples.bin",
+    "checkpoint.bin",
+    "csv-metadata.json",
+    "grains",
+    "grains.pvd",
+    "series.csv",
+    "summary.json",
+];
+
+/// What runs the small drum for a `duration` into the folder `out`.
+pub(crate) const fn small_drum<'a>(duration: &'a str, out: &'a str) -> [&'a str; 6] {
+    [
+        "small-drum",
+        "--no-render",
+        "--duration",
+        duration,
+        "--out",
+        out,
+    ]
 }
 
 pub(crate) fn text(bytes: &[u8]) -> String {
@@ -110,19 +138,7 @@ fn run_leaves_series_grains_and_summary() {
     let place = Place::new();
     let summary = place.run_small_drum("out", &[]);
     let out = place.path("out");
-    assert_eq!(
-        names(&out),
-        [
-            ".grainfall.lock",
-            "checkpoint-samples.bin",
-            "checkpoint.bin",
-            "csv-metadata.json",
-            "grains",
-            "grains.pvd",
-            "series.csv",
-            "summary.json"
-        ]
-    );
+    assert_eq!(names(&out), FILES_OF_A_RUN);
     // Every 0.05 s from 0 to 0.2 s.
     let frames: Vec<String> = (0..5).map(|k| format!("grains_{k:06}.vtp")).collect();
     assert_eq!(names(&out.join("grains")), frames);
@@ -445,21 +461,7 @@ fn fault_ends_with_3_and_keeps_the_files_until_then() {
 #[test]
 fn interrupted_run_leaves_whole_files() {
     let place = Place::new();
-    let arguments = [
-        "small-drum",
-        "--no-render",
-        "--duration",
-        "1h",
-        "--out",
-        "out",
-    ];
-    let mut child = place
-        .command(&arguments)
-        .stderr(Stdio::null())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
-    wait_for(&place.path("out/grains/grains_000003.vtp"), &mut child);
+    let mut child = place.start_long_run("grains/grains_000003.vtp");
     // Twice at once, as `timeout` does it: that is one wish.
     let process = child.id().to_string();
     let interrupt = Command::new("kill")
@@ -468,19 +470,7 @@ fn interrupted_run_leaves_whole_files() {
     assert!(interrupt.unwrap().success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let out = place.path("out");
-    assert_eq!(
-        names(&out),
-        [
-            ".grainfall.lock",
-            "checkpoint-samples.bin",
-            "checkpoint.bin",
-            "csv-metadata.json",
-            "grains",
-            "grains.pvd",
-            "series.csv",
-            "summary.json"
-        ]
-    );
+    assert_eq!(names(&out), FILES_OF_A_RUN);
     let summary = summary(&out);
     assert_eq!(summary["status"], "interrupted");
     let (_, rows) = series(&out);
@@ -496,8 +486,7 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
     use grainfall::output::Ending;
     use grainfall::run::{Command, Parameter, ScriptedCommand};
     use grainfall::runner::Job;
-    use std::sync::Arc;
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::atomic::AtomicBool;
     let place = Place::new();
     let mut scene = grainfall::scene::Scene::open("small-drum").unwrap();
     scene.set("duration", "600ms").unwrap();
@@ -521,24 +510,10 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
         run(&job("whole"), Report::Quiet, &never).unwrap(),
         Ending::Done
     );
-    let mut calls = 0;
-    loop {
-        let stop = Arc::new(AtomicBool::new(false));
-        let stopper = stop.clone();
-        let timer = std::thread::spawn(move || {
-            std::thread::sleep(Duration::from_millis(60 + 40 * calls));
-            stopper.store(true, Ordering::Relaxed);
-        });
-        let ending = run(&job("parts"), Report::Quiet, &stop).unwrap();
-        timer.join().unwrap();
-        calls += 1;
-        if ending == Ending::Done {
-            break;
-        }
-        assert_eq!(ending, Ending::Interrupted);
-        assert!(calls < 100, "it comes to an end");
-    }
-    println!("{calls} calls");
+    let ending = crate::run::until_done(&Ending::Interrupted, |stop| {
+        run(&job("parts"), Report::Quiet, stop).unwrap()
+    });
+    assert_eq!(ending, Ending::Done);
     let [whole, parts] = ["whole", "parts"].map(|out| place.path(out));
     assert_eq!(summary(&parts)["state_hash"], summary(&whole)["state_hash"]);
     assert_eq!(summary(&parts)["commands"], summary(&whole)["commands"]);

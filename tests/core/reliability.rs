@@ -1,7 +1,7 @@
 //! Claims about what is lost when something goes wrong: nothing. Kills, pipes, full disks, two
 //! programs in one folder, wrong input, forged records.
 
-use crate::headless::{Place, names, summary, text};
+use crate::headless::{Place, names, small_drum, summary, text};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,14 +32,7 @@ fn refused(place: &Place, arguments: &[&str], expected: &str) {
     assert!(message.contains(expected), "{arguments:?}: {message}");
 }
 
-const RUN: [&str; 6] = [
-    "small-drum",
-    "--no-render",
-    "--duration",
-    "200ms",
-    "--out",
-    "out",
-];
+const RUN: [&str; 6] = small_drum("200ms", "out");
 
 #[test]
 fn refused_run_leaves_earlier_results_as_they_were() {
@@ -320,18 +313,9 @@ fn killed_run_goes_on_to_the_same_bits() {
 #[test]
 fn folder_is_one_programs_at_a_time_and_says_whose() {
     let place = Place::new();
-    let long = [
-        "small-drum",
-        "--no-render",
-        "--duration",
-        "1h",
-        "--out",
-        "out",
-    ];
-    let mut child = start(&place, &long);
-    crate::headless::wait_for(&place.path("out/grains/grains_000001.vtp"), &mut child);
+    let mut child = place.start_long_run("grains/grains_000001.vtp");
     for more in [&[][..], &["--restart"]] {
-        let second = place.run(&[&long[..], more].concat());
+        let second = place.run(&[&small_drum("1h", "out")[..], more].concat());
         let message = text(&second.stderr);
         assert_eq!(second.status.code(), Some(5), "{message}");
         assert!(
@@ -341,9 +325,7 @@ fn folder_is_one_programs_at_a_time_and_says_whose() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let mut child = start(&place, &long);
-    let marked = place.path("out/grains/grains_000003.vtp");
-    crate::headless::wait_for(&marked, &mut child);
+    let mut child = place.start_long_run("grains/grains_000003.vtp");
     signal("-TERM", &child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }

@@ -10,6 +10,7 @@ use grainfall::simulation::{
 };
 use grainfall::solver::advise;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 const TICK: Duration = Duration::from_micros(15_625);
@@ -31,6 +32,29 @@ pub fn prepared(scene: &Scene, threads: usize, beds: BedStore) -> (Run, Vec<Stri
 /// Beds shared by the tests that are not about settling.
 pub fn shared_beds() -> BedStore {
     BedStore::at(concat!(env!("CARGO_TARGET_TMPDIR"), "/beds"))
+}
+
+/// Carries out `work`, which is stopped a moment after it began, again and again, each time a
+/// little later, until it says that it was not `interrupted`.
+pub fn until_done<E: PartialEq + std::fmt::Debug>(
+    interrupted: &E,
+    work: impl Fn(&AtomicBool) -> E,
+) -> E {
+    for call in 0..200 {
+        let stop = AtomicBool::new(false);
+        let ending = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_millis(60 + 40 * call));
+                stop.store(true, Ordering::Relaxed);
+            });
+            work(&stop)
+        });
+        if ending != *interrupted {
+            println!("{} calls", call + 1);
+            return ending;
+        }
+    }
+    panic!("it never comes to an end");
 }
 
 fn run_of(scene: &Scene) -> Run {

@@ -4,4 +4,3 @@
 mod build;
 mod files;
 mod gallery;
-mod mutations;

@@ -1,14 +1,13 @@
 //! Sweeps: cases, results side by side, stopping and going on, wrong input.
 
+use crate::run::until_done;
 use grainfall::runner::RunnerError;
 use grainfall::scene::Scene;
 use grainfall::simulation::BedStore;
 use grainfall::sweep::{self, Sweep, SweepEnding, Variation};
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::atomic::AtomicBool;
 
 const DRUM: &str = r#"(
     title: "Small wet drum",
@@ -95,25 +94,10 @@ fn stopped_sweep_goes_on_to_the_same_bits() {
     let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
     let variations = ["viscosity=0.01,0.5"];
     run(&sweep(&whole, &variations), &AtomicBool::new(false)).unwrap();
-    let mut calls = 0;
-    loop {
-        // Stopped a moment after it began, again and again.
-        let stop = Arc::new(AtomicBool::new(false));
-        let stopper = stop.clone();
-        let timer = std::thread::spawn(move || {
-            std::thread::sleep(Duration::from_millis(60 + 40 * calls));
-            stopper.store(true, Ordering::Relaxed);
-        });
-        let ending = run(&sweep(&parts, &variations), &stop).unwrap();
-        timer.join().unwrap();
-        calls += 1;
-        if ending == SweepEnding::Done {
-            break;
-        }
-        assert_eq!(ending, SweepEnding::Interrupted);
-        assert!(calls < 200, "it comes to an end");
-    }
-    println!("{calls} calls");
+    let ending = until_done(&SweepEnding::Interrupted, |stop| {
+        run(&sweep(&parts, &variations), stop).unwrap()
+    });
+    assert_eq!(ending, SweepEnding::Done);
     assert_eq!(hashes(&parts), hashes(&whole));
     // A finished one is only read.
     run(&sweep(&parts, &variations), &AtomicBool::new(false)).unwrap();

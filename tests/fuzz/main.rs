@@ -11,6 +11,7 @@
     reason = "what inputs are made of reaches no trajectory"
 )]
 
+#[path = "../common/allocator.rs"]
 mod allocator;
 mod byte_mutator;
 mod mutator;
@@ -45,8 +46,10 @@ fn outcome(target: &mut dyn Target, seed: u64, number: u64) -> (bool, Option<Str
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(number);
     let started = Instant::now();
-    let (done, memory) =
-        allocator::measured(|| catch_unwind(AssertUnwindSafe(|| target.take(&mut rng))));
+    let before = allocator::in_use();
+    let (done, peak) =
+        allocator::with_peak(|| catch_unwind(AssertUnwindSafe(|| target.take(&mut rng))));
+    let memory = peak.saturating_sub(before);
     let time = started.elapsed();
     match done {
         Err(panic) => {

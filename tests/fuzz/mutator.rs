@@ -130,6 +130,12 @@ fn replace_a_number(text: &mut String, rng: &mut ChaCha8Rng) {
     text.replace_range(start..start + length, &number);
 }
 
+/// Random bytes, as a text.
+pub fn noise(rng: &mut ChaCha8Rng) -> String {
+    let bytes = (0..rng.random_range(1..400)).map(|_| rng.random());
+    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
+}
+
 /// A JSON value with one mutation somewhere in it.
 pub fn json(value: &mut serde_json::Value, rng: &mut ChaCha8Rng) {
     use serde_json::{Value, json};

@@ -130,7 +130,7 @@ fn step_on(run: &mut Run) {
     let _ = run.advice();
 }
 
-/// Texts of scenes.
+/// Texts of scenes, and now and then one that is none at all.
 pub struct SceneTexts(Vec<String>);
 
 impl SceneTexts {
@@ -141,9 +141,15 @@ impl SceneTexts {
 
 impl Target for SceneTexts {
     fn take(&mut self, rng: &mut ChaCha8Rng) -> bool {
-        let text = mutator::text(one_of::<String>(&self.0, rng), rng);
+        let is_noise = rng.random_range(0..20) == 0;
+        let text = if is_noise {
+            mutator::noise(rng)
+        } else {
+            mutator::text(one_of::<String>(&self.0, rng), rng)
+        };
         match Scene::parse("mutated.ron", &text) {
             Ok(scene) => {
+                assert!(!is_noise, "{text}");
                 let estimate = Estimate::of(&scene);
                 assert!(!estimate.to_string().is_empty());
                 if rng.random_range(0..20) == 0 {
@@ -178,6 +184,10 @@ fn built(scene: &Scene) {
     let mut world = world::build(scene, advise(scene).time_step);
     if let Err(error) = world.check() {
         panic!("a scene that was accepted makes a world that is not: {error}");
+    }
+    // How many cells lie in a drum or in a column is known when they are made.
+    if !matches!(scene.grains, SceneGrains::Voronoi(_)) {
+        assert_eq!(world.grains.len(), scene.grain_count());
     }
     let _ = Solver::new(1).advance(&mut world, 2);
 }

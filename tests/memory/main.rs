@@ -1,42 +1,16 @@
 //! Bytes per grain of a world and its solver, counted by the allocator. A binary of its own:
 //! nothing else allocates in it.
 
+#[path = "../common/allocator.rs"]
+mod allocator;
+
+use allocator::{in_use, with_peak};
 use grainfall::output::write_grains;
 use grainfall::scene::Scene;
 use grainfall::simulation::Provenance;
 use grainfall::solver::{Solver, advise};
 use grainfall::world::build;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-
-/// Bytes that are allocated now.
-static IN_USE: AtomicUsize = AtomicUsize::new(0);
-/// The most since it was last set.
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-/// The system's allocator, counting.
-struct Counting;
-
-#[expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let now = IN_USE.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
-        PEAK.fetch_max(now, Ordering::Relaxed);
-        // SAFETY: the caller's promise.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        IN_USE.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promise.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Tests take turns: every one counts what all allocate.
 static TURN: Mutex<()> = Mutex::new(());
@@ -47,22 +21,20 @@ fn column_of_polyhedra_takes_less_than_twenty_kilobytes_a_grain_with_its_output(
     let mut scene = Scene::open("column").unwrap();
     scene.set("height", "10mm").unwrap();
     let dt = advise(&scene).time_step;
-    let before = IN_USE.load(Ordering::Relaxed);
+    let before = in_use();
     let mut world = build(&scene, dt);
     let count = world.grains.len();
     assert_eq!(count, 1963);
     let per_grain = |bytes: usize| (bytes - before) as f64 / count as f64;
-    let built = per_grain(IN_USE.load(Ordering::Relaxed));
-    PEAK.store(0, Ordering::Relaxed);
+    let built = per_grain(in_use());
+    // All faces of the packing lie on each other: nowhere do more features touch than soon after
+    // the release.
     let mut solver = Solver::new(2);
-    // All faces of the packing lie on each other: nowhere do more features touch than soon after the release.
-    for _ in 0..6 {
-        solver.advance(&mut world, 100).unwrap();
-    }
-    let stepped = per_grain(PEAK.load(Ordering::Relaxed));
+    let ((), stepped) = with_peak(|| (0..6).for_each(|_| solver.advance(&mut world, 100).unwrap()));
     let from = Provenance::of(&scene, &world);
-    write_grains(&world, &from, &mut std::io::sink()).unwrap();
-    let written = per_grain(PEAK.load(Ordering::Relaxed));
+    let (result, written) = with_peak(|| write_grains(&world, &from, &mut std::io::sink()));
+    result.unwrap();
+    let [stepped, written] = [stepped, stepped.max(written)].map(per_grain);
     println!("built {built:.0}, peak of steps {stepped:.0}, with output {written:.0} B per grain");
     assert!(written < 20e3, "{written} bytes per grain");
 }
@@ -72,7 +44,7 @@ fn paper_drum_takes_some_kilobytes_a_grain_and_no_more_with_time() {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let scene = Scene::open("dry-r1.25").unwrap();
     let dt = advise(&scene).time_step;
-    let before = IN_USE.load(Ordering::Relaxed);
+    let before = in_use();
     let mut world = build(&scene, dt);
     let mut solver = Solver::new(2);
     let count = world.grains.len();
@@ -80,15 +52,12 @@ fn paper_drum_takes_some_kilobytes_a_grain_and_no_more_with_time() {
     let per_grain = |bytes: usize| (bytes - before) as f64 / count as f64;
     // The bed falls together: contacts appear until it lies.
     let mut slices = |number: u32| {
-        PEAK.store(0, Ordering::Relaxed);
-        for _ in 0..number {
-            solver.advance(&mut world, 500).unwrap();
-        }
-        let peak = per_grain(PEAK.load(Ordering::Relaxed));
+        let steps = || (0..number).for_each(|_| solver.advance(&mut world, 500).unwrap());
+        let peak = per_grain(with_peak(steps).1);
         println!(
             "{} contacts: peak {peak:.0} B, in use {:.0} B per grain",
             world.contacts.len(),
-            per_grain(IN_USE.load(Ordering::Relaxed))
+            per_grain(in_use())
         );
         peak
     };
@@ -97,6 +66,7 @@ fn paper_drum_takes_some_kilobytes_a_grain_and_no_more_with_time() {
     let late = slices(8);
     // Each listed pair has rows for what it remembers: a spring and a rolling torque.
     assert!(late < 2600.0, "{late} bytes per grain");
-    // Vectors may grow once more by doubling their capacity as the bed moves, but not step after step.
+    // Vectors may grow once more by doubling their capacity as the bed moves, but not step after
+    // step.
     assert!(late < 1.1 * early, "{early} bytes per grain, later {late}");
 }

@@ -1,4 +1,4 @@
-//! The system's allocator, counting.
+//! The system's allocator, counting: for binaries of tests in which nothing else allocates.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -30,10 +30,14 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What `work` returns, and the most memory that it had at once [bytes].
-pub fn measured<T>(work: impl FnOnce() -> T) -> (T, usize) {
-    let before = IN_USE.load(Ordering::Relaxed);
-    PEAK.store(before, Ordering::Relaxed);
+/// Bytes that are allocated now.
+pub fn in_use() -> usize {
+    IN_USE.load(Ordering::Relaxed)
+}
+
+/// What `work` returns, and the most bytes that were allocated at once meanwhile.
+pub fn with_peak<T>(work: impl FnOnce() -> T) -> (T, usize) {
+    PEAK.store(in_use(), Ordering::Relaxed);
     let done = work();
-    (done, PEAK.load(Ordering::Relaxed).saturating_sub(before))
+    (done, PEAK.load(Ordering::Relaxed))
 }
