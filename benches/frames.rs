@@ -11,6 +11,9 @@
     reason = "what is expected may be computed with the platform's own functions"
 )]
 
+#[path = "../tests/common/allocator.rs"]
+mod allocator;
+
 use bevy::camera::ClearColorConfig;
 use bevy::camera::visibility::RenderLayers;
 use bevy::math::UVec2;
@@ -29,36 +32,8 @@ use grainfall::ui::{Dock, UiPlugin};
 use grainfall::view::{ColourBy, GrainBuffer, Meshing, ShownWorlds, ViewPlugin, ViewSettings};
 use grainfall::window::canvas::CanvasPlugin;
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
-
-/// How often and how many bytes anything has allocated.
-static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
-static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
-
-/// The system's allocator, counting.
-struct Counting;
-
-#[expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
-        ALLOCATED.fetch_add(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promise.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Grains of the column of 35 cm.
 const POLYHEDRA: usize = 68_722;
@@ -109,15 +84,13 @@ fn column() -> World {
             .grains
             .push_sphere(x, shape.bounding_radius(), 2500.0, species);
     }
-    world.polyhedra = Some(Box::new(Polyhedra {
-        shapes: std::iter::repeat_n(shape, POLYHEDRA).collect(),
-        shape: (0..POLYHEDRA as u32).collect(),
-        orientation: vec![DQuat::IDENTITY; POLYHEDRA],
-        angular_momentum: vec![DVec3::ZERO; POLYHEDRA],
-        inertia: vec![DVec3::ONE; POLYHEDRA],
-        features: Vec::new(),
-        ..Polyhedra::default()
-    }));
+    let shapes = vec![shape; POLYHEDRA];
+    let bodies: Vec<_> = (0..)
+        .map(|k| (k, DQuat::IDENTITY))
+        .take(POLYHEDRA)
+        .collect();
+    let polyhedra = Polyhedra::of_grains(&world.grains, shapes, &bodies);
+    world.polyhedra = Some(Box::new(polyhedra));
     world
 }
 
@@ -260,12 +233,10 @@ fn frames(criterion: &mut Criterion) {
 
 /// Prints what a frame with a new state allocates.
 fn count_allocations(name: &str, app: &mut App) {
-    let load = |counter: &AtomicUsize| counter.load(Ordering::Relaxed);
-    let counted = || [load(&ALLOCATIONS), load(&ALLOCATED)];
     step(app);
-    let before = counted();
+    let before = allocator::allocated();
     app.update();
-    let after = counted();
+    let after = allocator::allocated();
     let [times, bytes] = [0, 1].map(|i| after[i] - before[i]);
     println!(
         "{name}: a frame allocates {times} times, {} kB",

@@ -201,11 +201,11 @@ impl Bed {
     fn of(settled: &World) -> Self {
         let grains = &settled.grains;
         Self {
-            position: grains.position.clone(),
+            position: grains.position.to_vec(),
             force: single(&grains.force),
             torque: single(&grains.torque),
             rolling_torque: single(&grains.rolling_torque),
-            contact_count: grains.contact_count.clone(),
+            contact_count: grains.contact_count.to_vec(),
             contacts: settled.contacts.iter().map(BedContact::of).collect(),
         }
     }
@@ -231,11 +231,12 @@ impl Bed {
 
     fn laid_into(self, built: &World) -> World {
         let mut world = built.clone();
-        world.grains.position = self.position;
-        world.grains.force = double(&self.force);
-        world.grains.torque = double(&self.torque);
-        world.grains.rolling_torque = double(&self.rolling_torque);
-        world.grains.contact_count = self.contact_count;
+        world.grains.position.set(self.position);
+        world.grains.force.set(double(&self.force));
+        world.grains.torque.set(double(&self.torque));
+        let rolling_torque = double(&self.rolling_torque);
+        world.grains.rolling_torque.set(rolling_torque);
+        world.grains.contact_count.set(self.contact_count);
         world.contacts = self.contacts.iter().map(BedContact::laid).collect();
         start(world, built)
     }

@@ -275,7 +275,7 @@ impl Forms {
         let same_shapes = match (&self.shapes, &world.polyhedra) {
             (None, None) => true,
             (Some(shapes), Some(polyhedra)) => {
-                Arc::ptr_eq(shapes, &polyhedra.shapes) && self.shape == polyhedra.shape
+                Arc::ptr_eq(shapes, &polyhedra.shapes) && *self.shape == *polyhedra.shape
             }
             _ => false,
         };
@@ -285,7 +285,7 @@ impl Forms {
         let polyhedra = world.polyhedra.as_deref();
         self.count = world.grains.len();
         self.shapes = polyhedra.map(|polyhedra| polyhedra.shapes.clone());
-        self.shape = polyhedra.map_or_else(Vec::new, |polyhedra| polyhedra.shape.clone());
+        self.shape = polyhedra.map_or_else(Vec::new, |polyhedra| polyhedra.shape.to_vec());
         true
     }
 }

@@ -1,5 +1,6 @@
 //! The grains' columns.
 
+use super::grain_column::GrainColumn;
 use crate::geometry::sphere_volume;
 use crate::physics::MaterialId;
 use glam::DVec3;
@@ -18,43 +19,43 @@ pub struct Species {
     pub material: MaterialId,
 }
 
-/// One entry per grain in every column.
+/// What there is of every grain: one entry per grain in every column.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grains {
     /// Centre [m].
-    pub position: Vec<DVec3>,
+    pub position: GrainColumn<DVec3>,
     /// Velocity of the centre [m/s].
-    pub velocity: Vec<DVec3>,
+    pub velocity: GrainColumn<DVec3>,
     /// Angular velocity [rad/s].
-    pub spin: Vec<DVec3>,
+    pub spin: GrainColumn<DVec3>,
     /// Radius [m].
-    pub radius: Vec<f64>,
+    pub radius: GrainColumn<f64>,
     /// Mass [kg].
-    pub mass: Vec<f64>,
+    pub mass: GrainColumn<f64>,
     /// Moment of inertia about the centre, `2/5 m r²` of a sphere [kg m²].
-    pub inertia: Vec<f64>,
+    pub inertia: GrainColumn<f64>,
     /// Kind of grain.
-    pub species: Vec<SpeciesId>,
+    pub species: GrainColumn<SpeciesId>,
     /// Sum of the contact forces, without weight, at the last force evaluation [N].
-    pub force: Vec<DVec3>,
+    pub force: GrainColumn<DVec3>,
     /// Torque of the contact forces, without rolling friction, at the last evaluation [N m].
-    pub torque: Vec<DVec3>,
+    pub torque: GrainColumn<DVec3>,
     /// Torque of rolling friction at the last evaluation [N m].
-    pub rolling_torque: Vec<DVec3>,
+    pub rolling_torque: GrainColumn<DVec3>,
     /// Touching partners, walls too, at the last evaluation.
-    pub contact_count: Vec<u32>,
+    pub contact_count: GrainColumn<u32>,
     /// Energy exchanged at the contacts of which the grain is the first partner, since the start
     /// [J]: lost in dashpots, lost in sliding (with what tangential springs lose as their stiffness
     /// changes), lost in rolling, done by walls.
-    pub exchanged: Vec<[f64; 4]>,
+    pub exchanged: GrainColumn<[f64; 4]>,
     /// Volume of the liquid film on each, its part in bridges included [m³].
-    pub film: Vec<f64>,
+    pub film: GrainColumn<f64>,
     /// Bridges to grains that it did not touch at the last evaluation.
-    pub open_bridges: Vec<u32>,
+    pub open_bridges: GrainColumn<u32>,
     /// Energy lost in bridges of which the grain is the first partner, since the start [J]: to
     /// viscosity, and to capillary forces, which give back on the way together what they take on
     /// the way apart until the bridge breaks.
-    pub liquid_loss: Vec<[f64; 2]>,
+    pub liquid_loss: GrainColumn<[f64; 2]>,
 }
 
 impl Grains {

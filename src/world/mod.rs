@@ -8,6 +8,7 @@
 mod build;
 mod contact;
 mod container;
+mod grain_column;
 mod grains;
 mod hash;
 mod ledger;
@@ -23,6 +24,7 @@ pub use crate::geometry::{Polyhedron, Rounded};
 pub use build::{build, build_packed, materials};
 pub use contact::{Contact, Partner};
 pub use container::{Container, Shape, Surface, Wall, WallMotion};
+pub use grain_column::GrainColumn;
 pub use grains::{Grains, Species, SpeciesId};
 pub use hash::StateHash;
 pub use ledger::Ledger;

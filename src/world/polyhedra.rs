@@ -1,5 +1,6 @@
 //! What grains that are no spheres need beside the columns that all grains have.
 
+use super::grain_column::GrainColumn;
 use super::{Grains, Partner, Polyhedron, SpeciesId};
 use crate::physics::Integrator;
 use glam::{DQuat, DVec3};
@@ -18,13 +19,13 @@ pub struct Polyhedra {
     #[serde(with = "shared")]
     pub shapes: Arc<[Polyhedron]>,
     /// Index of each grain's shape.
-    pub shape: Vec<u32>,
+    pub shape: GrainColumn<u32>,
     /// Rotation from body axes to the axes of the world, a unit quaternion.
-    pub orientation: Vec<DQuat>,
+    pub orientation: GrainColumn<DQuat>,
     /// Angular momentum about the centroid, along the axes of the world [kg m²/s].
-    pub angular_momentum: Vec<DVec3>,
+    pub angular_momentum: GrainColumn<DVec3>,
     /// Moments of inertia about the body axes, which are principal axes [kg m²].
-    pub inertia: Vec<DVec3>,
+    pub inertia: GrainColumn<DVec3>,
     /// Every pair of features in contact, with its history, sorted by grain, partner and feature.
     pub features: Vec<FeatureContact>,
     /// How their equations of motion are integrated.
@@ -88,6 +89,31 @@ impl Polyhedra {
         Self {
             shapes: shapes.into(),
             ..Self::default()
+        }
+    }
+
+    /// `grains` that are there already as bodies at rest, each of one of the `shapes` with a
+    /// rotation from body axes to the axes of the world.
+    ///
+    /// # Panics
+    /// When there are not as many of `bodies` as of grains, or when there is no such shape.
+    pub fn of_grains(
+        grains: &Grains,
+        shapes: impl Into<Arc<[Polyhedron]>>,
+        bodies: &[(u32, DQuat)],
+    ) -> Self {
+        assert_eq!(bodies.len(), grains.len(), "one body per grain");
+        let shapes = shapes.into();
+        let inertia =
+            |((shape, _), mass): (&(u32, DQuat), &f64)| *mass * shapes[*shape as usize].gyration;
+        Self {
+            shape: GrainColumn::of(bodies.iter().map(|(shape, _)| *shape).collect()),
+            orientation: GrainColumn::of(bodies.iter().map(|(_, turn)| *turn).collect()),
+            angular_momentum: GrainColumn::of(vec![DVec3::ZERO; bodies.len()]),
+            inertia: GrainColumn::of(bodies.iter().zip(&grains.mass).map(inertia).collect()),
+            features: Vec::new(),
+            integrator: Integrator::default(),
+            shapes,
         }
     }
 

@@ -56,7 +56,8 @@ impl World {
         let solid = |r: &f64| r * r * r;
         let all: f64 = self.grains.radius.iter().map(solid).sum();
         let films = self.grains.radius.iter().map(|r| volume * solid(r) / all);
-        self.grains.film = films.collect();
+        let films = films.collect();
+        self.grains.film.set(films);
     }
 
     /// Forgets the pairs that only a bridge held together.

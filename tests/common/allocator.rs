@@ -1,4 +1,6 @@
-//! The system's allocator, counting: for binaries of tests in which nothing else allocates.
+//! The system's allocator, counting: for tests and benchmarks, of which each is a binary of its own.
+
+#![allow(dead_code, reason = "each binary asks for a part of what is counted")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,6 +10,11 @@ static IN_USE: AtomicUsize = AtomicUsize::new(0);
 /// The most since it was last set.
 static PEAK: AtomicUsize = AtomicUsize::new(0);
 
+/// How often anything was allocated.
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+/// How many bytes were, in all.
+static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
+
 struct Counting;
 
 #[expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
@@ -16,6 +23,8 @@ unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let now = IN_USE.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
         PEAK.fetch_max(now, Ordering::Relaxed);
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        ALLOCATED.fetch_add(layout.size(), Ordering::Relaxed);
         // SAFETY: the caller's promise.
         unsafe { System.alloc(layout) }
     }
@@ -33,6 +42,11 @@ static ALLOCATOR: Counting = Counting;
 /// Bytes that are allocated now.
 pub fn in_use() -> usize {
     IN_USE.load(Ordering::Relaxed)
+}
+
+/// How often anything was allocated so far, and how many bytes in all.
+pub fn allocated() -> [usize; 2] {
+    [&ALLOCATIONS, &ALLOCATED].map(|count| count.load(Ordering::Relaxed))
 }
 
 /// What `work` returns, and the most bytes that were allocated at once meanwhile.

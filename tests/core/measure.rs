@@ -174,15 +174,9 @@ fn two_rounded_bodies() -> World {
     for (i, shape) in shapes.iter().enumerate() {
         put(&mut world, DVec3::X * 0.01 * i as f64, shape.rounding, 0);
     }
-    world.polyhedra = Some(Box::new(Polyhedra {
-        shapes: shapes.to_vec().into(),
-        shape: vec![0, 1],
-        orientation: vec![DQuat::IDENTITY; 2],
-        angular_momentum: vec![DVec3::ZERO; 2],
-        inertia: vec![DVec3::ONE; 2],
-        features: Vec::new(),
-        ..Polyhedra::default()
-    }));
+    let bodies = [(0, DQuat::IDENTITY), (1, DQuat::IDENTITY)];
+    let polyhedra = Polyhedra::of_grains(&world.grains, shapes, &bodies);
+    world.polyhedra = Some(Box::new(polyhedra));
     world
 }
 

@@ -38,18 +38,13 @@ fn cube_and_sphere() -> World {
         volume: 8e-9,
         gyration: DVec3::splat(1e-6 / 3.0 * 2.0),
     };
-    world.polyhedra = Some(Box::new(Polyhedra {
-        shapes: vec![cube, Polyhedron::sphere(0.5e-3)].into(),
-        shape: vec![0, 1],
-        orientation: vec![
-            DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2),
-            DQuat::IDENTITY,
-        ],
-        angular_momentum: vec![DVec3::ZERO; 2],
-        inertia: vec![DVec3::ONE; 2],
-        features: Vec::new(),
-        ..Polyhedra::default()
-    }));
+    let turn = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2);
+    let (shapes, bodies) = (
+        [cube, Polyhedron::sphere(0.5e-3)],
+        [(0, turn), (1, DQuat::IDENTITY)],
+    );
+    let polyhedra = Polyhedra::of_grains(&world.grains, shapes, &bodies);
+    world.polyhedra = Some(Box::new(polyhedra));
     world
 }
 

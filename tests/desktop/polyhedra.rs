@@ -49,17 +49,11 @@ fn cube() -> Polyhedron {
 fn bodies(list: &[(DVec3, DQuat, u16)], shape: Polyhedron) -> World {
     let mut world = world(Shape::Planes, Vec::new());
     let radius = shape.bounding_radius();
-    let mut polyhedra = Polyhedra {
-        shapes: Arc::new([shape]),
-        ..Polyhedra::default()
-    };
-    for (position, orientation, species) in list {
+    for (position, _, species) in list {
         (world.grains).push_sphere(*position, radius, 2500.0, SpeciesId(*species));
-        polyhedra.shape.push(0);
-        polyhedra.orientation.push(*orientation);
-        polyhedra.angular_momentum.push(DVec3::ZERO);
-        polyhedra.inertia.push(DVec3::ONE);
     }
+    let bodies: Vec<_> = list.iter().map(|(_, turn, _)| (0, *turn)).collect();
+    let polyhedra = Polyhedra::of_grains(&world.grains, [shape], &bodies);
     world.polyhedra = Some(Box::new(polyhedra));
     world
 }

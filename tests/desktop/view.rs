@@ -314,7 +314,7 @@ fn colours_are_those_of_the_map() {
     for (velocity, speed) in world.grains.velocity.iter_mut().zip(speeds) {
         *velocity = DVec3::new(0.0, speed, 0.0);
     }
-    let positions = world.grains.position.clone();
+    let positions = world.grains.position.to_vec();
     let photograph = photograph("speed", world, |settings, _| {
         settings.colour_by = ColourBy::Quantity(GrainQuantity::Speed);
         settings.range = ColourRange::Fixed(0.0, 1.0);
@@ -347,7 +347,7 @@ fn cut_takes_the_right_half_away() {
     let Some(_studio) = studio("cut_takes_the_right_half_away") else {
         return;
     };
-    let positions = five_grains().grains.position;
+    let positions = five_grains().grains.position.to_vec();
     let photograph = photograph("cut", five_grains(), |settings, camera| {
         camera.look_from(StandardView::Front);
         settings.cut = Some(Cut::Beyond {
@@ -565,7 +565,7 @@ fn bridge_is_as_thick_as_its_volume_makes_it() {
         return;
     };
     let mut wet = pair(0.0);
-    wet.grains.film = vec![1e-8; 2];
+    wet.grains.film.set(vec![1e-8; 2]);
     wet.liquid = Some(grainfall::physics::LIQUID_CASES[1].liquid());
     let seen = |bridges: bool| {
         let photograph = photograph("bridge", wet.clone(), |settings, camera| {

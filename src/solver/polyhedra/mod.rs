@@ -309,8 +309,8 @@ impl PolyhedronKernel {
         let known = Known {
             law: world.law,
             materials: world.materials.clone(),
-            species: world.grains.species.clone(),
-            masses: world.grains.mass.clone(),
+            species: world.grains.species.to_vec(),
+            masses: world.grains.mass.to_vec(),
         };
         if known == self.known {
             return;

@@ -165,15 +165,8 @@ fn cube(half: f64, turn: DQuat, position: DVec3) -> World {
     };
     let mut world = column(0.025, 0.05, [0.1, 0.4]);
     put(&mut world, position, shape.bounding_radius(), 0);
-    world.polyhedra = Some(Box::new(Polyhedra {
-        shapes: vec![shape].into(),
-        shape: vec![0],
-        orientation: vec![turn],
-        angular_momentum: vec![DVec3::ZERO],
-        inertia: vec![DVec3::ONE],
-        features: Vec::new(),
-        ..Polyhedra::default()
-    }));
+    let polyhedra = Polyhedra::of_grains(&world.grains, [shape], &[(0, turn)]);
+    world.polyhedra = Some(Box::new(polyhedra));
     world
 }
 

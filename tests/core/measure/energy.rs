@@ -170,7 +170,10 @@ fn every_exchange_enters_with_its_sign() {
     let mut world = raised_grain();
     push(&mut world, DVec3::Y * 2.0, 0.003);
     world.restart_clock(0.0);
-    world.grains.exchanged = vec![[1.0, 2.0, 4.0, 8.0], [16.0, 32.0, 64.0, 128.0]];
+    world
+        .grains
+        .exchanged
+        .set(vec![[1.0, 2.0, 4.0, 8.0], [16.0, 32.0, 64.0, 128.0]]);
     world.ledger.command_work = 256.0;
     let ledger = EnergyLedger::of(&world);
     assert_eq!(ledger.dashpot_loss, 17.0);

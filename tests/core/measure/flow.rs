@@ -95,7 +95,8 @@ fn mean_velocity_weighs_near_grains_more() {
     push(&mut world, DVec3::ZERO, GRAIN);
     push(&mut world, DVec3::X * 0.004, GRAIN);
     push(&mut world, DVec3::X * 0.02, GRAIN);
-    world.grains.velocity = vec![DVec3::X, DVec3::Y, DVec3::ONE * 100.0];
+    let velocities = vec![DVec3::X, DVec3::Y, DVec3::ONE * 100.0];
+    world.grains.velocity.set(velocities);
     let found = mean_velocity(&world, DVec2::ZERO, 0.008).unwrap();
     // One standard deviation away weighs e^-1/2; beyond two nothing does.
     let weight = (-0.5_f64).exp();

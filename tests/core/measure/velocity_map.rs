@@ -16,9 +16,9 @@ fn turning_bed() -> World {
     for x in lattice_in_drum(RADIUS, WIDTH, 2.0 * GRAIN, 0.0, 0.0) {
         push(&mut world, x, GRAIN);
     }
-    world.grains.velocity = (world.grains.position.iter())
-        .map(|x| DVec3::Z.cross(*x) * SPIN)
-        .collect();
+    for (v, x) in (world.grains.velocity.iter_mut()).zip(&world.grains.position) {
+        *v = DVec3::Z.cross(*x) * SPIN;
+    }
     world
 }
 

@@ -154,12 +154,12 @@ fn listed_grains_are_as_listed() {
     let names: Vec<&str> = world.species.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(names, ["a", "b"]);
     assert_eq!(
-        world.grains.species,
+        *world.grains.species,
         [SpeciesId(1), SpeciesId(0), SpeciesId(0)]
     );
     assert_eq!(world.grains.velocity[1], DVec3::new(-0.05, 0.0, 0.0));
     assert_eq!(world.grains.spin[1], DVec3::Z);
-    assert_eq!(world.grains.radius, [0.003, 0.003, 0.5]);
+    assert_eq!(*world.grains.radius, [0.003, 0.003, 0.5]);
     // A sphere's mass, 4/3 π r³ ρ; a few roundings.
     let mass = 4.0 / 3.0 * std::f64::consts::PI * 2.7e-8 * 7800.0;
     assert!((world.grains.mass[0] / mass - 1.0).abs() < 1e-14);

@@ -420,7 +420,7 @@ fn heavier_grain_keeps_going() {
         assert_relative("speed", found.x, expected, 5e-4);
         assert_eq!((found.y, found.z), (0.0, 0.0));
     }
-    assert_eq!(grains.spin, [DVec3::ZERO; 2]);
+    assert_eq!(*grains.spin, [DVec3::ZERO; 2]);
 }
 
 /// Springs whose tangential one swings as fast as the normal one.

@@ -276,7 +276,7 @@ fn listed_polyhedra_stand_as_listed() {
     let polyhedra = polyhedra(&world);
     // The first and the last are the same box.
     assert_eq!(polyhedra.shapes.len(), 5);
-    assert_eq!(polyhedra.shape, [0, 1, 2, 3, 4, 0]);
+    assert_eq!(*polyhedra.shape, [0, 1, 2, 3, 4, 0]);
     assert_eq!(polyhedra.shape_of(4), &Polyhedron::sphere(0.003));
     let volumes = [
         2e-6,
