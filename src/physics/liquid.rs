@@ -18,6 +18,19 @@ pub struct Liquid {
     pub law: BridgeLaw,
 }
 
+impl Liquid {
+    /// Whether it has the properties of `other`, however much there is of it and however its
+    /// bridges act.
+    pub fn is_same_substance(&self, other: &Self) -> bool {
+        let amended = Self {
+            volume: other.volume,
+            law: other.law,
+            ..*self
+        };
+        amended == *other
+    }
+}
+
 /// How a liquid bridge acts: the choices that Kasper et al. 2021 leave open, each with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -168,6 +181,13 @@ impl LiquidCase {
     /// Case `number` of the table, 1 … 7.
     pub fn of(number: u8) -> Option<&'static Self> {
         LIQUID_CASES.iter().find(|case| case.number == number)
+    }
+
+    /// The case whose properties `liquid` has, however much there is of it.
+    pub fn of_liquid(liquid: &Liquid) -> Option<&'static Self> {
+        LIQUID_CASES
+            .iter()
+            .find(|case| case.liquid().is_same_substance(liquid))
     }
 
     /// Surface tension γ [N/m]. The paper does not print it: water's own, and

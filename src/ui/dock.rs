@@ -35,6 +35,7 @@ use crate::ui::sections::{Section, section, sections_ui};
 use crate::ui::theme::Palette;
 use crate::ui::user_memory::{Look, UserMemory};
 use crate::ui::widgets::focus::focus_ui;
+use crate::ui::words::run_names::title_in_words;
 use crate::ui::{shortcuts, theme};
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
@@ -325,7 +326,7 @@ impl Dock {
             menu_ui(ui, simulation, recent, shown, view, out, |ui| {
                 if let Some(simulation) = simulation {
                     badge.ui(ui, simulation, &mut of_badge);
-                    let title = RichText::new(&simulation.scene().title).weak();
+                    let title = RichText::new(title_in_words(simulation)).weak();
                     ui.add(egui::Label::new(title).truncate());
                 }
             });
@@ -414,7 +415,7 @@ fn first_play_ui(root: &egui::Ui, simulation: &Simulation, out: &mut Vec<Request
             ui.vertical_centered(|ui| {
                 let face = RichText::new("▶  Play").size(30.0).strong();
                 let button = ui.add(egui::Button::new(face).min_size(egui::vec2(190.0, 64.0)));
-                let label = format!("Play {}", simulation.scene().title);
+                let label = format!("Play {}", title_in_words(simulation));
                 button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
                 if button.on_hover_text("Play (Space)").clicked() {
                     out.push(Request::Command(Command::Play));

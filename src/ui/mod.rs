@@ -76,3 +76,4 @@ pub use plugin::{DockPlugin, UiPlugin};
 pub use request::{Request, Requests, Sheet};
 pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
 pub use user_memory::{Look, UserMemory};
+pub(crate) use words::run_names::title_in_words;

@@ -55,6 +55,12 @@ pub fn is_column(simulation: &RunView) -> bool {
     simulation.world().is_some_and(|world| column(world))
 }
 
+/// Whether neither a bed nor a column is there to look at: then where the energy goes tells most of
+/// the grains.
+pub fn energy_comes_first(simulation: &RunView) -> bool {
+    !has_bed(simulation) && !is_column(simulation)
+}
+
 /// Whether grains lie in a bed, whose surface is measured.
 pub fn has_bed(simulation: &RunView) -> bool {
     let world = simulation.world();

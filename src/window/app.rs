@@ -3,9 +3,8 @@
 //!
 //! In: a [`WindowJob`]. Out: the laboratory, until somebody closes it, or a picture.
 
-use crate::scene::Scene;
 use crate::simulation::{Simulation, SimulationPlugin};
-use crate::ui::{Dock, UiPlugin, UserMemory, first_speed};
+use crate::ui::{Dock, UiPlugin, UserMemory, first_speed, title_in_words};
 use crate::view::{ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
@@ -59,7 +58,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         Some(_) => f64::INFINITY,
         None => first_speed(job.opened.scene().duration),
     };
-    let title = title(job.opened.scene());
+    let title = window_title(&job.opened.scene().title);
     match &job.picture {
         Some(picture) if picture.offscreen => app.add_plugins((
             offscreen_plugins().set(log()),
@@ -143,17 +142,18 @@ fn log() -> LogPlugin {
     }
 }
 
-fn title(scene: &Scene) -> String {
-    format!("{} – Grainfall", scene.title)
+/// What stands over the window of a scene that is called `scene`.
+fn window_title(scene: &str) -> String {
+    format!("{scene} – Grainfall")
 }
 
-/// Keeps the window's title that of the scene.
+/// Keeps the window's title that of the scene and of its liquid.
 fn follow_title(
     simulation: Option<Res<Simulation>>,
     window: Option<Single<&mut Window, With<PrimaryWindow>>>,
 ) {
     if let (Some(simulation), Some(mut window)) = (simulation, window) {
-        let title = title(simulation.scene());
+        let title = window_title(&title_in_words(&simulation));
         if window.title != title {
             window.title = title;
         }

@@ -173,9 +173,8 @@ pub static CASE: ParameterRow = ParameterRow {
             let Some(liquid) = &scene.liquid else {
                 return LIQUIDS.first().map(Value::Choice);
             };
-            let is_it = |case: &LiquidCase| with_amount_of(liquid, case) == *liquid;
-            let number = LIQUID_CASES.iter().find(|case| is_it(case))?.number;
-            LIQUIDS.get(usize::from(number)).map(Value::Choice)
+            let case = LiquidCase::of_liquid(liquid)?;
+            LIQUIDS.get(usize::from(case.number)).map(Value::Choice)
         },
         write: |scene, _, value| {
             let number = value.number() as u8;

@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
-use crate::ui::words::run_names::value_in_words;
+use crate::ui::words::run_names::{title_in_words, value_in_words};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
 
@@ -26,7 +26,7 @@ impl Panel for AboutScene {
         _out: &mut Vec<Request>,
     ) {
         let scene = simulation.scene();
-        ui.label(RichText::new(&scene.title).strong());
+        ui.label(RichText::new(title_in_words(simulation)).strong());
         if !scene.look_for.is_empty() {
             ui.label(&scene.look_for);
         }

@@ -5,7 +5,7 @@
 
 use crate::measure::{Measure, Series};
 use crate::simulation::{RunView, Simulation};
-use crate::ui::panel::{Panel, has_bed, is_column};
+use crate::ui::panel::{Panel, energy_comes_first};
 use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plots::axes::{fitting_plot, tick};
 use crate::ui::plots::time_plot::moment_ui;
@@ -83,7 +83,7 @@ impl Panel for EnergyStack {
     }
 
     fn comes_first(&self, simulation: &Simulation) -> bool {
-        !has_bed(simulation) && !is_column(simulation)
+        energy_comes_first(simulation)
     }
 
     fn describes_one_run(&self) -> bool {

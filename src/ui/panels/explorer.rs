@@ -6,7 +6,7 @@
 
 use crate::measure::{Avalanche, Measure, Series};
 use crate::simulation::{Half, Provenance, Simulation};
-use crate::ui::panel::{Panel, has_bed, is_column};
+use crate::ui::panel::{Panel, energy_comes_first};
 use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plot_export::{Export, ExportedRun, PlotAxis};
 use crate::ui::plots::axes::fitting_plot;
@@ -50,7 +50,7 @@ impl Panel for Explorer {
     }
 
     fn comes_first(&self, simulation: &Simulation) -> bool {
-        !has_bed(simulation) && !is_column(simulation)
+        energy_comes_first(simulation)
     }
 
     fn ui(

@@ -1,15 +1,51 @@
-//! The bars: what playing, stepping, speed and a fault ask for, the film that is recorded, the big
-//! button of a scene that stands still.
+//! The bars: what playing, stepping, speed and a fault ask for, the film that is recorded, the title
+//! and the big button of a scene that stands still.
 
-use crate::window_of_panels::{Window, commands, prepared, three_grains};
+use crate::window_of_panels::{
+    Window, commands, prepared, ready, set, standing, three_grains, wet,
+};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use grainfall::simulation::{Command, Status};
+use grainfall::parameters::Parameter;
+use grainfall::physics::LIQUID_CASES;
+use grainfall::simulation::{Command, Simulation, Status};
 use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{Request, status_ui};
 use std::time::Duration;
+
+/// Asserts that the bar and the large button call what `simulation` shows by this `title`.
+#[track_caller]
+fn assert_titled(simulation: Simulation, title: &str) {
+    let harness = Window::of(simulation);
+    harness.get_by_label(&format!("Play {title}"));
+    let titles = harness.query_all_by_label(title).count();
+    assert!(titles >= 2, "in the bar and in the panel about the scene");
+}
+
+#[test]
+fn title_tells_of_a_liquid_that_the_scene_did_not_state() {
+    let with = |parameter: Parameter, value: f64| {
+        let mut simulation = wet();
+        simulation.send(set(parameter, value));
+        simulation.tick(Duration::from_millis(16));
+        simulation
+    };
+    assert_titled(prepared(), "Three grains");
+    assert_titled(wet(), "Three grains");
+    // More of the same liquid is the same liquid.
+    assert_titled(with(Parameter::LiquidVolume, 2e-6), "Three grains");
+    let thin = with(Parameter::Viscosity, 0.012);
+    assert_titled(thin, "Three grains · now η = 12 mPa s");
+    let dry = with(Parameter::LiquidVolume, 0.0);
+    assert_titled(dry, "Three grains · now dry");
+    let original = wet().scene().clone();
+    let mut other = original.clone();
+    other.liquid = Some(LIQUID_CASES[6].liquid());
+    let chosen = Simulation::open(other, standing()).made_of(original.into());
+    assert_titled(ready(chosen), "Three grains · now glycerol");
+}
 
 #[test]
 fn play_asks_to_play_and_pause_to_pause() {
