@@ -6,11 +6,11 @@
 //! and a sphere looks for its like and for larger ones alone: a cell of the largest would hold all
 //! the small ones there are. Used for grains and for the spheres round polyhedra.
 //!
-//! Cells are numbered with x fastest, so that the three cells beside each other along x are one range
-//! of members: 9 ranges are looked at instead of 27 cells. Each pair is told once, by its lower
-//! number, and partners come in rising order: the lists that are made from them need no sorting of
-//! their own. Boxes much larger than what they hold get wider cells, up to eight for each sphere: the
-//! grid takes memory by spheres, not by space.
+//! Cells are numbered with x fastest, so that the three cells beside each other along x are one
+//! range of members: 9 ranges are looked at instead of 27 cells. Each pair is told once, by its
+//! lower number, and partners come in rising order: the lists that are made from them need no
+//! sorting of their own. Boxes much larger than what they hold get wider cells, up to eight for
+//! each sphere: the grid takes memory by spheres, not by space.
 //!
 //! Not here: walls, which each list asks for their distance, and how long a list lasts.
 
@@ -49,9 +49,14 @@ pub fn for_each_near(
     }
 }
 
+/// The radius of a sphere, the companion of its centre [m].
+fn radius(sphere: &Row) -> f64 {
+    sphere[3]
+}
+
 /// Whether the surfaces of two spheres are nearer to each other than `skin` [m].
 fn are_near(sphere: &Row, other: &Row, skin: f64) -> bool {
-    let reach = sphere[3] + other[3] + skin;
+    let reach = radius(sphere) + radius(other) + skin;
     length_squared(sub(*other, *sphere)) < reach * reach
 }
 
@@ -65,7 +70,7 @@ struct Levels {
 
 impl Levels {
     fn of(spheres: &[Row]) -> Self {
-        let radii = || spheres.iter().map(|sphere| sphere[3]);
+        let radii = || spheres.iter().map(radius);
         let largest = radii().fold(0.0, f64::max);
         if radii().all(|radius| LEVEL * radius >= largest) {
             return Self {
@@ -145,15 +150,15 @@ impl CellGrid {
     fn new(spheres: &[Row], numbers: Vec<u32>, skin: f64) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
-        let mut radius: f64 = 0.0;
+        let mut largest: f64 = 0.0;
         for sphere in numbers.iter().map(|i| &spheres[*i as usize]) {
             for axis in 0..3 {
                 low[axis] = low[axis].min(sphere[axis]);
                 high[axis] = high[axis].max(sphere[axis]);
             }
-            radius = radius.max(sphere[3]);
+            largest = largest.max(radius(sphere));
         }
-        let mut size = 2.0 * radius + skin;
+        let mut size = 2.0 * largest + skin;
         let limit = 8 * numbers.len() + 64;
         let count = |size: f64| [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / size).max(0.0));
         // Spheres scattered far apart would need a grid larger than memory: wider cells are still

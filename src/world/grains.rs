@@ -45,8 +45,8 @@ pub struct Grains {
     /// Touching partners, walls too, at the last evaluation.
     pub contact_count: GrainColumn<u32>,
     /// Energy exchanged at the contacts of which the grain is the first partner, since the start
-    /// [J]: lost in dashpots, lost in sliding (with what tangential springs lose as their stiffness
-    /// changes), lost in rolling, done by walls.
+    /// [J]: [`Grains::IN_DASHPOTS`], [`Grains::IN_SLIDING`], [`Grains::IN_ROLLING`],
+    /// [`Grains::BY_WALLS`].
     pub exchanged: GrainColumn<[f64; 4]>,
     /// Volume of the liquid film on each, its part in bridges included [m³].
     pub film: GrainColumn<f64>,
@@ -59,6 +59,15 @@ pub struct Grains {
 }
 
 impl Grains {
+    /// Where in [`Grains::exchanged`] the energy lost in dashpots stands.
+    pub const IN_DASHPOTS: usize = 0;
+    /// Energy lost in sliding, with what tangential springs lose as their stiffness changes.
+    pub const IN_SLIDING: usize = 1;
+    /// Energy lost in rolling.
+    pub const IN_ROLLING: usize = 2;
+    /// Work done by walls.
+    pub const BY_WALLS: usize = 3;
+
     /// Number of grains.
     pub fn len(&self) -> usize {
         self.position.len()

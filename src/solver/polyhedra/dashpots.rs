@@ -29,7 +29,7 @@ use super::damping::{Matrix, Packed, ROWS, SUM, entry, softened};
 use super::nearest::group;
 use super::pairs::{PackedPartner, Pair, PairForce};
 use crate::lanes::{Lanes, Quad, Row, WIDEST, Work, cross, dot, minus, plus, side_by_side, times};
-use crate::world::Partner;
+use crate::world::{Grains, Partner};
 
 /// How often the pairs are solved in a step.
 pub const SWEEPS: usize = 2;
@@ -75,14 +75,22 @@ pub struct Response {
 }
 
 impl Response {
-    /// Of a wall, which moves like this.
-    pub fn of_wall([_, velocity, spin]: &[Row; 3]) -> Self {
-        Self {
-            velocity: *velocity,
-            spin: *spin,
-            ..Self::default()
-        }
+    /// The sum of the body's dashpots [N s/m].
+    #[inline(always)]
+    pub fn dashpots(&self) -> f64 {
+        self.spin[3]
     }
+}
+
+/// How walls move, and how they respond to dashpots: not at all.
+pub fn responses_of_walls(motions: &[[Row; 3]]) -> Vec<([Row; 3], Response)> {
+    let response = |[_, velocity, spin]: &[Row; 3]| Response {
+        velocity: *velocity,
+        spin: *spin,
+        ..Response::default()
+    };
+    let motions = motions.iter();
+    motions.map(|motion| (*motion, response(motion))).collect()
 }
 
 impl Body {
@@ -199,7 +207,7 @@ impl Work for DampingSweep<'_> {
                 if let Partner::Wall(w) = damper.second.unpack() {
                     let ([_, velocity, spin], _) = &self.walls[w as usize];
                     let product = |a: &Row, b: &Row| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-                    effect.exchanged[3] =
+                    effect.exchanged[Grains::BY_WALLS] =
                         self.dt * (product(&force, velocity) - product(&second, spin));
                 }
             }

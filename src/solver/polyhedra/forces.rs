@@ -15,11 +15,12 @@ use super::super::tangential::UNLOADED;
 use super::contact_group::ContactGroup;
 use super::dashpots::{Damper, Dashpot};
 use super::motion::{Surroundings, crossed};
-use super::nearest::group;
+use super::nearest::{Nearest, group};
 use super::pairs::{BLOCK, Block, ContactPoint, Pair, PairForce, Terms};
 use super::workspace::{ActivePair, Effect, Workspace};
 use crate::lanes::{Lanes, Quad, Work, side_by_side};
 use crate::physics::FeatureRule;
+use crate::world::Grains;
 
 /// Two cores that come nearer than the rest of this share of the touching distance could pass
 /// through each other.
@@ -107,8 +108,8 @@ impl Workspace {
             let (pair, terms) = (&mut block.pairs[own], &block.terms[own]);
             let (mut deepest, mut hidden) = (f64::NEG_INFINITY, false);
             for result in results.iter_mut() {
-                let overlap = terms.touch - result.normal[3];
-                result.middle[3] = overlap;
+                let overlap = terms.touch - result.distance();
+                result.set_overlap(overlap);
                 deepest = if overlap > deepest { overlap } else { deepest };
                 hidden |= overlap == f64::NEG_INFINITY;
             }
@@ -123,8 +124,8 @@ impl Workspace {
             if all.rule == FeatureRule::Shared {
                 let points = &block.points[pair.points.range()];
                 let before = Sums::of(points.iter().map(|point| point.overlap));
-                let now = Sums::of(results.iter().map(|result| result.middle[3]));
-                (active.spin[3], active.velocity[3]) = (before.part(), now.part());
+                let now = Sums::of(results.iter().map(Nearest::overlap));
+                active.set_parts(before.part(), now.part());
                 active.stored = 0.5 * terms.law[0] * (now.shared() - before.shared());
             }
         }
@@ -169,7 +170,7 @@ impl Workspace {
                 effect.moment = found.moments[k].row();
                 effect.energy = found.energies[k].row();
                 let point = &mut points[number.point as usize];
-                point.overlap = effect.force[3];
+                point.overlap = effect.overlap();
                 // A spring that is let go leaves zeros without a sign, which would tell where it
                 // has been.
                 let touches = point.overlap > 0.0;
@@ -178,7 +179,7 @@ impl Workspace {
                 } else {
                     UNLOADED
                 };
-                point.dashpot = effect.moment[3];
+                point.dashpot = effect.dashpot();
             }
         }
     }
@@ -224,7 +225,7 @@ impl Workspace {
             let pair = &block.pairs[own];
             let number = (first + own) as u32;
             if let Some(damper) = Damper::of(number, pair, dashpots) {
-                forces[own].first[3] = damper.strength();
+                forces[own].set_dashpots(damper.strength());
                 resisting[own] = true;
                 self.dampers.push(damper);
             }
@@ -275,14 +276,15 @@ impl Surroundings<'_> {
                 force.force[axis] += effect.force[axis];
                 force.first[axis] += effect.moment[axis];
             }
-            force.exchanged[0] += effect.energy[0];
-            force.exchanged[1] += effect.energy[1];
-            pressed += effect.energy[2];
+            let [in_dashpot, in_sliding, stored, _] = effect.energy;
+            force.exchanged[Grains::IN_DASHPOTS] += in_dashpot;
+            force.exchanged[Grains::IN_SLIDING] += in_sliding;
+            pressed += stored;
         }
         if self.rule == FeatureRule::Shared {
             // Stiffness that is shared anew is no potential's: what it takes or gives is booked
             // with the springs.
-            force.exchanged[1] += pressed - active.stored;
+            force.exchanged[Grains::IN_SLIDING] += pressed - active.stored;
         }
         let [second, ..] = self.motion(pair.second);
         let across = crossed(sub(active.centre, *second), force.force);
@@ -292,9 +294,9 @@ impl Surroundings<'_> {
         if let Some(wall) = self.wall(pair) {
             let by_force = vector(force.force).dot(wall.motion.velocity);
             let by_torque = -vector(force.second).dot(wall.motion.spin);
-            force.exchanged[3] = self.dt * (by_force + by_torque);
+            force.exchanged[Grains::BY_WALLS] = self.dt * (by_force + by_torque);
         }
-        force.force[3] = if active.touches { 1.0 } else { 0.0 };
+        force.set_touches(active.touches);
         force
     }
 }

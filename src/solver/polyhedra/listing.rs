@@ -204,7 +204,7 @@ impl Search {
     fn keep_near(&self, places: &Places<'_>, wanted: &Wanted, list: &mut Vec<Listed>) {
         let (cutoff, leeway) = (wanted.cutoff(), wanted.leeway());
         for (number, (listed, result)) in self.candidates.iter().zip(&self.results).enumerate() {
-            let distance = result.normal[3];
+            let distance = result.distance();
             // Vertices and faces come before edges: their numbers are those of the outlines.
             let Some(job) = self.jobs.outlines.get(number) else {
                 if distance < cutoff {
@@ -212,7 +212,7 @@ impl Search {
                 }
                 continue;
             };
-            let near_outline = result.middle[3] <= leeway;
+            let near_outline = result.margin() <= leeway;
             if distance < cutoff && !near_outline {
                 list.push(Listed::face(listed.feature, 0));
             } else if near_outline && (distance < cutoff || distance == f64::INFINITY) {
@@ -268,7 +268,7 @@ pub fn choose(near: &[Listed], results: &[Nearest], cutoff: f64, chosen: &mut Ve
     chosen.clear();
     let mut nearest = f64::INFINITY;
     for (listed, result) in near.iter().zip(results) {
-        let distance = result.normal[3];
+        let distance = result.distance();
         if distance < cutoff || distance == f64::INFINITY {
             chosen.push(*listed);
         } else {

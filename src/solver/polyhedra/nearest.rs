@@ -12,9 +12,35 @@ pub struct Nearest {
     /// Unit vector from the point of the first body to that of the second; their distance [m],
     /// infinite for a vertex behind a face.
     pub normal: Row,
-    /// The point halfway [m]; a companion for the user: how far the vertex lies inside the face's
-    /// outline [m] where that was asked for.
+    /// The point halfway [m]; the margin, later the overlap [m].
     pub middle: Row,
+}
+
+impl Nearest {
+    /// How far the two points are apart [m]; infinite for a vertex behind a face.
+    #[inline(always)]
+    pub fn distance(&self) -> f64 {
+        self.normal[3]
+    }
+
+    /// How far the vertex lies inside the face's outline [m], negative outside, where that was
+    /// asked for.
+    #[inline(always)]
+    pub fn margin(&self) -> f64 {
+        self.middle[3]
+    }
+
+    /// By how much the features overlap, once that is known [m].
+    #[inline(always)]
+    pub fn overlap(&self) -> f64 {
+        self.middle[3]
+    }
+
+    /// Takes note of it, in the place of the margin.
+    #[inline(always)]
+    pub fn set_overlap(&mut self, overlap: f64) {
+        self.middle[3] = overlap;
+    }
 }
 
 /// Two edges.

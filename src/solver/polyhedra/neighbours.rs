@@ -95,7 +95,7 @@ impl PairList {
                 overlap: point.overlap,
                 dashpot: point.dashpot,
                 spring: vector(point.spring),
-                stiffness: point.spring[3],
+                stiffness: point.stiffness(),
             })
         })
     }

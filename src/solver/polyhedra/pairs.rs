@@ -202,6 +202,11 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// The stiffness with which its tangential spring was last updated [N/m].
+    pub fn stiffness(&self) -> f64 {
+        self.spring[3]
+    }
+
     /// Features that touch, with the history that a world holds of them.
     pub fn known(contact: &FeatureContact, listed: Listed) -> Self {
         Self {
@@ -229,12 +234,12 @@ impl ContactPoint {
 pub struct PairForce {
     /// Force on the first [N]; 1 while the two touch, else 0.
     pub force: Row,
-    /// Torque on the first [N m].
+    /// Torque on the first [N m]; the sum of the dashpots that are taken implicitly [N s/m].
     pub first: Row,
     /// Torque on the second [N m].
     pub second: Row,
-    /// Energy lost in dashpots, by springs (in sliding and as stiffness is shared anew), none in
-    /// rolling, and done by a wall during the step [J].
+    /// Energy exchanged during the step, as [`crate::world::Grains::exchanged`] has it [J]: what
+    /// stiffness that is shared anew takes or gives stands with sliding.
     pub exchanged: Row,
 }
 
@@ -243,6 +248,30 @@ impl PairForce {
     #[inline(always)]
     pub fn touches(&self) -> bool {
         self.force[3] > 0.0
+    }
+
+    /// Takes note of whether they do.
+    #[inline(always)]
+    pub fn set_touches(&mut self, touches: bool) {
+        self.force[3] = if touches { 1.0 } else { 0.0 };
+    }
+
+    /// 1 while they touch, else 0: what they add to either's number of touching partners.
+    #[inline(always)]
+    pub fn contact_count(&self) -> f64 {
+        self.force[3]
+    }
+
+    /// The sum of its dashpots that are left to be taken implicitly [N s/m].
+    #[inline(always)]
+    pub fn dashpots(&self) -> f64 {
+        self.first[3]
+    }
+
+    /// Takes note of it.
+    #[inline(always)]
+    pub fn set_dashpots(&mut self, strength: f64) {
+        self.first[3] = strength;
     }
 }
 

@@ -10,7 +10,7 @@ use super::super::walls::Walls;
 use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
 use super::PolyhedronKernel;
 use super::bodies::{Body, Geometry, Load, Place, Shapes};
-use super::dashpots::{DampingSweep, Response, SWEEPS};
+use super::dashpots::{DampingSweep, Response, SWEEPS, responses_of_walls};
 use super::extents::Extents;
 use super::forces::Forces;
 use super::motion::{Surroundings, motions_of};
@@ -20,6 +20,7 @@ use super::pairs::{BLOCK, ContactPoint, Pair, PairForce, Terms};
 use super::workspace::Workspace;
 use crate::lanes::{Lanes, Processor, Work, prefetch};
 use crate::physics::{FeatureRule, Integrator};
+use crate::world::Grains;
 use std::ops::Range;
 
 /// A worker's share of a world of polyhedra.
@@ -122,39 +123,38 @@ impl<'a> PolyhedraShare<'a> {
     pub fn all(world: &'a mut PolyhedronKernel, batch: &'a Batch) -> Vec<Self> {
         let needed = batch.size().max(world.workspaces.len());
         world.workspaces.resize_with(needed, Workspace::default);
-        world
-            .responses
-            .resize(world.bodies.len(), Response::default());
+        let count = world.bodies.len();
+        world.responses.resize(count, Response::default());
         let division = Division::of(world, batch.size());
+        let by_pair = || division.pairs.iter().cloned();
+        let by_body = || division.bodies.iter().cloned();
+        let vertices = division.vertices.iter().cloned();
+        let planes = division.planes.iter().cloned();
         let wall_motions = motions_of(&world.walls);
-        let unmoved = |motion: &[Row; 3]| (*motion, Response::of_wall(motion));
-        let wall_responses: Vec<_> = wall_motions.iter().map(unmoved).collect();
-        let each = |ranges: &[Range<usize>]| ranges.to_vec().into_iter();
-
-        let slack = world.slack();
+        let wall_responses = responses_of_walls(&wall_motions);
         let common = Common {
             shapes: &world.shapes,
             pairs_of: &world.pairs_of,
             reference: &world.reference,
-            slack_squared: slack * slack,
+            slack_squared: world.slack() * world.slack(),
             dt: world.dt,
             gravity: world.gravity,
             integrator: world.integrator,
             rule: world.rule,
             extents: world.extents,
         };
-        let mut bodies = batch.lend_ranges(&mut world.bodies, each(&division.bodies));
-        let mut vertices = batch.lend_ranges(&mut world.vertices, each(&division.vertices));
-        let mut planes = batch.lend_ranges(&mut world.planes, each(&division.planes));
-        let mut forces = batch.lend_ranges(&mut world.forces, each(&division.pairs));
-        let mut acting = batch.lend_ranges(&mut world.acting, each(&division.pairs));
-        let mut resistances = batch.lend_ranges(&mut world.resistances, each(&division.pairs));
-        let mut resisting = batch.lend_ranges(&mut world.resisting, each(&division.pairs));
-        let mut responses = batch.lend_ranges(&mut world.responses, each(&division.bodies));
-        let mut loads = split_once(&mut world.loads, each(&division.bodies));
-        let mut pairs = split_once(&mut world.pairs.list, each(&division.pairs));
-        let mut terms = split_once(&mut world.pairs.terms, each(&division.pairs));
-        let mut points = split_once(&mut world.pairs.points, each(&division.blocks));
+        let mut bodies = batch.lend_ranges(&mut world.bodies, by_body());
+        let mut vertices = batch.lend_ranges(&mut world.vertices, vertices);
+        let mut planes = batch.lend_ranges(&mut world.planes, planes);
+        let mut forces = batch.lend_ranges(&mut world.forces, by_pair());
+        let mut acting = batch.lend_ranges(&mut world.acting, by_pair());
+        let mut resistances = batch.lend_ranges(&mut world.resistances, by_pair());
+        let mut resisting = batch.lend_ranges(&mut world.resisting, by_pair());
+        let mut responses = batch.lend_ranges(&mut world.responses, by_body());
+        let mut loads = split_once(&mut world.loads, by_body());
+        let mut pairs = split_once(&mut world.pairs.list, by_pair());
+        let mut terms = split_once(&mut world.pairs.terms, by_pair());
+        let mut points = split_once(&mut world.pairs.points, division.blocks.iter().cloned());
         let mut workspaces = world.workspaces.iter_mut();
         let share = |own: Range<usize>| {
             Some(Self {
@@ -177,7 +177,7 @@ impl<'a> PolyhedraShare<'a> {
                 wall_responses: wall_responses.clone(),
             })
         };
-        each(&division.bodies).filter_map(share).collect()
+        by_body().filter_map(share).collect()
     }
 }
 
@@ -245,7 +245,7 @@ impl Share for PolyhedraShare<'_> {
                     &load.with(&resistance),
                     self.common.dt,
                     self.common.gravity,
-                    response.spin[3],
+                    response.dashpots(),
                 );
             }
         }
@@ -392,7 +392,7 @@ impl Incidence<'_> {
                     load.force[axis] += force.force[axis];
                     load.torque[axis] += force.first[axis];
                 }
-                load.exchanged[3] += force.exchanged[3];
+                load.exchanged[Grains::BY_WALLS] += force.exchanged[Grains::BY_WALLS];
             }
         }
         load
@@ -410,9 +410,9 @@ impl Incidence<'_> {
             work += resistance.force[axis] * (body.velocity[axis] + after.velocity[axis]);
             work += resistance.torque[axis] * (body.spin[axis] + after.spin[axis]);
         }
-        let by_walls = resistance.exchanged[3];
-        load.exchanged[0] += by_walls - 0.5 * common.dt * work;
-        load.exchanged[3] += by_walls;
+        let by_walls = resistance.exchanged[Grains::BY_WALLS];
+        load.exchanged[Grains::IN_DASHPOTS] += by_walls - 0.5 * common.dt * work;
+        load.exchanged[Grains::BY_WALLS] += by_walls;
     }
 
     /// Sums what the pairs of body `i` do to it, in the pairs' order; returns the sum of its
@@ -433,8 +433,8 @@ impl Incidence<'_> {
                 load.force[axis] -= force.force[axis];
                 load.torque[axis] += force.second[axis];
             }
-            load.force[3] += force.force[3];
-            strength += force.first[3];
+            load.force[3] += force.contact_count();
+            strength += force.dashpots();
         }
         for pair in as_first {
             if !self.acting[pair] {
@@ -446,7 +446,7 @@ impl Incidence<'_> {
                 load.torque[axis] += force.first[axis];
                 load.exchanged[axis] += force.exchanged[axis];
             }
-            strength += force.first[3];
+            strength += force.dashpots();
         }
         strength
     }

@@ -48,6 +48,14 @@ pub struct ActivePair {
     pub touches: bool,
 }
 
+impl ActivePair {
+    /// Takes note of the part of the pair's stiffness that each contact had a step ago and has now.
+    #[inline(always)]
+    pub fn set_parts(&mut self, before: f64, now: f64) {
+        (self.spin[3], self.velocity[3]) = (before, now);
+    }
+}
+
 /// Where the pair and the contact point of a result are.
 #[derive(Clone, Copy)]
 pub struct ResultOf {
@@ -87,12 +95,26 @@ pub struct Workspace {
 /// What a contact does.
 #[derive(Clone, Copy, Default)]
 pub struct Effect {
-    /// Force on the first [N].
+    /// Force on the first [N]; overlap, none at a gap [m].
     pub force: Row,
-    /// Its torque [N m].
+    /// Its torque [N m]; push of the dashpot [N].
     pub moment: Row,
     /// Energy lost in the dashpot, by the tangential spring, and put into the normal spring [J].
     pub energy: Row,
+}
+
+impl Effect {
+    /// Overlap, none at a gap [m].
+    #[inline(always)]
+    pub fn overlap(&self) -> f64 {
+        self.force[3]
+    }
+
+    /// What the normal dashpot adds to the spring's push [N].
+    #[inline(always)]
+    pub fn dashpot(&self) -> f64 {
+        self.moment[3]
+    }
 }
 
 impl Workspace {
