@@ -464,7 +464,8 @@ fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
     let scene = Scene::open(name)?;
     let bed = make_bed(&scene, available_threads())
         .map_err(|error| RunnerError::Input(error.to_string()))?;
-    store(path, &bed)
+    write_file(path, |file| file.write_all(&bed))?;
+    Ok(exit::DONE)
 }
 
 fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, RunnerError> {
@@ -478,11 +479,7 @@ fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, Run
     }
     apply_settings(&mut scene, settings)?;
     let grains = headless::pack(&scene)?;
-    store(path, &StoredCells::encode(&grains))
-}
-
-fn store(path: &Path, bytes: &[u8]) -> Result<u8, RunnerError> {
-    write_file(path, |file| file.write_all(bytes))?;
+    write_file(path, |file| file.write_all(&StoredCells::encode(&grains)?))?;
     Ok(exit::DONE)
 }
 

@@ -240,12 +240,12 @@ impl RunRecord {
 /// Whether the fault that was `met` is the one `stated`. Up to which state it is undone depends on
 /// the pieces in which a run goes on, and does not count.
 fn is_stated(met: &Fault, stated: Option<&Value>) -> bool {
-    let met = serde_json::to_value(met).unwrap_or_default();
-    stated.is_some_and(|stated| {
-        ["grain", "time", "kind"]
-            .iter()
-            .all(|key| met[key] == stated[key])
-    })
+    let (Ok(met), Some(stated)) = (serde_json::to_value(met), stated) else {
+        return false;
+    };
+    ["grain", "time", "kind"]
+        .iter()
+        .all(|key| met[key] == stated[key])
 }
 
 /// Whether `name` is that of a file in a folder or in a folder of it, and of nothing above.

@@ -16,6 +16,7 @@ use crate::physics::limits::MOST_POLYHEDRA;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -83,7 +84,7 @@ struct Reference {
 pub enum PackingError {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
-    Unreadable(#[from] std::io::Error),
+    Unreadable(#[from] io::Error),
     /// It is something else.
     #[error("is no packing of this version")]
     Other,
@@ -144,15 +145,17 @@ impl StoredCells {
     }
 
     /// The bytes of a file that holds `grains`: magic, format, checksum, contents.
-    pub fn encode(grains: &[Rounded]) -> Vec<u8> {
-        // Writing into memory cannot fail; if it did, reading would find the file empty.
-        let contents = postcard::to_stdvec(grains).unwrap_or_default();
+    ///
+    /// # Errors
+    /// When they cannot be written in this format.
+    pub fn encode(grains: &[Rounded]) -> io::Result<Vec<u8>> {
+        let contents = postcard::to_stdvec(grains).map_err(io::Error::other)?;
         let mut bytes = Vec::with_capacity(HEADER + contents.len());
         bytes.extend_from_slice(MAGIC);
         bytes.extend_from_slice(&FORMAT.to_le_bytes());
         bytes.extend_from_slice(blake3::hash(&contents).as_bytes());
         bytes.extend_from_slice(&contents);
-        bytes
+        Ok(bytes)
     }
 
     /// The grains.

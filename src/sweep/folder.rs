@@ -132,6 +132,7 @@ impl SweepFolder {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(OutputError::write(&path, error)),
         };
+        // What is no JSON is no sweep's file either.
         let record: Value = serde_json::from_slice(&bytes).unwrap_or_default();
         Ok((record["program"] == "grainfall").then_some(record))
     }

@@ -315,11 +315,15 @@ fn listed_polyhedra(
     let mut shapes: Vec<(Polyhedron, DQuat)> = Vec::new();
     let mut bodies = Vec::new();
     for grain in list {
-        let key = postcard::to_stdvec(&(&grain.shape, grain.radius)).unwrap_or_default();
-        let shape = *known.entry(key).or_insert_with(|| {
+        let mut next = || {
             shapes.push(shape_of(grain));
             (shapes.len() - 1) as u32
-        });
+        };
+        let shape = match postcard::to_stdvec(&(&grain.shape, grain.radius)) {
+            Ok(key) => *known.entry(key).or_insert_with(next),
+            // What has no key is alike to none.
+            Err(_) => next(),
+        };
         bodies.push(PlacedPolyhedron {
             shape,
             position: grain.position,

@@ -92,7 +92,11 @@ fn packing() -> (TempDir, PathBuf, PathBuf) {
     fs::create_dir_all(scenes.join("below")).unwrap();
     fs::create_dir_all(&other).unwrap();
     let cut = Packing::new(&Scene::open("small-column").unwrap()).unwrap();
-    fs::write(other.join("cells.pack"), StoredCells::encode(&cut.finish())).unwrap();
+    fs::write(
+        other.join("cells.pack"),
+        StoredCells::encode(&cut.finish()).unwrap(),
+    )
+    .unwrap();
     (folder, scenes, other)
 }
 

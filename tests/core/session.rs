@@ -188,7 +188,7 @@ fn session_holds_the_grains_that_its_scene_takes_from_a_file() {
     let (folder, path) = place();
     let cells = folder.path().join("cells.pack");
     let cut = Packing::new(&Scene::open("small-column").unwrap()).unwrap();
-    fs::write(&cells, StoredCells::encode(&cut.finish())).unwrap();
+    fs::write(&cells, StoredCells::encode(&cut.finish()).unwrap()).unwrap();
     let scene = r#"(
         title: "From a file", materials: {"stone": (friction: 0.3), "floor": ()},
         container: Column(radius_mm: 20, height_mm: 25, material: "floor"),

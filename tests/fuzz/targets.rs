@@ -449,7 +449,7 @@ impl PackingFiles {
                     grains: Voronoi(packing: \"cells.pack\", species: [(material: \"stone\")]))";
         Self {
             scene: place.write("scene.ron", text),
-            whole: StoredCells::encode(&grains),
+            whole: StoredCells::encode(&grains).expect("they can be written"),
             place,
         }
     }
