@@ -1,5 +1,5 @@
-//! Files that appear whole or not at all, files that are read whole or not at all, files that grow at their end, and folders that one
-//! program at a time writes to.
+//! Files that appear whole or not at all, files that are read whole or not at all, files that grow
+//! at their end, and folders that one program at a time writes to.
 //!
 //! In: paths and bytes. Out: files that a stop at any moment leaves whole: a file is written under
 //! a name of its own, made durable and then renamed; what grows is cut back where an addition

@@ -1,8 +1,8 @@
 //! Hearing that somebody wants the program to end.
 //!
-//! In: the system's signals: Ctrl-C, a request to end, a terminal that is closed. Out: a flag, which
-//! runs look at between two pieces of work. Signals that whoever started the program has it ignore,
-//! as `nohup` does with closed terminals, stay ignored.
+//! In: the system's signals: Ctrl-C, a request to end, a terminal that is closed. Out: a flag,
+//! which runs look at between two pieces of work. Signals that whoever started the program has it
+//! ignore, as `nohup` does with closed terminals, stay ignored.
 
 use super::terminal::tell;
 use crate::runner::{RunnerError, exit};

@@ -139,7 +139,8 @@ impl Drop for Threaded {
     fn drop(&mut self) {
         self.messages = None;
         if let Some(thread) = self.thread.take() {
-            // Dropped because a thread that panicked has printed its panic, and there is nobody left to tell.
+            // Dropped because a thread that panicked has printed its panic, and there is nobody
+            // left to tell.
             drop(thread.join());
         }
     }

@@ -355,7 +355,8 @@ impl Lab {
         let (answered, waiting) = pending.split_at(files.len().min(pending.len()));
         self.saved.pending = waiting.to_vec();
         for (file, &sent) in files.into_iter().zip(answered) {
-            // Commands that followed before the news came may be in this revision and not in the file.
+            // Commands that followed before the news came may be in this revision and not in the
+            // file.
             if file.outcome.is_ok() && sent == self.answered {
                 self.saved.revision = self.revision();
                 self.saved.worked = Duration::ZERO;

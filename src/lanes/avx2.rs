@@ -32,7 +32,8 @@ pub fn prefetch<T, const LINES: usize>(items: &[T]) {
     let start = items.as_ptr().cast::<i8>();
     let lines = std::mem::size_of_val(items).div_ceil(LINE);
     for line in 0..lines.min(LINES) {
-        // SAFETY: a prefetch reads nothing that the program could see; the address lies within `items`.
+        // SAFETY: a prefetch reads nothing that the program could see; the address lies within
+        // `items`.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line * LINE)) };
     }
 }

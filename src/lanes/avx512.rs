@@ -140,7 +140,8 @@ impl Lanes for Eight {
 
     #[inline(always)]
     fn store(self, column: &mut [f64]) {
-        // SAFETY: AVX-512 is there, as `self.0` proves; the slice holds eight numbers, of any alignment.
+        // SAFETY: AVX-512 is there, as `self.0` proves; the slice holds eight numbers, of any
+        // alignment.
         unsafe { _mm512_storeu_pd(column[..Self::COUNT].as_mut_ptr(), self.1) };
     }
 

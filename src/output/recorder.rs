@@ -2,8 +2,9 @@
 //!
 //! In: a [`RunSoFar`] at each output time, and one at the end. Out: the files of the folder, each
 //! whole at any time; whatever happens after a file was written, it stays. The series and the list
-//! of the grains' files grow with the run, and are made durable with them at an output, at most once
-//! a second. Bytes written grow like what there is to say: nothing but the summary is written twice.
+//! of the grains' files grow with the run, and are made durable with them at an output, at most
+//! once a second. Bytes written grow like what there is to say: nothing but the summary is written
+//! twice.
 
 use super::collection_file::{COLLECTION, CollectedFile, CollectionFile, write_collection};
 use super::folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY};

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// How the equations of motion are integrated. All integrators agree as the step becomes shorter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integrator {
-    /// Velocity Verlet; dashpots take the velocity of half a step ago. The step must be shorter than
-    /// the time in which all dashpots of a grain stop it.
+    /// Velocity Verlet; dashpots take the velocity of half a step ago. The step must be shorter
+    /// than the time in which all dashpots of a grain stop it.
     #[default]
     Explicit,
     /// Velocity Verlet for springs, friction and gravity, the θ-method for the dashpots of

@@ -1,8 +1,8 @@
 //! Whether what a file kept of a run is what a run can be.
 //!
-//! In: a scene that was checked, and a [`Checkpoint`] or an [`Archive`] of its run. Out: nothing, or
-//! what is wrong, a phrase for people. States themselves are looked at by [`World::check`]; here is
-//! looked at whether they are of this scene, and whether commands, samples and branches fit
+//! In: a scene that was checked, and a [`Checkpoint`] or an [`Archive`] of its run. Out: nothing,
+//! or what is wrong, a phrase for people. States themselves are looked at by [`World::check`]; here
+//! is looked at whether they are of this scene, and whether commands, samples and branches fit
 //! together.
 
 use super::archive::{Archive, ArchivedDestination, ArchivedEntry, ArchivedState};

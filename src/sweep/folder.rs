@@ -1,9 +1,9 @@
 //! The folder of a sweep: whose it is, and what it holds already.
 //!
-//! In: a sweep and its cases. Out: a folder with `sweep.json`, which says that it is a sweep's, what
-//! is varied there, and in the end the states that the cases came to and the digests of tables and
-//! plots. A folder that holds anything but a sweep, or cases of another one, is left alone; tables
-//! and plots of an earlier sweep that a later one does not write give way.
+//! In: a sweep and its cases. Out: a folder with `sweep.json`, which says that it is a sweep's,
+//! what is varied there, and in the end the states that the cases came to and the digests of tables
+//! and plots. A folder that holds anything but a sweep, or cases of another one, is left alone;
+//! tables and plots of an earlier sweep that a later one does not write give way.
 
 use super::case::{self, CaseResult};
 use super::{Case, Sweep};

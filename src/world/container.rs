@@ -126,8 +126,8 @@ impl Surface {
     /// The same for points side by side.
     ///
     /// With the distance `ρ` of a point from the axis, a cylinder is `R − ρ` away, radially; the
-    /// nearest point of a tube stands at `R − ρ` radially and, below its rim, at that height. On the
-    /// axis itself any direction is radial, and x is taken.
+    /// nearest point of a tube stands at `R − ρ` radially and, below its rim, at that height. On
+    /// the axis itself any direction is radial, and x is taken.
     #[inline(always)]
     pub fn distance_in_lanes<N: Lanes>(
         &self,

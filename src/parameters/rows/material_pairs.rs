@@ -133,7 +133,8 @@ fn can_meet(scene: &Scene, a: &str, b: &str) -> bool {
     if on_wall(a, b) || on_wall(b, a) {
         return true;
     }
-    // Species of a filling give grains to each other, so that any two of its grains may be of these.
+    // Species of a filling give grains to each other, so that any two of its grains may be of
+    // these.
     let grains = match &scene.grains {
         SceneGrains::List(list) if a == b => {
             list.iter().filter(|grain| grain.material == a).count()

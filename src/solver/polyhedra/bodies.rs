@@ -1,6 +1,15 @@
 //! The bodies: what moves of each grain, and where its vertices and faces are.
 //!
-//! Vertices are turned anew from the body frame in every step, so that shapes never drift.
+//! In: a world of polyhedra. Out: a row set for each body, the tables of all features, kicks and
+//! drifts. Vertices are turned anew from the body frame in every step, so that shapes never drift.
+//!
+//! The tables stand body by body, one after the other, and [`Place`] says where each begins: a
+//! feature has a number in its body (in [`crate::world::Feature`], in lists) and one in the world's
+//! tables (in jobs). Angular momentum is what is integrated, as torque changes it alone; the spin
+//! follows from it and the orientation.
+//!
+//! Not here: what forces there are ([`super::forces`]), how dashpots that are taken implicitly
+//! change velocities ([`super::dashpots`]).
 
 use super::super::row::{Row, length_squared, row, vector};
 use super::nearest::Places;
@@ -207,7 +216,8 @@ impl Shapes {
     }
 }
 
-/// Puts the vertices and planes of all bodies where those are.
+/// Puts the vertices and planes of all bodies where those are: once at the start of a call. In the
+/// steps each worker does it for its own bodies.
 pub struct Placing<'a> {
     /// The shapes.
     pub shapes: &'a Shapes,

@@ -2,7 +2,12 @@
 //! and spin.
 //!
 //! In: damping matrices and responses of pairs. Out: the same for forces that act on what they have
-//! brought about. Not here: what they mean ([`super::dashpots`]).
+//! brought about. Rows and columns are velocity (or force) along x, y, z, then spin (or torque). A
+//! damping matrix `G` has the rank of a pair's contacts, one to six, and need not have an inverse;
+//! a response `A` has one, as long as one side is a body. Sums run in one order for any number of
+//! lanes.
+//!
+//! Not here: what they mean ([`super::dashpots`]).
 
 use crate::lanes::{Lanes, WIDEST};
 
@@ -59,7 +64,8 @@ impl<N: Lanes> Matrix<N> {
 /// A lower triangular matrix.
 type Triangle<N> = [[N; 6]; 6];
 
-/// The lower triangular `C` with `C Cᵀ` the positive `matrix`, and the inverses of its diagonal.
+/// The lower triangular `C` with `C Cᵀ` the positive `matrix`, and the inverses of its diagonal
+/// (Cholesky's decomposition, column by column).
 #[inline(always)]
 #[expect(clippy::eq_op, reason = "lanes have no zero of their own")]
 fn cholesky<N: Lanes>(one: N, matrix: &Matrix<N>) -> (Triangle<N>, [N; 6]) {
@@ -84,7 +90,8 @@ fn cholesky<N: Lanes>(one: N, matrix: &Matrix<N>) -> (Triangle<N>, [N; 6]) {
 }
 
 /// `(G⁻¹ + h A)⁻¹`, of `G` that need not have an inverse: `G − h Y (1 + h Ĝ)⁻¹ Yᵀ` with `A = C Cᵀ`,
-/// `Y = G C`, `Ĝ = Cᵀ G C`.
+/// `Y = G C`, `Ĝ = Cᵀ G C` (the identity of Woodbury). `1 + h Ĝ` has no eigenvalue below one, so
+/// that its decomposition never fails, however stiff the dashpots are.
 #[inline(always)]
 #[expect(clippy::eq_op, reason = "lanes have no zero of their own")]
 pub fn softened<N: Lanes>(one: N, damping: &Matrix<N>, response: &Matrix<N>, h: N) -> Matrix<N> {

@@ -22,8 +22,9 @@ use crate::lanes::{Lanes, Quad, Work, side_by_side};
 use crate::physics::FeatureRule;
 use crate::world::Grains;
 
-/// Two cores that come nearer than the rest of this share of the touching distance could pass
-/// through each other.
+/// Largest overlap that is gone on with, as a share of the touching distance (the sum of the
+/// sphero-radii). Two cores that come nearer than the rest of this share of the touching distance
+/// could pass through each other.
 pub const DEEPEST: f64 = 0.8;
 
 /// The forces of a range of pairs: whole blocks, but for the last.
@@ -96,8 +97,10 @@ impl Work for Forces<'_> {
 }
 
 impl Workspace {
-    /// Finds the overlaps, how they share the stiffness, and how far nothing touches yet. True
-    /// where two cores are so near each other that they might pass through.
+    /// Finds the overlaps `δ`, touching distance less distance of the cores [m], how they share the
+    /// stiffness, and how far nothing touches yet. True where two cores are so near each other that
+    /// they might pass through. Where features share stiffness, `active.stored` becomes what the
+    /// springs of the pair store more than a step ago, `½ K_n (Σδ²)²/(Σδ)²` now less then [J].
     #[inline(always)]
     pub fn evaluate_overlaps(&mut self, all: &Surroundings<'_>, block: &mut Block<'_>) -> bool {
         let mut fault = false;
@@ -132,7 +135,9 @@ impl Workspace {
         fault
     }
 
-    /// The contact law of every active feature of the block.
+    /// The contact law of every active feature of the block, [`Lanes::COUNT`] at a time, whichever
+    /// pairs they are of; springs, overlaps and pushes of dashpots go back into the points. A last
+    /// group that is not full computes its last feature again.
     #[inline(always)]
     fn compute_forces<N: Lanes, const IMPLICIT: bool>(
         &mut self,
@@ -184,7 +189,8 @@ impl Workspace {
         }
     }
 
-    /// Sums what the contacts of each collected pair do.
+    /// Sums what the contacts of each collected pair do, in the order of their features. A pair
+    /// whose last contact has just ended still books what its springs lost.
     #[inline(always)]
     fn sum(
         &self,
@@ -266,7 +272,9 @@ impl Sums {
 
 impl Surroundings<'_> {
     /// The contact force of `pair`, from the `effects` of its active features: nothing where they
-    /// do not touch.
+    /// do not touch. With the force `F` on the first and its torque `T₁` about the first's centroid
+    /// `x₁`, the torque on the second about its own is `T₂ = −T₁ − (x₁ − x₂) × F`, so that angular
+    /// momentum is kept wherever the force acts; a wall does the work `Δt (F·v − T₂·ω)`.
     #[inline(always)]
     fn force_of(&self, pair: &Pair, active: &ActivePair, effects: &[Effect]) -> PairForce {
         let mut force = PairForce::default();

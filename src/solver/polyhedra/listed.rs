@@ -63,7 +63,8 @@ impl Listed {
 
 impl Jobs {
     /// Adds what there is to compute for features of the bodies whose features begin at `starts`:
-    /// vertices with faces, then edges with edges. The results begin at `out`.
+    /// vertices with faces, then edges with edges. The results begin at `out` and stand in the
+    /// order of the features, whichever kind of job each becomes.
     #[inline(always)]
     pub fn extend(
         &mut self,

@@ -4,8 +4,8 @@
 //! In: two bodies. Out: every pair of their features nearer than the sum of the sphero-radii and
 //! the skin, in order of [`Feature`], or none and how far apart the bodies are at least. Two convex
 //! cores that a plane separates can only touch near that plane ([`super::separating_axis`]): only
-//! features within reach of it are tried one by one. The list is a cache: whatever it holds beyond the touching features adds nothing to
-//! any result.
+//! features within reach of it are tried one by one. The list is a cache: whatever it holds beyond
+//! the touching features adds nothing to any result.
 //!
 //! Not here: nearest points ([`super::nearest`]), when a list is made ([`super::workspace`]).
 

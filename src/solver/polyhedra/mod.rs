@@ -217,7 +217,8 @@ impl Kernel for PolyhedronKernel {
 
 impl PolyhedronKernel {
     /// Takes bodies, what acts on them and walls in; true when all of it, with the contacts'
-    /// histories, is as it was left.
+    /// histories, is as it was left: then lists and slacks of the last call still hold. Anything
+    /// that was moved from outside, by ever so little, makes all lists anew.
     fn load_bodies(&mut self, world: &World) -> bool {
         let count = world.grains.len();
         let before = std::mem::take(&mut self.walls);

@@ -3,6 +3,17 @@
 //! In: jobs that name vertices and faces by their indices in the world's tables. Out: for each the
 //! unit vector from the first body to the second, the distance, and the point in the middle. Each
 //! is computed in lanes, every lane for itself.
+//!
+//! | job | nearest points | where |
+//! |---|---|---|
+//! | [`FaceJob`] | vertex, its foot on the plane | the foot is known to lie inside the outline |
+//! | [`OutlineJob`] | vertex, its foot on the plane or on an edge of the face | anywhere near the outline |
+//! | [`EdgeJob`] | points on either edge | a sphere is an edge of no length |
+//!
+//! Distances are those of cores: features touch where theirs is less than the sum of the
+//! sphero-radii. Lengths are in metres, positions in the frame of the world.
+//!
+//! Not here: which features are worth a job ([`super::listing`]), overlaps ([`super::forces`]).
 
 use crate::lanes::{Lanes, Quad, Row, Rows, WIDEST, cross, dot, minus, plus, side_by_side, times};
 

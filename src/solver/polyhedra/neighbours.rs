@@ -3,6 +3,14 @@
 //! In: bodies and walls. Out: every pair whose bounding spheres are nearer than a skin, sorted by
 //! the first and the second side, walls behind grains; what is known of a pair follows it from list
 //! to list.
+//!
+//! A pair's first side is the grain of lower number. Old and new list have one order, so that one
+//! pass over both carries histories over. The sums of a body run over its pairs as the second side,
+//! in rising order of the first, then as the first side, which stand together: the order is that of
+//! the grains' numbers, whatever else is listed.
+//!
+//! Not here: which features of a pair are listed ([`super::listing`]), when pairs are found anew
+//! ([`super`]).
 
 use super::super::grid::for_each_near;
 use super::super::row::{row, vector};
@@ -121,7 +129,9 @@ impl PairList {
         }
     }
 
-    /// Ranges of blocks that take about equally long, one for each of `size` workers.
+    /// Ranges of blocks that take about equally long, one for each of `size` workers. A block costs
+    /// its pairs, each of which is looked at in every step, and its points, each of which may be
+    /// measured: both weigh alike.
     pub fn shares(&self, size: usize) -> Vec<Range<usize>> {
         let blocks = &self.points;
         let cost = |block: &Vec<ContactPoint>| BLOCK + block.len();
@@ -142,7 +152,9 @@ impl PairList {
     }
 }
 
-/// The pairs of each body.
+/// The pairs of each body, as indices of the list: compressed rows, `starts[i]..starts[i + 1]`
+/// being those of body `i`. Pairs of which a body is the first stand together in the list itself;
+/// pairs of which it is the second are written out.
 #[derive(Default)]
 pub struct PairsOfBodies {
     /// Where in `second` each body's begin.

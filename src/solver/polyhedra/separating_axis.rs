@@ -18,7 +18,9 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// How far apart they are along `direction`.
+    /// How far apart they are along `direction`, a unit vector: each end is an exact extremum over
+    /// the vertices, so that the gap is a lower bound of the cores' distance, whatever the
+    /// direction.
     pub fn between(vertices: [&[Row]; 2], direction: [f64; 3]) -> Self {
         let [first, second] = vertices;
         Self {
@@ -90,7 +92,9 @@ pub fn along(v: Row, direction: [f64; 3]) -> f64 {
     v[0] * direction[0] + v[1] * direction[1] + v[2] * direction[2]
 }
 
-/// The face among `planes` from which `vertices` keep the largest distance, and that distance [m].
+/// The face among `planes` (outward unit normal, distance from the origin [m]) from which
+/// `vertices` keep the largest distance, the first of several, and that distance [m]; none of a
+/// sphere, which has no face. Negative where every face has a vertex behind it.
 #[inline(always)]
 fn best_face<N: Lanes>(
     processor: N::Processor,

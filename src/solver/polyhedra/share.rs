@@ -2,6 +2,20 @@
 //!
 //! In: the working copy and its pairs. Out: shares that take about equally long, and the two phases
 //! of a step on a share.
+//!
+//! | column | length | written by | read by all in |
+//! |---|---|---|---|
+//! | bodies, vertices, planes, responses | bodies, features | the body's worker, motion phase | force phase |
+//! | forces, acting, resistances, resisting | pairs | the pair's worker, force phase | motion phase |
+//! | loads | bodies | the body's worker, motion phase | nobody else |
+//! | pairs, terms, points | pairs, blocks | the pair's worker, force phase | nobody else |
+//!
+//! A pair is one worker's, its two bodies may be others': so the pair's worker leaves a force and
+//! two torques, and each body's worker sums those of its own pairs, in the order of the pairs,
+//! whoever computed them. Shares are made anew for each batch, as the lists may have changed.
+//!
+//! Not here: the order of the phases ([`super::super::step`]), who may touch a column when
+//! ([`super::super::workers`]).
 
 use super::super::ranges::{range_of, split_once};
 use super::super::row::{Row, length_squared, sub};
@@ -399,7 +413,9 @@ impl Incidence<'_> {
     }
 
     /// Adds what the dashpots do to body `i` to its load, and books what they lose: what walls do
-    /// against them, less what they do to the body by the mean of its velocities before and after.
+    /// against them, less what they do to the body by the mean of its velocities before and after,
+    /// `½ Δt (F·(v⁻ + v⁺) + T·(ω⁻ + ω⁺))`: what they change of its kinetic energy from half step to
+    /// half step, but for how its inertia turns meanwhile.
     #[inline(always)]
     fn resist(&self, i: usize, body: &Body, load: &mut Load, common: &Common<'_>) {
         let resistance = self.resistance(i);

@@ -3,6 +3,16 @@
 //! In: a block of pairs after a drift. Out: the nearest points of every pair of active features;
 //! lists of features made anew for those pairs that have used up their slack. A [`Workspace`] is
 //! what one worker needs for it again and again.
+//!
+//! A pair passes three sieves, each with a slack that the step's motion is taken off:
+//!
+//! | sieve | what passes it | how often |
+//! |---|---|---|
+//! | outer list | features nearer than touching distance and outer skin | every [`OUTER_LIFE`] steps |
+//! | inner list | of these, features nearer than touching distance and inner skin | every [`INNER_LIFE`] steps |
+//! | clearance | pairs of which anything on the inner list may touch | looked at in each step |
+//!
+//! Not here: forces ([`super::forces`]), how a list is made ([`super::listing`]).
 
 use super::super::row::{Row, vector};
 use super::dashpots::{Damper, Dashpot};
