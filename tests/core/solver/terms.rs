@@ -112,7 +112,6 @@ fn terms_from_what_the_loop_saw_differ_by_the_order_of_a_sum_alone() {
     for (name, settings) in [
         ("two-sizes-drum", vec![]),
         ("honey-drum", vec![("bridge-law", "as-coded")]),
-        ("small-column", vec![]),
     ] {
         let world = evaluated(scene_after(name, &settings, 0.1));
         let (worst, contacts) = worst_difference(&world);
