@@ -161,8 +161,12 @@ enum Task {
         /// A scene file, or the name of a built-in scene
         scene: String,
         /// What to vary: liquid=0..7, radius=3mm,2mm (may be repeated: every combination is run)
-        #[arg(long, value_name = "KEY=VALUES", required = true)]
+        #[arg(long, value_name = "KEY=VALUES", required_unless_present = "seeds")]
         vary: Vec<String>,
+        /// Run every case from so many seeds, the scene's and those that follow it: tables and plots
+        /// give means with their standard errors over the seeds
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+        seeds: Option<u16>,
         /// Change a value in every case, as in a single run
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
@@ -416,6 +420,7 @@ fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
     let Task::Sweep {
         scene: name,
         vary,
+        seeds,
         set,
         duration,
         out,
@@ -432,12 +437,13 @@ fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
     let report = said.report();
     let interruption = interruption()?;
     let variations = vary.iter().map(|text| Variation::parse(text));
+    let seeds = seeds.map(|count| Ok(Variation::of_seeds(scene.seed, count)));
     let sweep = Sweep {
         out: out.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", short_name(&name)))),
         name,
         scene,
         settings: set,
-        variations: variations.collect::<Result<_, _>>()?,
+        variations: variations.chain(seeds).collect::<Result<_, _>>()?,
         jobs: checked_threads(jobs, report)?,
         beds: BedStore::user(),
         restart,

@@ -123,7 +123,14 @@ fn report(run: Option<RunSoFar>, folder: &Path, finished: &Finished) {
     ));
     let keys = results.entries.iter().map(|entry| entry.key);
     for key in keys.filter(|key| !matches!(key, ResultKey::OfAvalanches(..))) {
-        say(&format!("  {:<32} {}", key.name(), results.text(key)));
+        say(&format!(
+            "  {:<40} {}",
+            key.name(),
+            results.text_in_full(key)
+        ));
+    }
+    if let Some(note) = results.rotation_note() {
+        say(&format!("note: {note}"));
     }
     say(&format!("state {}", world.hash()));
     say(&format!("files in {}", folder.display()));

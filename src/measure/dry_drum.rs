@@ -4,29 +4,44 @@
 //! this program, averaged over the last 30 s of 50 s (`grainfall dry-r3 --no-render` and so on)
 //! with a smallest drop of 1°. It is what live plots divide by.
 
+use super::estimate::Estimate;
+
 /// Results of a dry drum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DryDrum {
     /// Radius of its grains [m].
     pub radius: f64,
-    /// Mean drop ⟨Δθ⟩ [rad].
-    pub drop: f64,
+    /// Mean drop ⟨Δθ⟩ [rad] with its standard error.
+    pub drop: Estimate,
 }
+
+/// A mean over so many `avalanches`. Its error is by how much two equal runs of 50 s came to differ
+/// (`docs/validation.md`, *Scatter*), where there are such.
+const fn drop(mean: f64, error: Option<f64>, avalanches: usize) -> Estimate {
+    Estimate {
+        mean,
+        error,
+        samples: avalanches,
+        freedom: avalanches - 1,
+    }
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// The drums that were run.
 const DRUMS: [DryDrum; 3] = [
     DryDrum {
         radius: 3e-3,
-        drop: 0.1466,
+        drop: drop(0.1466, Some(0.7 * DEGREE), 9),
     },
     DryDrum {
         radius: 2e-3,
-        drop: 0.0968,
+        drop: drop(0.0968, Some(0.5 * DEGREE), 11),
     },
     // From 15.8 to 39.4 s.
     DryDrum {
         radius: 1.25e-3,
-        drop: 0.0661,
+        drop: drop(0.0661, None, 9),
     },
 ];
 
@@ -42,7 +57,7 @@ mod tests {
 
     #[test]
     fn stored_drums_are_found_by_their_radius() {
-        assert!((dry_drum(3e-3).unwrap().drop.to_degrees() - 8.4).abs() < 0.01);
+        assert!((dry_drum(3e-3).unwrap().drop.mean.to_degrees() - 8.4).abs() < 0.01);
         assert!(dry_drum(2e-3).is_some());
         assert!(dry_drum(2.5e-3).is_none());
     }

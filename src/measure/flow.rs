@@ -5,6 +5,7 @@
 //! part of the run. Velocities are the local means of `velocity_kernel`, averaged over the samples
 //! in which the bed flows ([`NON_RIGID_TEMPERATURE`]).
 
+use super::estimate::Estimate;
 use super::sample::Sample;
 use super::sampled_quantity::Measure;
 use super::surface::SurfaceLine;
@@ -92,6 +93,23 @@ impl FlowHistory {
         seconds + self.fastest.iter().map(moment).sum::<usize>()
     }
 
+    /// Velocity along the surface, positive uphill to the right, at each depth of that profile [m/s]:
+    /// a mean with its standard error, for which every second in which the bed flows is one event;
+    /// NaN where nothing was averaged.
+    pub fn velocity_since(&self, time: f64) -> Vec<Estimate> {
+        let first = time.max(0.0).ceil() as usize;
+        let seconds: Vec<&FlowProfile> = self.seconds.iter().skip(first).collect();
+        let depths = seconds.iter().map(|second| second.depth.len()).max();
+        let at = |k: usize| {
+            let sums = seconds.iter().filter_map(|second| {
+                let count = second.samples.get(k).filter(|count| **count > 0)?;
+                Some((second.sums[k], f64::from(*count)))
+            });
+            Estimate::of_bursts(&sums.collect::<Vec<_>>())
+        };
+        (0..depths.unwrap_or(0)).map(at).collect()
+    }
+
     /// The profile averaged from the first whole second at or after `time` [s] on.
     pub fn since(&self, time: f64) -> FlowProfile {
         let first = time.max(0.0).ceil() as usize;
@@ -151,12 +169,5 @@ impl FlowProfile {
                 self.sums[k] += velocity.dot(line.direction);
             }
         }
-    }
-
-    /// Mean velocity along the surface, positive uphill to the right, at each depth [m/s]; NaN
-    /// where nothing was averaged.
-    pub fn velocity(&self) -> Vec<f64> {
-        let mean = |(sum, count): (&f64, &u32)| sum / f64::from(*count);
-        self.sums.iter().zip(&self.samples).map(mean).collect()
     }
 }

@@ -26,6 +26,11 @@
 //! | `flow` | the flowing layer: profile over depth, map at the fastest moment |
 //! | `column` | a column at its start: `α_eff`, `μ_p`; the laws of Man et al. 2023 |
 //! | `collapse` | when a column was fastest, when it came to rest, what it left |
+//! | `estimate` | a mean with its standard error: [`Estimate`]; the means of events and of runs |
+//! | `blocking` | the standard error of a time average, from its autocorrelation |
+//! | `difference` | whether two means differ by more than their scatter: [`Difference`] |
+//! | `verdict` | what becomes of a statement, and by which rules: [`Verdict`] |
+//! | `rigid_rotation` | where rotation alone looks like flow |
 //! | `regime` | avalanching, transitional or continuous |
 //! | `dry_drum` | dry drums to compare wet ones with |
 //! | `run_summary`, `column_summary` | the results of a run: [`results`] |
@@ -39,14 +44,17 @@
 //! `near_pairs` finds the pairs of grains that are near each other, `window` averages over samples.
 
 mod avalanches;
+mod blocking;
 mod collapse;
 mod column;
 mod column_summary;
 mod contact_network;
 mod deposit;
+mod difference;
 mod drum_torque;
 mod dry_drum;
 mod energy_ledger;
+mod estimate;
 mod flow;
 mod grain_quantity;
 mod near_pairs;
@@ -55,6 +63,7 @@ mod packing_fraction;
 mod quantity;
 mod regime;
 mod result_key;
+mod rigid_rotation;
 mod run_quantity;
 mod run_summary;
 mod sample;
@@ -65,10 +74,12 @@ mod surface;
 mod temperature;
 mod velocity_kernel;
 mod velocity_map;
+mod verdict;
 mod wet_bed;
 mod window;
 
 pub use avalanches::{Avalanche, SMALLEST_DROP, SMOOTHING_TIME, avalanches};
+pub use blocking::time_average;
 pub use collapse::Collapse;
 pub use column::{
     CRITICAL_ASPECT_RATIO, InitialColumn, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
@@ -76,15 +87,18 @@ pub use column::{
 };
 pub use contact_network::{contact_shares, coordination_number, largest_overlap};
 pub use deposit::{Deposit, DepositShape, HeightProfile};
+pub use difference::{Difference, difference_in_words};
 pub use drum_torque::drum_torque;
 pub use dry_drum::{DryDrum, dry_drum};
 pub use energy_ledger::{EnergyLedger, elastic_energy};
+pub use estimate::Estimate;
 pub use flow::{FlowHistory, FlowProfile, NON_RIGID_TEMPERATURE};
 pub use grain_quantity::GrainQuantity;
 pub use packing_fraction::packing_fraction;
 pub use quantity::{Format, MeasuredValue, Quantity, Scope};
 pub use regime::Regime;
 pub use result_key::{DropThreshold, ResultKey};
+pub use rigid_rotation::rotation_note;
 pub use run_quantity::RunQuantity;
 pub use run_summary::{LEFT_OUT, results, summarise};
 pub use sample::{Sample, mean_speed, sample, sample_and_surface};
@@ -92,7 +106,8 @@ pub use sampled_quantity::Measure;
 pub use series::Series;
 pub use summary::{Summary, SummaryEntry};
 pub use surface::{MIDDLE_SHARE, SurfaceLine, surface_line};
-pub use temperature::{Temperatures, granular_temperatures};
+pub use temperature::{Temperatures, granular_temperatures, rotation_temperature};
 pub use velocity_kernel::{kernel_reach, mean_velocity};
 pub use velocity_map::{VelocityMap, velocity_map};
+pub use verdict::Verdict;
 pub use wet_bed::{bridges, capillary_number, drop_ratio_law, galilei_number};

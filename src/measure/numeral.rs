@@ -3,6 +3,9 @@
 //! In: a number. Out: text. Which unit and which digits a measured quantity has is not decided here
 //! but in its row of the registry ([`super::Quantity`]).
 
+/// The unit that stands close to its number.
+const DEGREE: &str = "°";
+
 /// What stands where there is no number.
 pub const NOTHING: &str = "–";
 
@@ -49,6 +52,55 @@ fn without_idle_zeros(text: String) -> String {
 pub fn with_prefix(value: f64, unit: &str) -> String {
     let (prefix, factor) = prefix_for(value.abs());
     format!("{} {prefix}{unit}", short(value * factor))
+}
+
+/// `value ± error` with as many digits as the error allows: two of the error where it begins with a
+/// one, one otherwise. Small and large ones stand as `(3.2 ± 0.4)·10⁻⁵`; the `unit` stands behind
+/// the whole, a degree behind each: `28.3° ± 0.4°`, `(12.3 ± 0.4) mJ`.
+pub(super) fn with_error(value: f64, error: f64, unit: &str) -> String {
+    let exponent = value.abs().max(error).log10().floor();
+    let is_plain = !exponent.is_finite() || (-3.0..5.0).contains(&exponent);
+    let (power, factor) = if is_plain {
+        (String::new(), 1.0)
+    } else {
+        (
+            format!("·{}", power_of_ten(exponent as i32)),
+            10_f64.powf(-exponent),
+        )
+    };
+    let [value, error] = [value, error].map(|number| number * factor);
+    let decimals = decimals_of_error(error);
+    let [value, error] = if error == 0.0 {
+        [rounded(value, 4), "0".to_owned()]
+    } else {
+        [value, error].map(|number| fixed(number, decimals))
+    };
+    if unit == DEGREE && is_plain {
+        return format!("{value}{DEGREE} ± {error}{DEGREE}");
+    }
+    match (power.as_str(), unit) {
+        ("", "") => format!("{value} ± {error}"),
+        (power, "") => format!("({value} ± {error}){power}"),
+        (power, unit) => format!("({value} ± {error}){power} {unit}"),
+    }
+}
+
+/// Digits after the point with which an `error` is written.
+fn decimals_of_error(error: f64) -> usize {
+    let exponent = error.log10().floor();
+    let begins_with_one = error / 10_f64.powf(exponent) < 1.95;
+    let digits = if begins_with_one { 2.0 } else { 1.0 };
+    (digits - 1.0 - exponent).clamp(0.0, 6.0) as usize
+}
+
+/// `number` with its `unit`, as people write it: a degree stands close, all else after a space.
+pub(super) fn beside_unit(number: &str, unit: &str) -> String {
+    let space = if unit.is_empty() || unit == DEGREE {
+        ""
+    } else {
+        " "
+    };
+    format!("{number}{space}{unit}")
 }
 
 /// The prefix in which `magnitude` has one to three digits before the point, and the factor that
@@ -166,6 +218,25 @@ mod tests {
         assert_eq!(three, ["0", "12.5", "0.025", "1500", "2", "−0.05", "0.123"]);
         let two = [0.0042, 0.25, 3.08, 12.0, 120.4].map(|x| rounded(x, 2));
         assert_eq!(two, ["0.0042", "0.25", "3.1", "12", "120"]);
+    }
+
+    #[test]
+    fn an_error_decides_the_digits_of_its_value() {
+        assert_eq!(with_error(28.312, 0.41, "°"), "28.3° ± 0.4°");
+        assert_eq!(with_error(28.312, 0.14, "°"), "28.31° ± 0.14°");
+        assert_eq!(with_error(0.548_31, 0.002_3, ""), "0.548 ± 0.002");
+        assert_eq!(
+            with_error(3.21e-5, 4.4e-6, "m²/s²"),
+            "(3.2 ± 0.4)·10⁻⁵ m²/s²"
+        );
+        assert_eq!(with_error(845.2, 23.0, ""), "845 ± 23");
+        assert_eq!(with_error(-12.34, 0.4, "mJ"), "(−12.3 ± 0.4) mJ");
+        assert_eq!(with_error(1.0, 0.0, ""), "1 ± 0");
+        assert_eq!(with_error(0.0, 0.0, "mm"), "(0 ± 0) mm");
+        // The larger of the two decides the power of ten.
+        assert_eq!(with_error(1e-8, 3.2e-7, ""), "(0.1 ± 3.2)·10⁻⁷");
+        assert_eq!(beside_unit("28.31", "°"), "28.31°");
+        assert_eq!(beside_unit("3", "mm"), "3 mm");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! grain. Each table is made by the macro `quantities!`: one row makes the key, its documentation
 //! and its place in the list of all.
 
+use super::estimate::Estimate;
 use super::numeral::{self, NOTHING};
 use crate::physics::{Unit, units};
 use serde::{Serialize, Serializer};
@@ -69,6 +70,8 @@ pub enum Scope {
 pub enum MeasuredValue {
     /// A number in the SI unit.
     Number(f64),
+    /// A mean with its standard error, in the SI unit.
+    Mean(Estimate),
     /// A whole number.
     Count(usize),
     /// A word out of those of [`Format::Choice`].
@@ -136,21 +139,30 @@ impl Quantity {
 
     /// The same in another unit or with other digits than the quantity's own.
     pub fn number_as(&self, value: impl Into<MeasuredValue>, unit: Unit, format: Format) -> String {
-        match value.into() {
-            MeasuredValue::Number(value) if value.is_finite() => {
-                format.plain(value * unit.shown.factor)
-            }
-            MeasuredValue::Number(_) => NOTHING.into(),
-            MeasuredValue::Count(count) => count.to_string(),
-            MeasuredValue::Choice(word) => word.into(),
+        let number = match value.into() {
+            MeasuredValue::Number(number) => number,
+            MeasuredValue::Mean(estimate) => estimate.mean,
+            MeasuredValue::Count(count) => return count.to_string(),
+            MeasuredValue::Choice(word) => return word.into(),
+        };
+        if number.is_finite() {
+            format.plain(number * unit.shown.factor)
+        } else {
+            NOTHING.into()
         }
     }
 
-    /// `value` with the shown unit, as people read it: `24.31 °`, `12.30 mJ`, `2.00·10⁻⁹ m²/s²`, a
-    /// word; a dash where there is none.
+    /// `value` with the shown unit, as people read it: `24.31°`, `12.30 mJ`, `2.00·10⁻⁹ m²/s²`, a
+    /// word; a mean with its error, `24.3° ± 0.4°`, which is a question mark where too little was
+    /// seen for one; a dash where there is no value.
     pub fn text(&self, value: impl Into<MeasuredValue>) -> String {
         let value = match value.into() {
             MeasuredValue::Number(value) => value * self.unit.shown.factor,
+            MeasuredValue::Mean(estimate) => match estimate.error {
+                Some(error) => return self.text_with_error(estimate.mean, error),
+                None if estimate.mean.is_nan() => f64::NAN,
+                None => return format!("{} ± ?", self.text(estimate.mean)),
+            },
             MeasuredValue::Count(count) => return count.to_string(),
             MeasuredValue::Choice(word) => return word.into(),
         };
@@ -158,11 +170,34 @@ impl Quantity {
             return numeral::with_prefix(value, self.unit.shown.name);
         }
         let number = numeral::written(value, |value| self.format.plain(value));
-        if self.unit.shown.name.is_empty() || value.is_nan() {
+        if value.is_nan() {
             number
         } else {
-            format!("{number} {}", self.unit.shown.name)
+            numeral::beside_unit(&number, self.unit.shown.name)
         }
+    }
+
+    /// A mean in another unit than the quantity's own, without that unit: `24.3 ± 0.4`.
+    pub fn number_with_error_as(&self, mean: Estimate, unit: Unit, format: Format) -> String {
+        let number = self.number_as(mean, unit, format);
+        let factor = unit.shown.factor;
+        match mean.error {
+            _ if !mean.mean.is_finite() => number,
+            Some(error) => numeral::with_error(mean.mean * factor, error * factor, ""),
+            None => format!("{number} ± ?"),
+        }
+    }
+
+    /// `value ± error`, both in the SI unit, with the shown unit and the digits that the error
+    /// allows.
+    pub fn text_with_error(&self, value: f64, error: f64) -> String {
+        let (factor, unit) = (self.unit.shown.factor, self.unit.shown.name);
+        let [value, error] = [value * factor, error * factor];
+        if self.format == Format::Prefixed {
+            let (prefix, factor) = numeral::prefix_for(value.abs().max(error));
+            return numeral::with_error(value * factor, error * factor, &format!("{prefix}{unit}"));
+        }
+        numeral::with_error(value, error, unit)
     }
 }
 
@@ -183,8 +218,17 @@ impl MeasuredValue {
     pub fn as_number(self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(value),
+            Self::Mean(estimate) => Some(estimate.mean),
             Self::Count(count) => Some(count as f64),
             Self::Choice(_) => None,
+        }
+    }
+
+    /// What is known of its error, where it is a mean.
+    pub fn as_estimate(self) -> Option<Estimate> {
+        match self {
+            Self::Mean(estimate) => Some(estimate),
+            Self::Number(_) | Self::Count(_) | Self::Choice(_) => None,
         }
     }
 }
@@ -195,11 +239,18 @@ impl From<f64> for MeasuredValue {
     }
 }
 
-/// In files a count is written as a number is.
+impl From<Estimate> for MeasuredValue {
+    fn from(estimate: Estimate) -> Self {
+        Self::Mean(estimate)
+    }
+}
+
+/// In files a count is written as a number is, and so is a mean, whose error stands beside it.
 impl Serialize for MeasuredValue {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match *self {
             Self::Number(value) => serializer.serialize_f64(value),
+            Self::Mean(estimate) => serializer.serialize_f64(estimate.mean),
             Self::Count(count) => serializer.serialize_f64(count as f64),
             Self::Choice(word) => serializer.serialize_str(word),
         }
@@ -268,8 +319,8 @@ mod tests {
 
     #[test]
     fn a_value_is_written_with_the_unit_and_the_digits_of_its_quantity() {
-        assert_eq!(ANGLE.text(std::f64::consts::FRAC_PI_6), "30.00 °");
-        assert_eq!(ANGLE.text(-0.001), "−0.06 °");
+        assert_eq!(ANGLE.text(std::f64::consts::FRAC_PI_6), "30.00°");
+        assert_eq!(ANGLE.text(-0.001), "−0.06°");
         assert_eq!(ANGLE.number(-0.001), "-0.06");
         assert_eq!(ANGLE.text(f64::NAN), "–");
         assert_eq!(ANGLE.number(f64::NAN), "–");
@@ -286,6 +337,30 @@ mod tests {
         assert_eq!(energy.text(0.0123), "12.30 mJ");
         assert_eq!(energy.number(0.0123), "1.23e-2");
         assert_eq!(with(units::LENGTH, Format::Fixed(1)).text(0.05), "50.0 mm");
+    }
+
+    #[test]
+    fn a_mean_is_written_with_its_error() {
+        let mean = |mean: f64, error| Estimate {
+            mean,
+            error,
+            samples: 45,
+            freedom: 9,
+        };
+        let degree = std::f64::consts::PI / 180.0;
+        let angle = mean(28.312 * degree, Some(0.41 * degree));
+        assert_eq!(ANGLE.text(angle), "28.3° ± 0.4°");
+        assert_eq!(ANGLE.number(angle), "28.31");
+        assert_eq!(ANGLE.text(mean(28.312 * degree, None)), "28.31° ± ?");
+        assert_eq!(ANGLE.text(mean(f64::NAN, None)), "–");
+        let energy = Quantity {
+            unit: units::ENERGY,
+            format: Format::Prefixed,
+            ..Quantity::BLANK
+        };
+        assert_eq!(energy.text(mean(0.0123, Some(0.0004))), "(12.3 ± 0.4) mJ");
+        let json = serde_json::to_string(&MeasuredValue::from(mean(0.5, Some(0.1)))).unwrap();
+        assert_eq!(json, "0.5");
     }
 
     #[test]

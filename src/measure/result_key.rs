@@ -61,11 +61,12 @@ impl DropThreshold {
 
 impl ResultKey {
     /// The numbers that are given for each threshold of the drop.
-    pub const AVALANCHE_QUANTITIES: [RunQuantity; 4] = [
+    pub const AVALANCHE_QUANTITIES: [RunQuantity; 5] = [
         RunQuantity::Avalanches,
         RunQuantity::MaximumAngle,
         RunQuantity::ReposeAngle,
         RunQuantity::Drop,
+        RunQuantity::Period,
     ];
 
     /// Every key.

@@ -27,12 +27,31 @@ quantities! {
         }
         NonRigidShare {
             key: "non-rigid share ta/ts",
-            description: "share of the samples whose granular temperature (laboratory frame) is \
-                          at least 2e-9 m²/s²",
-            short_label: "Flowing share ta/ts",
+            description: "share of the samples whose granular temperature in the laboratory frame, \
+                          the paper's, is at least 2e-9 m²/s²",
+            short_label: "Flowing share ta/ts, the paper's",
             symbol: "ta/ts",
             format: Format::Fixed(3),
             scope: Scope::Beds,
+        }
+        CorotatingShare {
+            key: "co-rotating non-rigid share ta/ts′",
+            description: "share of the samples whose granular temperature relative to the turning \
+                          drum is at least 2e-9 m²/s²; rigid rotation, which has some in the \
+                          laboratory frame, has none there",
+            short_label: "Flowing share ta/ts′, in the drum",
+            symbol: "ta/ts′",
+            format: Format::Fixed(3),
+            scope: Scope::Beds,
+        }
+        RotationTemperature {
+            key: "granular temperature of rigid rotation",
+            description: "granular temperature in the laboratory frame that the last bed has by \
+                          turning with the drum as one rigid body",
+            short_label: "Tg of rigid rotation alone",
+            unit: Unit::same("m²/s²"),
+            format: Format::Scientific,
+            scope: Scope::Drums,
         }
         TemperatureInAvalanches {
             key: "granular temperature in avalanches",
@@ -78,6 +97,15 @@ quantities! {
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
+        Period {
+            key: "avalanche period",
+            description: "mean time from the start of an avalanche to the start of the next",
+            short_label: "Time between avalanches",
+            symbol: "T_a",
+            unit: units::TIME,
+            format: Format::Fixed(2),
+            scope: Scope::Beds,
+        }
         Drop {
             key: "drop Δθ",
             description: "mean over the avalanches, surface angle smoothed over 0.1 s",
@@ -118,8 +146,8 @@ quantities! {
         }
         Regime {
             key: "regime",
-            description: "avalanching: ta/ts below 0.9; continuous: ta/ts at least 0.99 and drops \
-                          below 2.5°; transitional between",
+            description: "avalanching: ta/ts′ below 0.9; continuous: ta/ts′ at least 0.99 and \
+                          drops below 2.5°; transitional between",
             format: Format::Choice(&Regime::WORDS),
             scope: Scope::Beds,
         }

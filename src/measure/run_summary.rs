@@ -7,15 +7,18 @@
 use super::avalanches::Avalanche;
 use super::collapse::Collapse;
 use super::column::InitialColumn;
+use super::estimate::Estimate;
 use super::flow::NON_RIGID_TEMPERATURE;
 use super::quantity::MeasuredValue;
 use super::result_key::{DropThreshold, ResultKey};
+use super::rigid_rotation::rotation_note;
 use super::run_quantity::RunQuantity;
 use super::sampled_quantity::Measure;
 use super::series::Series;
 use super::summary::Summary;
+use super::temperature::rotation_temperature;
 use super::wet_bed::{capillary_number, galilei_number};
-use super::window::{Window, largest, mean, median, share_from};
+use super::window::{Window, largest, median};
 use crate::world::World;
 
 /// Share of a run, from its start, that its results leave out: Kasper et al. 2021 average over the
@@ -108,6 +111,10 @@ fn add_case(summary: &mut Summary, world: &World) {
         or_nan(capillary_number(world)),
     );
     summary.add(RunQuantity::GalileiNumber, or_nan(galilei_number(world)));
+    let rotation = rotation_temperature(world);
+    let note = RunQuantity::RotationTemperature.quantity().explanation();
+    let warning = rotation_note(rotation).map_or(note.clone(), |text| format!("{note}. {text}"));
+    summary.add_noted(RunQuantity::RotationTemperature, rotation, warning);
     let regime = summary.regime();
     let word = regime.map(|regime| MeasuredValue::Choice(regime.word()));
     summary.add_value(RunQuantity::Regime, word);
@@ -115,12 +122,12 @@ fn add_case(summary: &mut Summary, world: &World) {
 
 fn add_means(summary: &mut Summary, window: &Window) {
     for measure in MEANS {
-        let note = "mean over the samples of the window".to_owned();
-        summary.add_noted(measure, mean(window.column(measure)), note);
+        let note = "mean over the samples of the window, its error by blocking".to_owned();
+        summary.add_noted_mean(measure, window.mean(measure), note);
     }
     let ruptures = window.rate(Measure::Ruptures);
-    summary.add(RunQuantity::RupturesPerSecond, ruptures);
-    summary.add(RunQuantity::DrumPower, window.rate(Measure::WallWork));
+    summary.add_mean(RunQuantity::RupturesPerSecond, ruptures);
+    summary.add_mean(RunQuantity::DrumPower, window.rate(Measure::WallWork));
     add_overlap(summary, window);
 }
 
@@ -133,18 +140,19 @@ fn add_overlap(summary: &mut Summary, window: &Window) {
 fn add_flow(summary: &mut Summary, window: &Window, found: &[Avalanche]) {
     let falling = window.falling(found);
     let temperature = window.column(Measure::GranularTemperature);
-    let during = |state: bool| -> Vec<f64> {
-        let chosen = temperature.iter().zip(&falling);
-        chosen
-            .filter(|(_, falls)| **falls == state)
-            .map(|(value, _)| *value)
-            .collect()
-    };
-    let share = share_from(temperature, NON_RIGID_TEMPERATURE);
-    summary.add(RunQuantity::NonRigidShare, share);
-    let hot = mean(&during(true));
-    summary.add(RunQuantity::TemperatureInAvalanches, hot);
-    let quiet = median(during(false));
+    for (key, measure) in [
+        (RunQuantity::NonRigidShare, Measure::GranularTemperature),
+        (RunQuantity::CorotatingShare, Measure::CorotatingTemperature),
+    ] {
+        summary.add_mean(key, window.share_from(measure, NON_RIGID_TEMPERATURE));
+    }
+    let hot = window.mean_in(found, Measure::GranularTemperature);
+    summary.add_mean(RunQuantity::TemperatureInAvalanches, hot);
+    let between = temperature
+        .iter()
+        .zip(&falling)
+        .filter(|(_, falls)| !**falls);
+    let quiet = median(between.map(|(value, _)| *value).collect());
     summary.add(RunQuantity::TemperatureBetweenAvalanches, quiet);
     let rate = median(window.rise_rates(&falling));
     summary.add(RunQuantity::RiseRate, rate);
@@ -156,12 +164,17 @@ fn add_avalanches(
     found: &[Avalanche],
     key: impl Fn(RunQuantity) -> ResultKey,
 ) {
-    let of = |value: fn(&Avalanche) -> f64| mean(&found.iter().map(value).collect::<Vec<_>>());
+    let of = |value: fn(&Avalanche) -> f64| {
+        Estimate::of_events(&found.iter().map(value).collect::<Vec<_>>())
+    };
+    let waits = found.windows(2).map(|pair| pair[1].start - pair[0].start);
+    let period = Estimate::of_events(&waits.collect::<Vec<_>>());
     let count = MeasuredValue::Count(found.len());
     summary.add_value(key(RunQuantity::Avalanches), Some(count));
-    summary.add(key(RunQuantity::MaximumAngle), of(|a| a.theta_m));
-    summary.add(key(RunQuantity::ReposeAngle), of(|a| a.theta_r));
-    summary.add(key(RunQuantity::Drop), of(Avalanche::drop));
+    summary.add_mean(key(RunQuantity::MaximumAngle), of(|a| a.theta_m));
+    summary.add_mean(key(RunQuantity::ReposeAngle), of(|a| a.theta_r));
+    summary.add_mean(key(RunQuantity::Drop), of(Avalanche::drop));
+    summary.add_mean(key(RunQuantity::Period), period);
 }
 
 fn add_energies(summary: &mut Summary, window: &Window) {

@@ -3,9 +3,11 @@
 //! In: results one by one, from `run_summary` and `column_summary`. Out: a value by its key, or all
 //! of them as `summary.json` lists them. Nothing is computed here but what follows from one result.
 
+use super::estimate::Estimate;
 use super::quantity::MeasuredValue;
 use super::regime::Regime;
 use super::result_key::ResultKey;
+use super::rigid_rotation::rotation_note;
 use super::run_quantity::RunQuantity;
 use serde::{Serialize, Serializer};
 
@@ -14,7 +16,8 @@ use serde::{Serialize, Serializer};
 pub struct SummaryEntry {
     /// What it is.
     pub key: ResultKey,
-    /// Its value, a number in the SI unit; none where there is nothing to average.
+    /// Its value, a number or a mean with its error, in the SI unit; none where there is nothing to
+    /// average.
     pub value: Option<MeasuredValue>,
     /// How it was taken.
     pub note: String,
@@ -33,7 +36,9 @@ pub struct Summary {
     pub entries: Vec<SummaryEntry>,
 }
 
-/// As `summary.json` has it: the name of the key and the SI unit beside value and note.
+/// As `summary.json` has it: the name of the key and the SI unit beside value and note; of a mean
+/// its standard error, null where too little was seen for one, and the number of independent
+/// samples that it is worth.
 impl Serialize for SummaryEntry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
@@ -41,15 +46,34 @@ impl Serialize for SummaryEntry {
             name: String,
             unit: &'static str,
             value: Option<MeasuredValue>,
+            #[serde(flatten)]
+            scatter: Option<Scatter>,
             note: &'a str,
         }
+        #[derive(Serialize)]
+        struct Scatter {
+            error: Option<f64>,
+            independent_samples: usize,
+        }
+        let scatter = self.estimate().map(|estimate| Scatter {
+            error: estimate.error,
+            independent_samples: estimate.samples,
+        });
         let in_file = InFile {
             name: self.key.name(),
             unit: self.key.quantity().unit.si,
             value: self.value,
+            scatter,
             note: &self.note,
         };
         in_file.serialize(serializer)
+    }
+}
+
+impl SummaryEntry {
+    /// The mean with its error, where the result is one.
+    pub fn estimate(&self) -> Option<Estimate> {
+        self.value.and_then(MeasuredValue::as_estimate)
     }
 }
 
@@ -76,6 +100,11 @@ impl Summary {
         self.get(key)?.as_number()
     }
 
+    /// The result `key` with what is known of its error, if it is a mean.
+    pub fn estimate(&self, key: impl Into<ResultKey>) -> Option<Estimate> {
+        self.entry(key)?.estimate()
+    }
+
     /// The result `key` with its unit, as people read it; a dash where there is none.
     pub fn text(&self, key: impl Into<ResultKey>) -> String {
         let key = key.into();
@@ -83,9 +112,24 @@ impl Summary {
         key.quantity().text(value)
     }
 
-    /// How the bed moves, by the shares and drops of the paper; none where nothing was sampled.
+    /// The same, and why there is no error where a mean has none: `28.31° ± ? (too short: 3
+    /// independent samples)`.
+    pub fn text_in_full(&self, key: impl Into<ResultKey>) -> String {
+        let key = key.into();
+        let reason = self.estimate(key).and_then(|mean| mean.reason());
+        let reason = reason.map_or_else(String::new, |reason| format!(" ({reason})"));
+        format!("{}{reason}", self.text(key))
+    }
+
+    /// What to think of the non-rigid share where rotation alone looks like flow.
+    pub fn rotation_note(&self) -> Option<String> {
+        rotation_note(self.value(RunQuantity::RotationTemperature)?)
+    }
+
+    /// How the bed moves, by the drops and by the share of the time in which it flows as the turning
+    /// drum sees it, where rigid rotation is no flow; none where nothing was sampled.
     pub fn regime(&self) -> Option<Regime> {
-        let flowing = self.value(RunQuantity::NonRigidShare)?;
+        let flowing = self.value(RunQuantity::CorotatingShare)?;
         let drop = self.value(RunQuantity::Drop).unwrap_or(0.0);
         Some(Regime::of(flowing, drop))
     }
@@ -100,6 +144,25 @@ impl Summary {
     /// Adds a number that was taken in another way than its description says.
     pub(super) fn add_noted(&mut self, key: impl Into<ResultKey>, value: f64, note: String) {
         let value = value.is_finite().then_some(MeasuredValue::Number(value));
+        let key = key.into();
+        self.entries.push(SummaryEntry { key, value, note });
+    }
+
+    /// Adds a mean with its error, noted with the quantity's own description; none where it is not
+    /// finite.
+    pub(super) fn add_mean(&mut self, key: impl Into<ResultKey>, mean: Estimate) {
+        let key = key.into();
+        self.add_noted_mean(key, mean, key.quantity().explanation());
+    }
+
+    /// Adds a mean that was taken in another way than its description says.
+    pub(super) fn add_noted_mean(
+        &mut self,
+        key: impl Into<ResultKey>,
+        mean: Estimate,
+        note: String,
+    ) {
+        let value = mean.mean.is_finite().then_some(MeasuredValue::Mean(mean));
         let key = key.into();
         self.entries.push(SummaryEntry { key, value, note });
     }

@@ -25,6 +25,22 @@ pub struct Temperatures {
     pub corotating: f64,
 }
 
+/// Granular temperature in the laboratory frame [m²/s²] of the grains of `world` turning with their
+/// drum as one rigid body; NaN where no grain has a neighbour.
+pub fn rotation_temperature(world: &World) -> f64 {
+    let drum_spin = DVec3::new(0.0, 0.0, world.container.drum_speed());
+    let (mut sum, mut count) = (0.0, 0_u32);
+    for around in neighbourhoods(world)
+        .iter()
+        .filter(|around| around.count > 0)
+    {
+        let turning = drum_spin.cross(around.offset / f64::from(around.count));
+        sum += turning.length_squared();
+        count += 1;
+    }
+    sum / (3.0 * f64::from(count))
+}
+
 /// Sums over the neighbours of one grain.
 #[derive(Clone, Copy, Default)]
 struct Around {

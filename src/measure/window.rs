@@ -3,6 +3,8 @@
 //! In: a [`Series`]. Out: means, medians and rates; NaN where no sample has a value.
 
 use super::avalanches::{Avalanche, SMOOTHING_TIME, avalanches};
+use super::blocking::time_average;
+use super::estimate::Estimate;
 use super::sampled_quantity::Measure;
 use super::series::Series;
 use super::summary::Summary;
@@ -48,13 +50,44 @@ impl<'a> Window<'a> {
         self.column(measure).last().copied().unwrap_or(f64::NAN)
     }
 
-    /// Change of a measure over the window per second; NaN where it has no length.
-    pub fn rate(&self, measure: Measure) -> f64 {
+    /// Mean of a measure over the window; NaN where no sample has a value.
+    pub fn mean(&self, measure: Measure) -> Estimate {
+        time_average(self.column(measure))
+    }
+
+    /// Change of a measure over the window per second: the mean of its changes from sample to
+    /// sample; NaN where it has no length.
+    pub fn rate(&self, measure: Measure) -> Estimate {
         let values = self.column(measure);
-        match (values, self.time) {
-            ([first, .., last], [from, .., to]) => (last - first) / (to - from),
+        let span = match self.time {
+            [from, .., to] => to - from,
             _ => f64::NAN,
-        }
+        };
+        let per_second = (values.len() as f64 - 1.0) / span;
+        let changes = values
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]) * per_second);
+        time_average(&changes.collect::<Vec<_>>())
+    }
+
+    /// Share of the samples in which a measure is at least `threshold`; NaN where none has a value.
+    pub fn share_from(&self, measure: Measure, threshold: f64) -> Estimate {
+        let finite = (self.column(measure).iter()).filter(|value| value.is_finite());
+        let is_above = |value: &f64| f64::from(u8::from(*value >= threshold));
+        time_average(&finite.map(is_above).collect::<Vec<_>>())
+    }
+
+    /// Mean of a measure over the samples in one of `falls` (widened by the smoothing), each of
+    /// which is one event.
+    pub fn mean_in(&self, falls: &[Avalanche], measure: Measure) -> Estimate {
+        let (values, margin) = (self.column(measure), 0.5 * SMOOTHING_TIME);
+        let burst = |fall: &Avalanche| {
+            let first = self.time.partition_point(|t| *t < fall.start - margin);
+            let end = self.time.partition_point(|t| *t <= fall.end + margin);
+            let finite = values[first..end].iter().filter(|value| value.is_finite());
+            finite.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0))
+        };
+        Estimate::of_bursts(&falls.iter().map(burst).collect::<Vec<_>>())
     }
 
     /// The avalanches whose drop is at least `smallest_drop` [rad].
@@ -100,15 +133,6 @@ impl<'a> Window<'a> {
     }
 }
 
-/// Mean of the finite values; NaN without any.
-pub fn mean(values: &[f64]) -> f64 {
-    let (sum, count) = values
-        .iter()
-        .filter(|value| value.is_finite())
-        .fold((0.0, 0_u32), |(sum, count), value| (sum + value, count + 1));
-    sum / f64::from(count)
-}
-
 /// Median of the finite values; NaN without any.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.retain(|value| value.is_finite());
@@ -123,11 +147,4 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 /// Largest of the finite values; NaN without any.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NAN, f64::max)
-}
-
-/// Share of the finite values that are at least `threshold`; NaN without any.
-pub fn share_from(values: &[f64], threshold: f64) -> f64 {
-    let finite = values.iter().filter(|value| value.is_finite());
-    let above = finite.clone().filter(|value| **value >= threshold).count();
-    above as f64 / finite.count() as f64
 }

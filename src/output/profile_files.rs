@@ -1,27 +1,36 @@
 //! Profiles: `flow.csv`, that of the flowing layer over depth, averaged over the part of the run
 //! that results count, and `profile.csv`, that of a heap's height over the radius at the end.
 
-use crate::measure::{FlowProfile, HeightProfile};
+use crate::measure::{Estimate, FlowProfile, HeightProfile};
 use std::io::{self, Write};
 
 /// The files' names.
 pub const FLOW: &str = "flow.csv";
 pub const PROFILE: &str = "profile.csv";
 
-/// Writes `profile` to `file`: depth below the middle of the surface, velocity along it there,
-/// samples averaged.
+/// A profile of velocity over depth with the errors of its velocities.
+pub struct Flow {
+    /// Depths and samples.
+    pub profile: FlowProfile,
+    /// Velocity at each depth [m/s].
+    pub velocity: Vec<Estimate>,
+}
+
+/// Writes `flow` to `file`: depth below the middle of the surface, velocity along it there and its
+/// standard error (NaN where the run is too short for one), samples averaged.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_flow(profile: &FlowProfile, file: &mut dyn Write) -> io::Result<()> {
+pub fn write_flow(flow: &Flow, file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    writer.write_record(["depth [m]", "velocity [m/s]", "samples [1]"])?;
-    let rows = profile.depth.iter().zip(profile.velocity());
-    for ((depth, velocity), samples) in rows.zip(&profile.samples) {
+    writer.write_record(["depth [m]", "velocity [m/s]", "samples [1]", "error [m/s]"])?;
+    let rows = flow.profile.depth.iter().zip(&flow.velocity);
+    for ((depth, velocity), samples) in rows.zip(&flow.profile.samples) {
         writer.write_record([
             format!("{depth:?}"),
-            format!("{velocity:?}"),
+            format!("{:?}", velocity.mean),
             samples.to_string(),
+            format!("{:?}", velocity.error.unwrap_or(f64::NAN)),
         ])?;
     }
     writer.flush()

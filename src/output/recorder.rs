@@ -9,7 +9,7 @@
 use super::collection_file::{COLLECTION, CollectedFile, CollectionFile, write_collection};
 use super::folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY};
 use super::grains_file::{extension, write_grains};
-use super::profile_files::{FLOW, PROFILE, write_flow, write_profile};
+use super::profile_files::{FLOW, Flow, PROFILE, write_flow, write_profile};
 use super::series_file::{SERIES, SeriesFile};
 use super::summary_file::SummaryFile;
 use super::velocity_file::{VELOCITY, write_velocity};
@@ -310,8 +310,11 @@ impl Recorder {
     /// all tables.
     fn write_tables(&self, run: Option<RunSoFar>) -> Result<BTreeMap<String, String>, OutputError> {
         let from = run.map_or(0.0, |run| run.results_from());
-        let flow = run.map(|run| run.flow.since(from));
-        let flow = flow.filter(|profile| !profile.depth.is_empty());
+        let flow = run.map(|run| Flow {
+            profile: run.flow.since(from),
+            velocity: run.flow.velocity_since(from),
+        });
+        let flow = flow.filter(|flow| !flow.profile.depth.is_empty());
         let fastest = run.and_then(|run| run.flow.fastest_since(from));
         let deposit = run.and_then(|run| Deposit::of(run.world));
         let heights = deposit.map(|deposit| deposit.height_profile());

@@ -1,28 +1,39 @@
 //! One case of a sweep: run, and what came out.
 
 use super::{Case, Sweep};
-use crate::measure::{FlowProfile, ResultKey, RunQuantity, Series, Summary, VelocityMap};
+use crate::measure::{Estimate, ResultKey, RunQuantity, Series, Summary, VelocityMap};
 use crate::output::{Ending, RunSoFar};
 use crate::runner::{self, Advance, Job, RunnerError, Watch};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// How far a case has come, for others to see.
 #[derive(Default)]
-pub struct CaseProgress(AtomicU64);
+pub struct CaseProgress {
+    share: AtomicU64,
+    is_preparing: AtomicBool,
+}
 
 impl CaseProgress {
     /// 0 … 1, and 1 only of a case that is over.
     pub fn get(&self) -> f64 {
-        f64::from_bits(self.0.load(Ordering::Relaxed))
+        f64::from_bits(self.share.load(Ordering::Relaxed))
+    }
+
+    /// Whether its bed is being settled now, or its grains are being cut.
+    pub fn is_preparing(&self) -> bool {
+        self.is_preparing.load(Ordering::Relaxed)
     }
 
     fn set(&self, share: f64) {
-        self.0.store(share.to_bits(), Ordering::Relaxed);
+        self.is_preparing.store(false, Ordering::Relaxed);
+        self.share.store(share.to_bits(), Ordering::Relaxed);
     }
 }
 
 impl Watch for &CaseProgress {
-    fn preparing(&mut self, _share: f64, _stage: &str) {}
+    fn preparing(&mut self, _share: f64, _stage: &str) {
+        self.is_preparing.store(true, Ordering::Relaxed);
+    }
 
     fn running(&mut self, share: f64, _what: &dyn Fn() -> String) {
         self.set(share.min(0.999_999));
@@ -40,8 +51,8 @@ pub struct CaseResult {
     pub results: Summary,
     /// Its samples.
     pub series: Series,
-    /// Its flowing layer.
-    pub flow: FlowProfile,
+    /// Its flowing layer: velocity along the surface [m/s] over the depth below it [m].
+    pub flow: Vec<(f64, Estimate)>,
     /// Its fastest moment.
     pub fastest: Option<VelocityMap>,
     /// Hash of its last state.
@@ -59,6 +70,13 @@ impl CaseResult {
         self.results.value(key)
     }
 
+    /// Whether it shows a result: what a case came to before it met a fault is none, nor is where
+    /// one stood that was stopped before it began.
+    pub fn is_sound(&self) -> bool {
+        let last = self.series.time().last();
+        self.ending.fault().is_none() && last.is_some_and(|time| *time > 0.0)
+    }
+
     fn of(case: &Case, ending: Ending, results: Summary, run: RunSoFar) -> Self {
         let from = run.results_from();
         Self {
@@ -66,7 +84,9 @@ impl CaseResult {
             ending,
             results,
             series: run.series.clone(),
-            flow: run.flow.since(from),
+            flow: (run.flow.since(from).depth.into_iter())
+                .zip(run.flow.velocity_since(from))
+                .collect(),
             fastest: run.flow.fastest_since(from).cloned(),
             hash: run.world.hash().to_string(),
         }

@@ -1,5 +1,7 @@
-//! A plot as SVG: points and laws over two axes, each linear or logarithmic.
+//! A plot as SVG: points with their errors and laws over two axes, each linear or logarithmic.
 
+use crate::measure::Estimate;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::ops::Range;
 
@@ -8,12 +10,22 @@ const SIZE: (u32, u32) = (760, 520);
 /// A logarithmic axis of fewer decades has labels between them.
 const FEW_DECADES: f64 = 2.5;
 
+/// Half the width of the ends of an error bar, as a share of the plot's width.
+const BAR_END: f64 = 0.006;
+
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type DrawingResult = Result<(), Box<dyn std::error::Error>>;
+
 /// A set of points or a curve with its name.
+#[derive(Default)]
 pub struct Line {
     /// Name in the legend.
     pub name: String,
     /// Its points, in the units of the axes.
     pub points: Vec<(f64, f64)>,
+    /// One standard error below and above a point: its x, and from where to where on the upright
+    /// axis.
+    pub bars: Vec<(f64, f64, f64)>,
     /// A law or threshold: drawn as a grey curve without marks.
     pub is_law: bool,
 }
@@ -96,7 +108,24 @@ impl Line {
         Self {
             name: name.into(),
             points,
-            is_law: false,
+            ..Self::default()
+        }
+    }
+
+    /// Means with their errors, those of them that are known, in the unit of the axis; joined as
+    /// [`results`](Self::results) are.
+    pub fn means(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, Estimate)>,
+    ) -> Self {
+        let points: Vec<(f64, Estimate)> = points.into_iter().collect();
+        let bar = |(x, mean): &(f64, Estimate)| {
+            let error = mean.error?;
+            Some((*x, mean.mean - error, mean.mean + error))
+        };
+        Self {
+            bars: points.iter().filter_map(bar).collect(),
+            ..Self::results(name, points.iter().map(|(x, mean)| (*x, mean.mean)))
         }
     }
 
@@ -107,6 +136,7 @@ impl Line {
             name: name.to_owned(),
             points: (0..=100).map(|k| (at(k), value(at(k)))).collect(),
             is_law: true,
+            ..Self::default()
         }
     }
 }
@@ -130,9 +160,17 @@ impl Plot {
         self.lines.iter().flat_map(|line| self.places(line))
     }
 
+    /// Where the ends of the error bars are that have a place.
+    fn bar_ends(&self) -> impl Iterator<Item = (f64, f64)> {
+        let bars = self.lines.iter().flat_map(|line| &line.bars);
+        let ends = bars.flat_map(|(x, low, high)| [(*x, *low), (*x, *high)]);
+        let places = ends.map(|(x, y)| (self.x.place(x), self.y.place(y)));
+        places.filter(|(x, y)| x.is_finite() && y.is_finite())
+    }
+
     /// The range of all `along` one axis, with a margin; any range where there are no points.
     fn range(&self, along: impl Fn((f64, f64)) -> f64) -> Range<f64> {
-        let places = self.all_places().map(along);
+        let places = self.all_places().chain(self.bar_ends()).map(along);
         let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
             (low.min(p), high.max(p))
         });
@@ -206,6 +244,7 @@ impl Plot {
                             .map(|point| Circle::new(*point, 4, colour.filled())),
                     )?;
                 }
+                self.draw_bars(&mut chart, line, colour, [x.clone(), y.clone()])?;
             }
             chart
                 .configure_series_labels()
@@ -217,6 +256,37 @@ impl Plot {
             area.present()?;
         }
         Ok(text)
+    }
+}
+
+impl Plot {
+    /// Draws the error bars of `line` in `colour` on a chart that shows these ranges. A bar that has
+    /// no lower end, as zero on a logarithmic axis, goes down to the edge.
+    fn draw_bars(
+        &self,
+        chart: &mut Chart,
+        line: &Line,
+        colour: RGBColor,
+        [across, upright]: [Range<f64>; 2],
+    ) -> DrawingResult {
+        let half = BAR_END * (across.end - across.start);
+        for (x, low, high) in &line.bars {
+            let (at, top) = (self.x.place(*x), self.y.place(*high));
+            let bottom = Some(self.y.place(*low)).filter(|place| place.is_finite());
+            let foot = bottom.unwrap_or(upright.start);
+            if !(at.is_finite() && top.is_finite()) {
+                continue;
+            }
+            let end = |y: f64| vec![(at - half, y), (at + half, y)];
+            let strokes = [vec![(at, foot), (at, top)], end(top), end(foot)];
+            let drawn = strokes
+                .into_iter()
+                .take(if bottom.is_some() { 3 } else { 2 });
+            chart.draw_series(
+                drawn.map(|stroke| PathElement::new(stroke, colour.stroke_width(1))),
+            )?;
+        }
+        Ok(())
     }
 }
 
@@ -241,6 +311,36 @@ mod tests {
             y: ChartAxis::logarithmic("Tg"),
             lines: vec![Line::results("a", points.iter().copied())],
         }
+    }
+
+    /// The ends of the upright strokes of a drawn plot are one error from their point.
+    #[test]
+    fn errors_are_bars_and_none_is_cut_off() {
+        let mean = |mean, error| Estimate {
+            mean,
+            error,
+            samples: 4,
+            freedom: 3,
+        };
+        let points = [
+            (0.0, mean(1e-8, Some(5e-9))),
+            (1.0, mean(2e-8, None)),
+            (2.0, mean(1e-8, Some(2e-8))),
+        ];
+        let plot = Plot {
+            lines: vec![Line::means("a", points)],
+            ..plot(&[])
+        };
+        assert_eq!(plot.lines[0].bars.len(), 2);
+        let range = plot.range(|(_, y)| y);
+        assert!(range.start < 5e-9_f64.log10() && range.end > 3e-8_f64.log10());
+        let bare = Plot {
+            lines: vec![Line::results("a", points.map(|(x, mean)| (x, mean.mean)))],
+            ..self::plot(&[])
+        };
+        let strokes = |plot: &Plot| plot.draw().unwrap().matches("stroke-width=\"1\"").count();
+        // Three strokes for the first, two for the one whose lower end has no place.
+        assert_eq!(strokes(&plot) - strokes(&bare), 3 + 2);
     }
 
     #[test]

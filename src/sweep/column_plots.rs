@@ -2,7 +2,8 @@
 //! in.
 //!
 //! Cases that differ in height alone share a colour. Where the mixing ratio is varied, plots over
-//! the aspect ratio have one panel, a file of its own, for each ratio, as in the paper.
+//! the aspect ratio have one panel, a file of its own, for each ratio, as in the paper. Points are
+//! means over the seeds, or single runs, with bars of one standard error.
 
 use super::Sweep;
 use super::case::CaseResult;
@@ -10,6 +11,8 @@ use super::chart::{ChartAxis, Line, Plot};
 use super::column_laws::{
     cone_volume_line, height_slopes, peak_time_line, rest_time_lines, run_out_line, run_out_slopes,
 };
+use super::ensemble::ensembles;
+use super::plan::SEED;
 use crate::measure::{Measure, RunQuantity, contact_shares_law};
 use crate::physics::units;
 
@@ -74,13 +77,14 @@ impl Figures<'_> {
         hidden: &[&str],
         [x, y]: [RunQuantity; 2],
     ) -> Vec<Line> {
-        let without: Vec<&str> = hidden.iter().copied().chain([HEIGHT]).collect();
+        let without: Vec<&str> = hidden.iter().copied().chain([HEIGHT, SEED]).collect();
         let line = |(label, members): (String, Vec<&CaseResult>)| {
+            let members = ensembles(self.sweep, members);
             let points = members
                 .iter()
-                .filter_map(|outcome| outcome.result(x).zip(outcome.result(y)));
-            let positive = points.filter(|(x, y)| *x > 0.0 && *y > 0.0);
-            Line::results(or(label, "cases"), positive)
+                .filter_map(|ensemble| ensemble.mean(x).zip(ensemble.estimate(y)));
+            let positive = points.filter(|(x, y)| *x > 0.0 && y.mean > 0.0);
+            Line::means(or(label, "cases"), positive)
         };
         let groups = self.groups(outcomes, &without).into_iter();
         groups.map(line).collect()
@@ -237,6 +241,7 @@ fn shares(outcome: &CaseResult) -> Plot {
         name: name.into(),
         points: vec![(0.0, share), (end, share)],
         is_law: true,
+        ..Line::default()
     }));
     Plot {
         file: format!("courses/{name}-contacts.svg"),
@@ -271,8 +276,8 @@ mod tests {
     use super::super::{Case, Variation};
     use super::*;
     use crate::measure::{
-        FlowProfile, MeasuredValue, PEAK_TIME_LAW, REST_TIME_LAW, Sample, Series, Summary,
-        SummaryEntry, cone_volume_law, run_out_law,
+        MeasuredValue, PEAK_TIME_LAW, REST_TIME_LAW, Sample, Series, Summary, SummaryEntry,
+        cone_volume_law, run_out_law,
     };
     use crate::output::Ending;
     use crate::run::BedStore;
@@ -359,7 +364,7 @@ mod tests {
             ending: Ending::Done,
             results: results(alpha),
             series: samples(),
-            flow: FlowProfile::default(),
+            flow: Vec::new(),
             fastest: None,
             hash: "0".repeat(32),
         }

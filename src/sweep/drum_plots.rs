@@ -1,24 +1,29 @@
 //! The plots of a sweep of drums, as Figs. 2 to 8 of Kasper et al. 2021: results over viscosity for
 //! each radius, with the paper's laws and thresholds drawn in; θ(t) and Tg(t) of each case;
-//! velocity profiles. A sweep that varies no liquid has its results over what it does vary.
+//! velocity profiles. A sweep that varies no liquid has its results over what it does vary. Points
+//! are means over the seeds, or single runs, with bars of one standard error.
 
 use super::Sweep;
 use super::case::CaseResult;
 use super::chart::{ChartAxis, Line, Plot};
-use crate::measure::{Measure, NON_RIGID_TEMPERATURE, ResultKey, RunQuantity, drop_ratio_law};
+use super::ensemble::{Ensemble, ensembles};
+use crate::measure::{
+    Estimate, Measure, NON_RIGID_TEMPERATURE, ResultKey, RunQuantity, drop_ratio_law,
+};
 use crate::scene::SceneGrains;
 use std::collections::BTreeMap;
 
 /// Every plot of these outcomes.
 pub fn drum_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     let over = Over::of(sweep, outcomes);
+    let ensembles = ensembles(sweep, outcomes);
     let mut plots: Vec<Plot> = RESULTS
         .iter()
-        .map(|result| over.plot(result, outcomes))
+        .map(|result| over.plot(result, &ensembles))
         .collect();
-    plots.extend(drop_ratios(outcomes));
-    plots.extend(over_galilei(outcomes));
-    plots.extend(profiles(outcomes));
+    plots.extend(drop_ratios(&ensembles));
+    plots.extend(over_galilei(&ensembles));
+    plots.extend(profiles(&ensembles));
     plots.extend(outcomes.iter().flat_map(courses));
     plots
 }
@@ -38,7 +43,7 @@ const fn linear(file: &'static str, key: ResultKey) -> ResultPlot {
     }
 }
 
-const RESULTS: [ResultPlot; 6] = [
+const RESULTS: [ResultPlot; 7] = [
     linear(
         "surface-angle.svg",
         ResultKey::OfSamples(Measure::SurfaceAngle),
@@ -52,6 +57,10 @@ const RESULTS: [ResultPlot; 6] = [
     linear(
         "flowing-share.svg",
         ResultKey::OfRun(RunQuantity::NonRigidShare),
+    ),
+    linear(
+        "flowing-share-corotating.svg",
+        ResultKey::OfRun(RunQuantity::CorotatingShare),
     ),
     linear(
         "packing-fraction.svg",
@@ -87,7 +96,7 @@ impl Over {
         }
     }
 
-    fn plot(&self, result: &ResultPlot, outcomes: &[CaseResult]) -> Plot {
+    fn plot(&self, result: &ResultPlot, ensembles: &[Ensemble]) -> Plot {
         let label = result.key.quantity().axis();
         Plot {
             file: result.file.to_owned(),
@@ -98,16 +107,21 @@ impl Over {
                 ChartAxis::linear(&label)
             },
             title: label,
-            lines: by_radius(outcomes, |outcome| {
-                Some(((self.value)(outcome)?, in_shown_unit(outcome, result.key)?))
+            lines: by_radius(ensembles, |ensemble| {
+                let across = (self.value)(ensemble.first())?;
+                Some((across, in_shown_unit(ensemble, result.key)?))
             }),
         }
     }
 }
 
-/// The result `key` of a case in the unit that people read.
-fn in_shown_unit(outcome: &CaseResult, key: ResultKey) -> Option<f64> {
-    Some(key.quantity().unit.shown.factor * outcome.result(key)?)
+/// The result `key` of an ensemble in the unit that people read.
+fn in_shown_unit(ensemble: &Ensemble, key: ResultKey) -> Option<Estimate> {
+    Some(
+        ensemble
+            .estimate(key)?
+            .times(key.quantity().unit.shown.factor),
+    )
 }
 
 /// Where dry drums stand on an axis of viscosities [mPa s].
@@ -132,41 +146,35 @@ fn leading_number(text: &str) -> Option<f64> {
     text[..end.unwrap_or(text.len())].parse().ok()
 }
 
-/// A line for each radius, through the points of its outcomes in the order of x.
+/// A line for each radius, through the points of its ensembles in the order of x.
 fn by_radius(
-    outcomes: &[CaseResult],
-    point: impl Fn(&CaseResult) -> Option<(f64, f64)>,
+    ensembles: &[Ensemble],
+    point: impl Fn(&Ensemble) -> Option<(f64, Estimate)>,
 ) -> Vec<Line> {
-    let mut lines: BTreeMap<u64, Line> = BTreeMap::new();
-    for outcome in outcomes {
-        let radius = radius(outcome);
-        let line = lines.entry((1e6 * radius) as u64).or_insert_with(|| Line {
-            name: format!("r = {radius} mm"),
-            points: Vec::new(),
-            is_law: false,
-        });
-        line.points
-            .extend(point(outcome).filter(|(x, y)| x.is_finite() && y.is_finite()));
+    let mut points: BTreeMap<u64, (String, Vec<(f64, Estimate)>)> = BTreeMap::new();
+    for ensemble in ensembles {
+        let radius = radius(ensemble.first());
+        let line = points.entry((1e6 * radius) as u64);
+        let (_, of_radius) = line.or_insert_with(|| (format!("r = {radius} mm"), Vec::new()));
+        of_radius.extend(point(ensemble));
     }
-    let mut lines: Vec<Line> = lines.into_values().collect();
-    for line in &mut lines {
-        line.points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    }
+    let lines = points.into_values();
     lines
+        .map(|(name, points)| Line::means(name, points))
+        .collect()
 }
 
 /// Wet over dry drop, with Eq. 23 (Fig. 5b).
-fn drop_ratios(outcomes: &[CaseResult]) -> Option<Plot> {
+fn drop_ratios(ensembles: &[Ensemble]) -> Option<Plot> {
     let dry = |wet: &CaseResult| {
-        let mut dry = outcomes.iter().filter(|o| viscosity(o).is_none());
-        dry.find(|o| radius(o) == radius(wet))?
-            .result(RunQuantity::Drop)
+        let mut dry = ensembles.iter().filter(|e| viscosity(e.first()).is_none());
+        dry.find(|e| radius(e.first()) == radius(wet))?
+            .estimate(RunQuantity::Drop)
     };
-    let mut lines = by_radius(outcomes, |outcome| {
-        Some((
-            viscosity(outcome)?,
-            outcome.result(RunQuantity::Drop)? / dry(outcome)?,
-        ))
+    let mut lines = by_radius(ensembles, |ensemble| {
+        let viscosity = viscosity(ensemble.first())?;
+        let wet = ensemble.estimate(RunQuantity::Drop)?;
+        Some((viscosity, wet.over(dry(ensemble.first())?)))
     });
     lines.push(Line::law(
         "0.4 + 0.47 exp(−η/295 mPa s), Eq. 23",
@@ -185,12 +193,12 @@ fn drop_ratios(outcomes: &[CaseResult]) -> Option<Plot> {
 }
 
 /// Non-rigid share and drop over √(1/Ga) (Fig. 7).
-fn over_galilei(outcomes: &[CaseResult]) -> Vec<Plot> {
+fn over_galilei(ensembles: &[Ensemble]) -> Vec<Plot> {
     let across = RunQuantity::InverseRootGalilei;
     let plot = |file: &str, quantity: RunQuantity| {
-        let mut lines = by_radius(outcomes, |outcome| {
-            let value = in_shown_unit(outcome, quantity.into())?;
-            Some((outcome.result(across)?, value))
+        let mut lines = by_radius(ensembles, |ensemble| {
+            let value = in_shown_unit(ensemble, quantity.into())?;
+            Some((ensemble.mean(across)?, value))
         });
         let highest = lines
             .iter()
@@ -201,6 +209,7 @@ fn over_galilei(outcomes: &[CaseResult]) -> Vec<Plot> {
             name: "Ga = 1".into(),
             points: vec![(1.0, 0.0), (1.0, highest)],
             is_law: true,
+            ..Line::default()
         });
         let (label, across) = (quantity.quantity().axis(), across.quantity().axis());
         Plot {
@@ -213,14 +222,19 @@ fn over_galilei(outcomes: &[CaseResult]) -> Vec<Plot> {
     };
     vec![
         plot("flowing-share-galilei.svg", RunQuantity::NonRigidShare),
+        plot(
+            "flowing-share-corotating-galilei.svg",
+            RunQuantity::CorotatingShare,
+        ),
         plot("drop-galilei.svg", RunQuantity::Drop),
     ]
 }
 
 /// Velocity over depth for each radius (Fig. 4e).
-fn profiles(outcomes: &[CaseResult]) -> Vec<Plot> {
+fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
     let mut plots: BTreeMap<u64, Plot> = BTreeMap::new();
-    for outcome in outcomes {
+    for ensemble in ensembles {
+        let outcome = ensemble.first();
         let radius = radius(outcome);
         let plot = plots.entry((1e6 * radius) as u64).or_insert_with(|| Plot {
             file: format!("velocity-profile-r{radius}mm.svg"),
@@ -229,19 +243,29 @@ fn profiles(outcomes: &[CaseResult]) -> Vec<Plot> {
             y: ChartAxis::linear("velocity along the surface, downhill [mm/s]"),
             lines: Vec::new(),
         });
-        let profile = &outcome.flow;
-        let points = profile.depth.iter().zip(profile.velocity());
-        plot.lines.push(Line {
-            name: viscosity(outcome)
-                .map_or_else(|| outcome.case.name.clone(), |eta| format!("{eta} mPa s")),
-            points: points
-                .map(|(depth, velocity)| (1e3 * depth, -1e3 * velocity))
-                .filter(|(_, velocity)| velocity.is_finite())
-                .collect(),
-            is_law: false,
-        });
+        let name = viscosity(outcome)
+            .map_or_else(|| outcome.case.name.clone(), |eta| format!("{eta} mPa s"));
+        plot.lines.push(Line::means(name, profile(ensemble)));
     }
     plots.into_values().collect()
+}
+
+/// Velocity downhill [mm/s] over depth [mm], each a mean over the members that flowed there; of a
+/// single run with the run's own error.
+fn profile(ensemble: &Ensemble) -> Vec<(f64, Estimate)> {
+    let members = ensemble.members.iter().map(|member| &member.flow);
+    let longest = members.clone().max_by_key(|flow| flow.len());
+    let depths = longest.map_or(&[][..], Vec::as_slice);
+    let at = |(k, (depth, _)): (usize, &(f64, Estimate))| {
+        let means = members.clone().filter_map(|flow| Some(flow.get(k)?.1));
+        let finite: Vec<Estimate> = means.filter(|velocity| velocity.mean.is_finite()).collect();
+        let downhill = match finite[..] {
+            [own] => own,
+            _ => Estimate::of_runs(&finite.iter().map(|own| own.mean).collect::<Vec<_>>()),
+        };
+        (1e3 * depth, downhill.times(-1e3))
+    };
+    depths.iter().enumerate().map(at).collect()
 }
 
 /// θ(t) and Tg(t) of a case (Fig. 3).
@@ -257,18 +281,22 @@ fn courses(outcome: &CaseResult) -> [Plot; 2] {
             .collect::<Vec<_>>()
     };
     let angle = points(Measure::SurfaceAngle);
-    let mut temperature = points(Measure::GranularTemperature);
-    temperature.retain(|(_, value)| *value > 0.0);
     let end = outcome.series.time().last().copied().unwrap_or(0.0);
-    let curve = |points| Line {
-        name: name.clone(),
+    let curve = |name: &str, points| Line {
+        name: name.to_owned(),
         points,
-        is_law: false,
+        ..Line::default()
+    };
+    let temperature = |name: &str, measure| {
+        let mut points = points(measure);
+        points.retain(|(_, value)| *value > 0.0);
+        curve(name, points)
     };
     let threshold = Line {
         name: "2·10⁻⁹ m²/s²".into(),
         points: vec![(0.0, NON_RIGID_TEMPERATURE), (end, NON_RIGID_TEMPERATURE)],
         is_law: true,
+        ..Line::default()
     };
     [
         Plot {
@@ -276,14 +304,18 @@ fn courses(outcome: &CaseResult) -> [Plot; 2] {
             title: format!("surface angle, {name}"),
             x: ChartAxis::linear("time [s]"),
             y: ChartAxis::linear(&Measure::SurfaceAngle.quantity().axis()),
-            lines: vec![curve(angle)],
+            lines: vec![curve(name, angle)],
         },
         Plot {
             file: format!("courses/{name}-temperature.svg"),
             title: format!("granular temperature, {name}"),
             x: ChartAxis::linear("time [s]"),
             y: ChartAxis::logarithmic(&Measure::GranularTemperature.quantity().axis()),
-            lines: vec![curve(temperature), threshold],
+            lines: vec![
+                temperature("Tg, the paper's", Measure::GranularTemperature),
+                temperature("Tg′, in the drum's frame", Measure::CorotatingTemperature),
+                threshold,
+            ],
         },
     ]
 }

@@ -3,7 +3,9 @@
 //! In: a scene and what to vary about it. Out: a folder with one folder per case (`summary.json`,
 //! `series.csv`, and `flow.csv` and `velocity.csv` or a column's `profile.csv`), a table of all
 //! results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one
-//! core. A sweep that was stopped goes on when it is called again: finished cases are kept, others
+//! core. Where the seed is varied, cases that differ in nothing else are one experiment, repeated:
+//! `ensembles.csv` and `ensembles.md` hold means over the seeds with their standard errors, and so
+//! do the plots. A sweep that was stopped goes on when it is called again: finished cases are kept, others
 //! go on from their checkpoints. Several sweeps may work in one folder at the same time: each case
 //! is run by one of them, and each waits for all cases before it writes the tables.
 
@@ -12,6 +14,8 @@ pub(crate) mod chart;
 mod column_laws;
 mod column_plots;
 mod drum_plots;
+mod ensemble;
+mod ensemble_table;
 mod folder;
 mod plan;
 mod plot_files;
@@ -90,12 +94,24 @@ pub fn run(
     let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
     let mut files = results_table::write_tables(sweep, &outcomes)?;
+    let sound: Vec<CaseResult> = outcomes
+        .iter()
+        .filter(|own| own.is_sound())
+        .cloned()
+        .collect();
+    let ensembles = ensemble::ensembles(sweep, &sound);
+    let table = if ensembles.iter().any(|ensemble| ensemble.members.len() > 1) {
+        files.extend(ensemble_table::write_tables(sweep, &ensembles)?);
+        ensemble_table::markdown(sweep, &ensembles)
+    } else {
+        results_table::markdown(sweep, &outcomes)
+    };
     files.extend(plot_files::write_plots(sweep, &outcomes)?);
     files.extend(velocity_plot::write_velocity_plots(sweep, &outcomes)?);
     folder.close(sweep, &outcomes, files)?;
     Ok(Swept {
         ending: SweepEnding::of(&outcomes, cases.len()),
-        table: results_table::markdown(sweep, &outcomes),
+        table,
     })
 }
 
@@ -170,9 +186,14 @@ fn follow(
         let elapsed = started.elapsed().as_secs_f64();
         let left = elapsed * (1.0 - share) / (share - before);
         let finished = shares.iter().filter(|share| share.get() >= 1.0).count();
+        let preparing = shares.iter().filter(|share| share.is_preparing()).count();
         watch.running(share, &|| {
+            let beds = match preparing {
+                0 => String::new(),
+                count => format!("{count} settling, "),
+            };
             format!(
-                "{finished} of {} cases done, {} left",
+                "{finished} of {} cases done, {beds}{} left",
                 cases.len(),
                 spoken(left)
             )

@@ -8,6 +8,8 @@ use crate::solver::advise;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
+/// The varied key whose values repeat one experiment.
+pub const SEED: &str = "seed";
 /// Cases a sweep may have.
 const MOST_CASES: usize = 10_000;
 
@@ -96,6 +98,15 @@ impl Variation {
             values,
         })
     }
+
+    /// So many seeds from `first` on: the same experiment, repeated.
+    pub fn of_seeds(first: u64, count: u16) -> Self {
+        let seeds = (0..u64::from(count)).map(|k| first.wrapping_add(k).to_string());
+        Self {
+            key: SEED.to_owned(),
+            values: seeds.collect(),
+        }
+    }
 }
 
 impl Case {
@@ -118,6 +129,7 @@ pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
             "the sweep has {number} cases; expected at most {MOST_CASES}: vary less, or in several sweeps"
         )));
     }
+    refuse_what_undoes(sweep)?;
     let cases: Vec<Case> = (0..number as usize)
         .map(|index| case(sweep, index))
         .collect::<Result<_, _>>()?;
@@ -129,6 +141,32 @@ pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
             twice.name
         ))),
     }
+}
+
+/// Refuses a key that is varied twice, or varied and set: the later would undo the earlier.
+fn refuse_what_undoes(sweep: &Sweep) -> Result<(), RunnerError> {
+    let mut varied = HashSet::new();
+    for variation in &sweep.variations {
+        let is_set = |setting: &&String| key_of(setting) == variation.key;
+        if let Some(setting) = sweep.settings.iter().find(is_set) {
+            return Err(RunnerError::Input(format!(
+                "--set {setting} undoes the variation of {}: leave one of them out",
+                variation.key
+            )));
+        }
+        if !varied.insert(&variation.key) {
+            return Err(RunnerError::Input(format!(
+                "{} is varied twice: give all its values once",
+                variation.key
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The key of a setting `KEY=VALUE`.
+fn key_of(setting: &str) -> &str {
+    setting.split_once('=').map_or(setting, |(key, _)| key)
 }
 
 fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
@@ -174,7 +212,6 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
 /// Whether a setting says nothing about a dry scene: a sweep from dry to wet sets it where it has a
 /// meaning.
 fn is_for_wet_cases(setting: &str) -> bool {
-    let key = setting.split_once('=').map_or(setting, |(key, _)| key);
-    let mut known = Parameter::of_key(key).into_iter();
+    let mut known = Parameter::of_key(key_of(setting)).into_iter();
     known.any(|parameter| parameter.row().is_of_liquid)
 }

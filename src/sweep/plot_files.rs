@@ -30,13 +30,13 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>
     Ok(names)
 }
 
-/// Every plot of these outcomes. What a case came to before it met a fault is no result, nor is
-/// where one stood that was stopped before it began: they are in no plot.
+/// Every plot of these outcomes; those that show no result are in none.
 pub(super) fn plots(sweep: &Sweep, outcomes: &[CaseResult]) -> impl Iterator<Item = Plot> {
-    let has_begun =
-        |outcome: &CaseResult| outcome.series.time().last().is_some_and(|time| *time > 0.0);
-    let is_sound = |outcome: &&CaseResult| outcome.ending.fault().is_none() && has_begun(outcome);
-    let sound: Vec<CaseResult> = outcomes.iter().filter(is_sound).cloned().collect();
+    let sound: Vec<CaseResult> = outcomes
+        .iter()
+        .filter(|own| own.is_sound())
+        .cloned()
+        .collect();
     let plots = if sound.iter().any(CaseResult::is_column) {
         column_plots(sweep, &sound)
     } else {

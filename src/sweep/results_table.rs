@@ -16,13 +16,19 @@ use crate::runner::RunnerError;
 /// The table's name.
 const TABLE: &str = "table.csv";
 
+/// What stands in the place of an error where too little was seen for one.
+const TOO_SHORT: &str = "too short";
+
 /// A column: the result it shows under a short head, in the unit and with the digits of the
 /// registry or others.
-struct TableColumn {
+#[derive(Clone)]
+pub(super) struct TableColumn {
     head: &'static str,
     key: ResultKey,
     unit: Unit,
-    format: Format,
+    pub(super) format: Format,
+    /// Whether it is a mean, beside which its error stands.
+    is_mean: bool,
 }
 
 impl TableColumn {
@@ -33,6 +39,7 @@ impl TableColumn {
             key,
             unit: quantity.unit,
             format: quantity.format,
+            is_mean: false,
         }
     }
 
@@ -44,8 +51,23 @@ impl TableColumn {
         Self::new(head, ResultKey::OfRun(quantity))
     }
 
+    const fn mean_of_samples(head: &'static str, measure: Measure) -> Self {
+        Self::of_samples(head, measure).with_error()
+    }
+
+    const fn mean_of_run(head: &'static str, quantity: RunQuantity) -> Self {
+        Self::of_run(head, quantity).with_error()
+    }
+
     const fn drop_from(head: &'static str, threshold: DropThreshold) -> Self {
-        Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold))
+        Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold)).with_error()
+    }
+
+    pub(super) const fn with_error(self) -> Self {
+        Self {
+            is_mean: true,
+            ..self
+        }
     }
 
     const fn with_digits(self, digits: usize) -> Self {
@@ -55,8 +77,19 @@ impl TableColumn {
         }
     }
 
-    fn head(&self) -> String {
+    pub(super) fn head(&self) -> String {
         self.unit.beside(self.head)
+    }
+
+    /// The heads of its cells in a file: its own and, of a mean, those of its standard error and of
+    /// the number of independent samples.
+    pub(super) fn heads(&self) -> Vec<String> {
+        let mut heads = vec![self.head()];
+        if self.is_mean {
+            heads.push(self.unit.beside(&format!("{} error", self.head)));
+            heads.push(format!("{} samples", self.head));
+        }
+        heads
     }
 
     fn cell(&self, results: &Summary) -> String {
@@ -65,29 +98,56 @@ impl TableColumn {
             |value| (self.key.quantity()).number_as(value, self.unit, self.format),
         )
     }
+
+    /// Its cells in a file, under its [`heads`](Self::heads).
+    pub(super) fn cells(&self, results: &Summary) -> Vec<String> {
+        let mut cells = vec![self.cell(results)];
+        if self.is_mean {
+            let mean = results.estimate(self.key);
+            let error = mean.and_then(|mean| mean.error);
+            let error = error.map(|error| format!("{:.3e}", error * self.unit.shown.factor));
+            let short = mean
+                .and_then(|mean| mean.reason())
+                .map(|_| TOO_SHORT.to_owned());
+            cells.push(error.or(short).unwrap_or_else(|| NOTHING.to_owned()));
+            let samples = mean.map_or_else(|| NOTHING.to_owned(), |mean| mean.samples.to_string());
+            cells.push(samples);
+        }
+        cells
+    }
+
+    /// Its cell for people, a mean with its error.
+    pub(super) fn cell_for_people(&self, results: &Summary) -> String {
+        match results.estimate(self.key) {
+            Some(mean) => (self.key.quantity()).number_with_error_as(mean, self.unit, self.format),
+            None => self.cell(results),
+        }
+    }
 }
 
 const DRUM: &[TableColumn] = &[
-    TableColumn::of_samples("θ", Measure::SurfaceAngle),
-    TableColumn::of_run("θ_m", RunQuantity::MaximumAngle),
-    TableColumn::of_run("θ_r", RunQuantity::ReposeAngle),
-    TableColumn::of_run("Δθ", RunQuantity::Drop),
+    TableColumn::mean_of_samples("θ", Measure::SurfaceAngle),
+    TableColumn::mean_of_run("θ_m", RunQuantity::MaximumAngle),
+    TableColumn::mean_of_run("θ_r", RunQuantity::ReposeAngle),
+    TableColumn::mean_of_run("Δθ", RunQuantity::Drop),
     TableColumn::of_run("drops", RunQuantity::Avalanches),
     TableColumn::drop_from("Δθ ≥ 0.5°", DropThreshold::HalfDegree),
     TableColumn::drop_from("Δθ ≥ 2°", DropThreshold::TwoDegrees),
     TableColumn::drop_from("Δθ ≥ 3°", DropThreshold::ThreeDegrees),
-    TableColumn::of_samples("Tg", Measure::GranularTemperature),
-    TableColumn::of_samples("Tg′", Measure::CorotatingTemperature),
-    TableColumn::of_run("ta/ts", RunQuantity::NonRigidShare),
+    TableColumn::mean_of_run("T_a", RunQuantity::Period),
+    TableColumn::mean_of_samples("Tg", Measure::GranularTemperature),
+    TableColumn::mean_of_samples("Tg′", Measure::CorotatingTemperature),
+    TableColumn::mean_of_run("ta/ts", RunQuantity::NonRigidShare),
+    TableColumn::mean_of_run("ta/ts′", RunQuantity::CorotatingShare),
     TableColumn::of_run("√(1/Ga)", RunQuantity::InverseRootGalilei),
     TableColumn::of_run("Ca", RunQuantity::CapillaryNumber),
-    TableColumn::of_samples("φ", Measure::PackingFraction),
-    TableColumn::of_samples("Z", Measure::CoordinationNumber),
-    TableColumn::of_samples("h", Measure::SurfaceRoughness),
-    TableColumn::of_samples("κ", Measure::SurfaceCurvature),
-    TableColumn::of_samples("bridges", Measure::Bridges),
-    TableColumn::of_run("ruptures", RunQuantity::RupturesPerSecond),
-    TableColumn::of_run("drum power", RunQuantity::DrumPower),
+    TableColumn::mean_of_samples("φ", Measure::PackingFraction),
+    TableColumn::mean_of_samples("Z", Measure::CoordinationNumber),
+    TableColumn::mean_of_samples("h", Measure::SurfaceRoughness),
+    TableColumn::mean_of_samples("κ", Measure::SurfaceCurvature),
+    TableColumn::mean_of_samples("bridges", Measure::Bridges),
+    TableColumn::mean_of_run("ruptures", RunQuantity::RupturesPerSecond),
+    TableColumn::mean_of_run("drum power", RunQuantity::DrumPower),
     TableColumn::of_samples("viscous loss", Measure::ViscousLoss),
     TableColumn::of_samples("largest overlap", Measure::LargestOverlap).with_digits(4),
     TableColumn::of_run("energy residual", RunQuantity::RelativeEnergyResidual),
@@ -123,13 +183,9 @@ const COLLAPSE: &[TableColumn] = &[
     TableColumn::of_run("energy residual", RunQuantity::RelativeEnergyResidual),
 ];
 
-/// The columns that suit what was run.
-fn columns(outcomes: &[CaseResult]) -> &'static [TableColumn] {
-    if outcomes.iter().any(CaseResult::is_column) {
-        COLLAPSE
-    } else {
-        DRUM
-    }
+/// The columns of the table: those of collapsing columns, or those of drums.
+pub(super) fn columns(is_of_columns: bool) -> &'static [TableColumn] {
+    if is_of_columns { COLLAPSE } else { DRUM }
 }
 
 /// Writes `table.csv` and `table.md`, and where they come from; returns the files' names.
@@ -137,12 +193,16 @@ fn columns(outcomes: &[CaseResult]) -> &'static [TableColumn] {
 /// # Errors
 /// When a file cannot be written.
 pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>, RunnerError> {
-    let columns = columns(outcomes);
+    let columns = columns(outcomes.iter().any(CaseResult::is_column));
     write_file(&sweep.out.join(TABLE), |file| {
         let mut writer = csv::Writer::from_writer(file);
-        writer.write_record(heads(sweep, columns))?;
+        let of_results = columns.iter().flat_map(TableColumn::heads);
+        writer.write_record(heads(sweep, of_results))?;
         for outcome in outcomes {
-            writer.write_record(cells(outcome, columns))?;
+            let of_results = columns
+                .iter()
+                .flat_map(|column| column.cells(&outcome.results));
+            writer.write_record(cells(outcome, of_results))?;
         }
         writer.flush()
     })?;
@@ -160,29 +220,31 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String
 
 /// The table in Markdown.
 pub fn markdown(sweep: &Sweep, outcomes: &[CaseResult]) -> String {
-    let columns = columns(outcomes);
-    let heads = heads(sweep, columns);
+    let columns = columns(outcomes.iter().any(CaseResult::is_column));
+    let heads = heads(sweep, columns.iter().map(TableColumn::head));
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-    let rows = outcomes
-        .iter()
-        .map(|outcome| line(&cells(outcome, columns)));
+    let rows = outcomes.iter().map(|outcome| {
+        let of_results = columns
+            .iter()
+            .map(|column| column.cell_for_people(&outcome.results));
+        line(&cells(outcome, of_results))
+    });
     let rule = line(&vec!["---".to_owned(); heads.len()]);
     [line(&heads), rule].into_iter().chain(rows).collect()
 }
 
-fn heads(sweep: &Sweep, columns: &[TableColumn]) -> Vec<String> {
+/// The heads of a row: what is varied, the `results`, how a case ended.
+fn heads(sweep: &Sweep, results: impl Iterator<Item = String>) -> Vec<String> {
     let varied = sweep
         .variations
         .iter()
         .map(|variation| variation.key.clone());
-    let results = columns.iter().map(TableColumn::head);
     let fixed = ["time [s]", "ended", "state"].map(str::to_owned);
     varied.chain(results).chain(fixed).collect()
 }
 
-fn cells(outcome: &CaseResult, columns: &[TableColumn]) -> Vec<String> {
+fn cells(outcome: &CaseResult, results: impl Iterator<Item = String>) -> Vec<String> {
     let values = outcome.case.values.iter().cloned();
-    let results = columns.iter().map(|column| column.cell(&outcome.results));
     let ended = match &outcome.ending {
         Ending::Done => "done",
         Ending::Interrupted => "stopped",

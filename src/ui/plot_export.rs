@@ -102,7 +102,7 @@ impl Export {
             chart::Line {
                 name: run.name.clone(),
                 points: points.filter(finite).collect(),
-                is_law: false,
+                ..chart::Line::default()
             }
         };
         let plot = chart::Plot {

@@ -6,6 +6,7 @@ mod column;
 mod contacts;
 mod deposit;
 mod energy;
+mod errors;
 mod flow;
 mod grain;
 mod packing;

@@ -196,6 +196,78 @@ fn numbers_of_cases_are_counted_without_wrapping() {
 }
 
 #[test]
+fn a_key_that_is_given_twice_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let message = |settings: &[&str], variations: &[&str]| {
+        let mut sweep = sweep(&folder.path().join("none"), variations);
+        sweep.settings = settings.iter().map(|&own| own.to_owned()).collect();
+        run(&sweep, &AtomicBool::new(false))
+            .unwrap_err()
+            .to_string()
+    };
+    let undone = message(&["seed=5"], &["seed=1..3"]);
+    assert!(
+        undone.contains("--set seed=5 undoes the variation of seed"),
+        "{undone}"
+    );
+    let twice = message(&[], &["seed=1,2", "seed=3,4"]);
+    assert!(twice.contains("seed is varied twice"), "{twice}");
+}
+
+#[test]
+fn seeds_repeat_an_experiment_and_the_tables_hold_their_means() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sweep");
+    let mut sweep = sweep(&out, &["liquid=0,7"]);
+    sweep.variations.push(Variation::of_seeds(3, 3));
+    let swept = sweep::run(&sweep, &AtomicBool::new(false), &mut ()).unwrap();
+    assert_eq!(swept.ending, SweepEnding::Done);
+    assert!(
+        swept.table.starts_with("| liquid | seeds | θ [°] |"),
+        "{}",
+        swept.table
+    );
+    let read = |name: &str| {
+        let mut reader = csv::Reader::from_path(out.join(name)).unwrap();
+        let heads = reader.headers().unwrap().clone();
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        (heads, rows)
+    };
+    let (heads, cases) = read("table.csv");
+    let column = |heads: &csv::StringRecord, head: &str| {
+        let place = heads.iter().position(|own| own == head);
+        place.unwrap_or_else(|| panic!("no {head} in {heads:?}"))
+    };
+    let number = |row: &csv::StringRecord, at: usize| row[at].parse::<f64>().unwrap();
+    let at = column(&heads, "φ");
+    assert_eq!(cases.len(), 6);
+    assert_eq!(&cases[2][column(&heads, "seed")], "5");
+    // 0.3 s with samples every 20 ms: too few for an error of one run.
+    assert_eq!(&cases[0][column(&heads, "φ error")], "too short");
+    let (heads, ensembles) = read("ensembles.csv");
+    assert_eq!(ensembles.len(), 2);
+    for (ensemble, cases) in ensembles.iter().zip(cases.chunks(3)) {
+        let values: Vec<f64> = cases.iter().map(|case| number(case, at)).collect();
+        let mean = values.iter().sum::<f64>() / 3.0;
+        let squares: f64 = values
+            .iter()
+            .map(|value| (value - mean) * (value - mean))
+            .sum();
+        // Cells have three digits after the point.
+        let [own, error] = ["φ", "φ error"].map(|head| number(ensemble, column(&heads, head)));
+        assert!((own - mean).abs() < 2e-3, "{own} {mean}");
+        assert!(
+            (error - (squares / 6.0).sqrt()).abs() < 2e-3,
+            "{error} {squares}"
+        );
+        assert_eq!(&ensemble[column(&heads, "φ samples")], "3");
+        assert_eq!(&ensemble[column(&heads, "seeds")], "3");
+    }
+    let plot = fs::read_to_string(out.join("plots/packing-fraction.svg")).unwrap();
+    assert!(plot.contains("<svg"));
+}
+
+#[test]
 fn wrong_variations_say_what_was_expected() {
     for text in [
         "liquid",

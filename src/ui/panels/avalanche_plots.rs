@@ -32,6 +32,10 @@ const SMALLEST_ANGLE_SPAN: f64 = 2.0;
 const SMALLEST_DECADES: f64 = 2.0;
 /// Temperatures are drawn no lower than this [m²/s²]: below lies only rounding.
 const COLDEST: f64 = 1e-13;
+/// What the two granular temperatures are.
+const FRAMES: &str = "The granular temperature in the frame that turns with the drum, where a bed at rest in the drum has \
+                      none. The paper's Tg is that of the laboratory, where rigid rotation alone may come to the line \
+                      above which a bed counts as flowing.";
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 /// Both plots.
@@ -39,6 +43,8 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 pub struct AvalanchePlots {
     window: TimeWindow,
     logarithmic: bool,
+    /// Whether Tg is that in the drum's frame instead of the paper's.
+    corotating: bool,
 }
 
 /// What is marked in the part in view.
@@ -56,6 +62,7 @@ impl Default for AvalanchePlots {
         Self {
             window: TimeWindow::Recent,
             logarithmic: true,
+            corotating: false,
         }
     }
 }
@@ -124,7 +131,7 @@ impl AvalanchePlots {
         let marks = AvalancheMarks::within(curves, &window, columns, palette);
         let angle = angle_curve(curves, &window, columns, palette);
         let first = angle.ui(ui, &window, height, |plot| marks.angle_ui(plot));
-        let temperature = temperature_curve(curves, &window, columns, palette, self.logarithmic);
+        let temperature = self.temperature_curve(curves, &window, columns, palette);
         let decades = self.logarithmic;
         let second = temperature.ui(ui, &window, height, |plot| {
             marks.temperature_ui(plot, decades);
@@ -139,12 +146,54 @@ impl AvalanchePlots {
         clicked
     }
 
+    fn temperature_curve(
+        &self,
+        curves: &Curves,
+        window: &RangeInclusive<f64>,
+        columns: usize,
+        palette: Palette,
+    ) -> TimePlot {
+        let decades = self.logarithmic;
+        let (measure, title) = if self.corotating {
+            let title = "Granular temperature Tg′ in the drum's frame [m²/s²]";
+            (Measure::CorotatingTemperature, title)
+        } else {
+            (
+                Measure::GranularTemperature,
+                "Granular temperature Tg [m²/s²]",
+            )
+        };
+        let threshold = on_axis(NON_RIGID_TEMPERATURE, decades);
+        let value = |series: &Series, i: usize| series.column(measure)[i];
+        let lines = curves.lines(window, columns, |series, i| {
+            on_axis(value(series, i), decades)
+        });
+        // The threshold is always in view, and zero where it has a place.
+        let always = [
+            [0.0, threshold],
+            [0.0, if decades { threshold } else { 0.0 }],
+        ];
+        let all = lines.points().chain(&always);
+        TimePlot {
+            id: "temperature",
+            title,
+            present: curves.present(value, number::short),
+            colour: palette.temperature,
+            height: height_of(all, if decades { SMALLEST_DECADES } else { 0.0 }),
+            lines,
+            decades,
+            unit: "m²/s²",
+        }
+    }
+
     fn choice_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
             self.window.choice_ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.checkbox(&mut self.logarithmic, "log Tg")
                     .on_hover_text("Powers of ten for the granular temperature");
+                ui.checkbox(&mut self.corotating, "Tg′")
+                    .on_hover_text(FRAMES);
             });
         });
     }
@@ -167,36 +216,6 @@ fn angle_curve(
         lines,
         decades: false,
         unit: "°",
-    }
-}
-
-fn temperature_curve(
-    curves: &Curves,
-    window: &RangeInclusive<f64>,
-    columns: usize,
-    palette: Palette,
-    decades: bool,
-) -> TimePlot {
-    let threshold = on_axis(NON_RIGID_TEMPERATURE, decades);
-    let value = |series: &Series, i: usize| series.column(Measure::GranularTemperature)[i];
-    let lines = curves.lines(window, columns, |series, i| {
-        on_axis(value(series, i), decades)
-    });
-    // The threshold is always in view, and zero where it has a place.
-    let always = [
-        [0.0, threshold],
-        [0.0, if decades { threshold } else { 0.0 }],
-    ];
-    let all = lines.points().chain(&always);
-    TimePlot {
-        id: "temperature",
-        title: "Granular temperature Tg [m²/s²]",
-        present: curves.present(value, number::short),
-        colour: palette.temperature,
-        height: height_of(all, if decades { SMALLEST_DECADES } else { 0.0 }),
-        lines,
-        decades,
-        unit: "m²/s²",
     }
 }
 

@@ -1,10 +1,10 @@
 //! The running wet drum beside the laws of Kasper et al. 2021: the drops over viscosity with Eq.
 //! 23, the non-rigid share over √(1/Ga).
 //!
-//! In: the samples since the last change of a parameter. Out: one point on each plot that moves as
-//! the run goes on.
+//! In: the samples since the last change of a parameter. Out: points with their errors that move as
+//! the run goes on, and what becomes of the paper's law by the rules of [`Verdict`].
 
-use crate::measure::{RunQuantity, drop_ratio_law, dry_drum};
+use crate::measure::{Estimate, RunQuantity, Summary, Verdict, drop_ratio_law, dry_drum};
 use crate::simulation::{Command, Parameter, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::panels::averages::Averages;
@@ -17,6 +17,11 @@ use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, Points,
 
 /// Height of a plot in points.
 const HEIGHT: f32 = 130.0;
+
+/// How far from Eq. 23 the paper's own points lie.
+const DROP_RATIO_TOLERANCE: f64 = 0.1;
+/// What the two points of the non-rigid share are.
+const FRAMES: &str = "Diamond: the paper's ta/ts, in the laboratory frame. Circle: ta/ts′ in the frame that turns with the drum.";
 
 /// The panel.
 #[derive(Default)]
@@ -38,11 +43,41 @@ pub struct PaperPlot {
     /// Where a threshold stands.
     pub threshold: Option<f64>,
     /// Where the run stands.
-    pub point: Option<[f64; 2]>,
+    pub points: Vec<PaperPoint>,
     /// What is in view across.
     pub x: std::ops::RangeInclusive<f64>,
     /// What is in view upright.
     pub y: std::ops::RangeInclusive<f64>,
+}
+
+/// Where a run stands on one plot.
+pub struct PaperPoint {
+    /// What it is, where there are several.
+    pub name: &'static str,
+    /// Its place on the axes.
+    pub at: [f64; 2],
+    /// The standard error of its height, if it is known.
+    pub error: Option<f64>,
+}
+
+impl PaperPoint {
+    /// The one point of a plot, without an error.
+    pub fn alone(x: f64, y: f64) -> Self {
+        Self {
+            name: "this run",
+            at: [x, y],
+            error: None,
+        }
+    }
+
+    /// A mean with its error.
+    fn mean(name: &'static str, x: f64, mean: Estimate) -> Self {
+        Self {
+            name,
+            at: [x, mean.mean],
+            error: mean.error,
+        }
+    }
 }
 
 impl Panel for BesidePaper {
@@ -76,26 +111,19 @@ impl Panel for BesidePaper {
         let radius = world.grains.radius.first().copied().unwrap_or(0.0);
         let from = last_change(run);
         let summary = self.averages.over(run, from);
-        let drop = summary.value(RunQuantity::Drop);
+        let drop = summary.estimate(RunQuantity::Drop);
         let count = summary.value(RunQuantity::Avalanches).unwrap_or(0.0);
         let dry = dry_drum(radius).map(|drum| drum.drop);
-        let ratio = drop.zip(dry).map(|(drop, dry)| drop / dry);
-        let flowing = summary.value(RunQuantity::NonRigidShare);
-        let inverse_root = summary.value(RunQuantity::InverseRootGalilei);
-        comparison_ui(
-            ui,
-            PaperPlot {
-                id: "drop ratio",
-                title: "Wet over dry drop, over viscosity η [mPa s]",
-                law: law_over(-0.5..=3.4, |viscosity| drop_ratio_law(1e-3 * viscosity)),
-                law_name: "0.4 + 0.47 exp(−η/295 mPa s)",
-                threshold: None,
-                point: viscosity.zip(ratio).map(|(x, y)| [x.max(0.1).log10(), y]),
-                x: -0.5..=3.4,
-                y: 0.0..=ratio.unwrap_or(0.0).max(1.1) * 1.05,
-            },
-        );
-        comparison_ui(ui, flowing_share(inverse_root.zip(flowing)));
+        let ratio = viscosity.zip(drop.zip(dry).map(|(drop, dry)| drop.over(dry)));
+        comparison_ui(ui, drop_ratio(ratio));
+        if let Some((viscosity, ratio)) = ratio {
+            ui.label(RichText::new(beside_the_law(viscosity, ratio)).small());
+        }
+        comparison_ui(ui, flowing_share(summary));
+        ui.label(RichText::new(FRAMES).small().weak());
+        if let Some(note) = summary.rotation_note() {
+            ui.label(RichText::new(note).small().weak());
+        }
         let missing = match (dry, drop) {
             (None, _) => "No stored dry drum has this radius: set a drum of 3 or 2 mm beside it. ",
             (_, None) => "No avalanche yet. ",
@@ -110,15 +138,67 @@ impl Panel for BesidePaper {
     }
 }
 
-/// The non-rigid share over `√(1/Ga)`, where the run stands at the `point`.
-fn flowing_share(point: Option<(f64, f64)>) -> PaperPlot {
+/// Wet over dry drop, where the run's is a `ratio` at a viscosity [mPa s].
+fn drop_ratio(ratio: Option<(f64, Estimate)>) -> PaperPlot {
+    let highest = ratio.map_or(0.0, |(_, ratio)| ratio.mean + ratio.error.unwrap_or(0.0));
+    let point =
+        |(x, ratio): (f64, Estimate)| PaperPoint::mean("this run", x.max(0.1).log10(), ratio);
+    PaperPlot {
+        id: "drop ratio",
+        title: "Wet over dry drop, over viscosity η [mPa s]",
+        law: law_over(-0.5..=3.4, |viscosity| drop_ratio_law(1e-3 * viscosity)),
+        law_name: "0.4 + 0.47 exp(−η/295 mPa s)",
+        threshold: None,
+        points: ratio.map(point).into_iter().collect(),
+        x: -0.5..=3.4,
+        y: 0.0..=highest.max(1.1) * 1.05,
+    }
+}
+
+/// What becomes of *the ratio of the drops follows Eq. 23 to within 0.1*, in words.
+fn beside_the_law(viscosity: f64, ratio: Estimate) -> String {
+    let law = drop_ratio_law(1e-3 * viscosity);
+    let verdict = Verdict::of_between(
+        ratio,
+        law - DROP_RATIO_TOLERANCE..law + DROP_RATIO_TOLERANCE,
+    );
+    let own = match (ratio.error, ratio.reason()) {
+        (Some(error), _) => format!(
+            "{} ± {}",
+            number::fixed(ratio.mean, 2),
+            number::fixed(error, 2)
+        ),
+        (None, reason) => format!(
+            "{} ({})",
+            number::fixed(ratio.mean, 2),
+            reason.unwrap_or_default()
+        ),
+    };
+    let law = number::fixed(law, 2);
+    format!("{own} beside Eq. 23's {law} ± 0.1: {}.", verdict.word())
+}
+
+/// The non-rigid share over `√(1/Ga)`, that of the paper's frame and that of the drum's.
+fn flowing_share(summary: &Summary) -> PaperPlot {
+    let across = summary.value(RunQuantity::InverseRootGalilei);
+    let shares = [
+        ("ta/ts, the paper's", RunQuantity::NonRigidShare),
+        ("ta/ts′, in the drum's frame", RunQuantity::CorotatingShare),
+    ];
+    let point = |(name, quantity): (&'static str, RunQuantity)| {
+        Some(PaperPoint::mean(
+            name,
+            across?.log10(),
+            summary.estimate(quantity)?,
+        ))
+    };
     PaperPlot {
         id: "flowing share",
         title: "Non-rigid share ta/ts, over √(1/Ga)",
         law: Vec::new(),
         law_name: "",
         threshold: Some(0.0),
-        point: point.map(|(x, y)| [x.log10(), y]),
+        points: shares.into_iter().filter_map(point).collect(),
         x: -3.5..=1.2,
         y: 0.0..=1.1,
     }
@@ -181,14 +261,26 @@ pub fn comparison_ui(ui: &mut egui::Ui, shown: PaperPlot) {
                 let line = VLine::new("Ga = 1", x).color(palette.threshold);
                 plot.vline(line.style(LineStyle::dashed_dense()));
             }
-            if let Some(point) = shown.point {
-                let points = Points::new("this run", vec![point]);
-                plot.points(
-                    points
-                        .shape(MarkerShape::Diamond)
-                        .radius(7.0)
-                        .color(palette.temperature),
-                );
+            // The paper's own first, filled; beside it a hollow one.
+            let marks = [(MarkerShape::Diamond, true), (MarkerShape::Circle, false)];
+            for (point, (shape, filled)) in shown.points.iter().zip(marks) {
+                let bar = |error: f64| {
+                    vec![
+                        [point.at[0], point.at[1] - error],
+                        [point.at[0], point.at[1] + error],
+                    ]
+                };
+                if let Some(error) = point.error {
+                    plot.line(
+                        Line::new(point.name, bar(error))
+                            .color(palette.temperature)
+                            .width(1.6),
+                    );
+                }
+                let mark = Points::new(point.name, vec![point.at])
+                    .shape(shape)
+                    .filled(filled);
+                plot.points(mark.radius(7.0).color(palette.temperature));
             }
         });
 }

@@ -10,7 +10,7 @@ use crate::measure::{
 };
 use crate::simulation::Simulation;
 use crate::ui::panel::{Panel, is_column};
-use crate::ui::panels::beside_paper::{PaperPlot, comparison_ui, law_over};
+use crate::ui::panels::beside_paper::{PaperPlot, PaperPoint, comparison_ui, law_over};
 use crate::ui::request::Request;
 use crate::ui::words::number;
 use crate::view::ViewSettings;
@@ -75,7 +75,10 @@ fn comparisons(column: &InitialColumn, collapse: &Collapse) -> [PaperPlot; 3] {
         law: law_over(POWERS, law),
         law_name,
         threshold: None,
-        point: value.map(|value| [place, value]),
+        points: (value
+            .map(|value| PaperPoint::alone(place, value))
+            .into_iter())
+        .collect(),
         x: POWERS,
         // The law's break is always in view.
         y: 0.0..=ROOM

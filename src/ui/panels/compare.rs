@@ -1,27 +1,42 @@
-//! Two runs side by side that differ in one parameter: which one and by how much, and the end of
-//! it.
+//! Two runs side by side that differ in one parameter: which one and by how much, what of their
+//! results differs by more than scatter, and the end of it.
 //!
 //! In: the simulation, with one run or two. Out: requests to begin a comparison and to end it.
 
+use crate::measure::{LEFT_OUT, Measure, ResultKey, RunQuantity, Summary, difference_in_words};
 use crate::parameters::{Kind, Parameter, ParameterInfo, Preset, Value};
 use crate::simulation::{Half, Simulation};
 use crate::ui::detail::is_basic;
-use crate::ui::panel::Panel;
+use crate::ui::panel::{Panel, has_bed};
+use crate::ui::panels::averages::Averages;
 use crate::ui::request::Request;
 use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::number;
 use crate::ui::words::run_names::{half_title, value_in_words};
+use crate::ui::words::symbol;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 
+/// The results of two beds that are compared.
+const COMPARED: [ResultKey; 6] = [
+    ResultKey::OfSamples(Measure::SurfaceAngle),
+    ResultKey::OfRun(RunQuantity::Drop),
+    ResultKey::OfRun(RunQuantity::Period),
+    ResultKey::OfSamples(Measure::GranularTemperature),
+    ResultKey::OfRun(RunQuantity::CorotatingShare),
+    ResultKey::OfSamples(Measure::PackingFraction),
+];
+
 /// The panel.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Default)]
 pub struct Compare {
     /// The parameter that was chosen, and its other value.
     chosen: Option<(Parameter, Value)>,
     /// The parameter that is to be chosen next.
     wanted: Option<Parameter>,
+    /// The results of both runs.
+    averages: [Averages; 2],
 }
 
 impl Compare {
@@ -47,6 +62,9 @@ impl Panel for Compare {
     ) {
         if simulation.comparison().is_some() {
             end_ui(ui, simulation, out);
+            if has_bed(simulation) {
+                self.differences_ui(ui, simulation);
+            }
         } else if simulation.parameters().is_empty() {
             ui.weak("There is something to compare when the bed stands.");
         } else {
@@ -56,6 +74,24 @@ impl Panel for Compare {
 }
 
 impl Compare {
+    /// What of the results differs by more than scatter, in words.
+    fn differences_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+        let [left, right] = &mut self.averages;
+        let from = |half: Half| {
+            let time = simulation.half(half).series().time().last();
+            // By the second, so that averages are not remade in every frame.
+            LEFT_OUT * time.copied().unwrap_or(0.0).floor()
+        };
+        let left = left.over(simulation.half(Half::Left), from(Half::Left));
+        let right = right.over(simulation.half(Half::Right), from(Half::Right));
+        ui.add_space(6.0);
+        ui.label(RichText::new("Right less left").strong())
+            .on_hover_text(TEST);
+        for text in differences(left, right) {
+            ui.label(symbol::text(ui, &text));
+        }
+    }
+
     fn start_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         ui.weak("The same scene twice, side by side and in step, with one value changed.");
         let list = ordered(simulation);
@@ -87,6 +123,20 @@ impl Compare {
         }
         self.chosen = Some((parameter, other));
     }
+}
+
+/// How differences are tested.
+const TEST: &str = "Averages over the last three fifths of both runs, as summaries have them; differences with \
+                    their standard error. More than scatter: Welch's test finds less than one chance in twenty \
+                    that two equal runs lie so far apart.";
+
+/// How the results of two runs differ, in words.
+fn differences(left: &Summary, right: &Summary) -> Vec<String> {
+    let compared = |key: &ResultKey| {
+        let [left, right] = [left, right].map(|summary| summary.estimate(*key));
+        Some(difference_in_words(*key, left?, right?))
+    };
+    COMPARED.iter().filter_map(compared).collect()
 }
 
 /// Why two runs cannot start now.
@@ -195,5 +245,46 @@ fn end_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         if ui.button(text).on_hover_text(hint).clicked() {
             out.push(Request::EndComparison(half));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::{Estimate, MeasuredValue, SummaryEntry};
+
+    #[test]
+    fn only_what_differs_by_more_than_scatter_is_called_so() {
+        let summary = |angle: f64, share: f64| {
+            let mean = |mean, error| {
+                MeasuredValue::Mean(Estimate {
+                    mean,
+                    error: Some(error),
+                    samples: 40,
+                    freedom: 10,
+                })
+            };
+            let entry = |key: ResultKey, value| SummaryEntry {
+                key,
+                value: Some(value),
+                note: String::new(),
+            };
+            let angle = mean(angle.to_radians(), 0.3_f64.to_radians());
+            Summary {
+                from: 20.0,
+                to: 50.0,
+                samples: 1500,
+                entries: vec![
+                    entry(Measure::SurfaceAngle.into(), angle),
+                    entry(RunQuantity::CorotatingShare.into(), mean(share, 0.02)),
+                ],
+            }
+        };
+        let found = differences(&summary(28.3, 0.52), &summary(29.9, 0.54));
+        let expected = [
+            "θ differs by 1.6° ± 0.4°: more than scatter",
+            "ta/ts′ differs by 0.02 ± 0.03: within scatter",
+        ];
+        assert_eq!(found, expected);
     }
 }

@@ -1,6 +1,6 @@
 //! Measured numbers of the latest sample, averages over the run, and the energy ledger.
 
-use crate::measure::{Measure, ResultKey, RunQuantity, Sample, Summary};
+use crate::measure::{Measure, ResultKey, RunQuantity, Sample, Summary, SummaryEntry};
 use crate::simulation::{RunView, Simulation};
 use crate::ui::panel::{Panel, is_column};
 use crate::ui::panels::averages::Averages;
@@ -38,15 +38,17 @@ const LATEST: [Measure; 22] = [
 ];
 
 /// The averages of a bed.
-const AVERAGES: [ResultKey; 8] = [
+const AVERAGES: [ResultKey; 10] = [
     ResultKey::OfSamples(Measure::SurfaceAngle),
     ResultKey::OfRun(RunQuantity::MaximumAngle),
     ResultKey::OfRun(RunQuantity::ReposeAngle),
     ResultKey::OfRun(RunQuantity::Drop),
     ResultKey::OfRun(RunQuantity::Avalanches),
+    ResultKey::OfRun(RunQuantity::Period),
     ResultKey::OfRun(RunQuantity::RiseRate),
     ResultKey::OfSamples(Measure::GranularTemperature),
     ResultKey::OfRun(RunQuantity::NonRigidShare),
+    ResultKey::OfRun(RunQuantity::CorotatingShare),
 ];
 
 /// What stands in their place of a column.
@@ -141,7 +143,20 @@ impl Results {
         });
         let hint = "Only samples from this time on count. The paper leaves out the first 20 s.";
         slip_ui(ui, &typed.inner.on_hover_text(hint));
-        summary_ui(ui, self.averages.over(run, self.from), &AVERAGES);
+        let summary = self.averages.over(run, self.from);
+        summary_ui(ui, summary, &AVERAGES);
+        let lacks_error = |key: &ResultKey| {
+            let mean = summary.estimate(*key);
+            mean.is_some_and(|mean| mean.reason().is_some())
+        };
+        let too_short = "± ?: too short to say. Rest the pointer on it to see how many samples are independent.";
+        let short = AVERAGES
+            .iter()
+            .any(lacks_error)
+            .then(|| too_short.to_owned());
+        for note in short.into_iter().chain(summary.rotation_note()) {
+            ui.label(RichText::new(note).small().weak());
+        }
     }
 }
 
@@ -152,11 +167,17 @@ fn summary_ui(ui: &mut egui::Ui, summary: &Summary, keys: &[ResultKey]) {
         keys.iter().map(|&key| TableRow {
             name: key.label(),
             value: summary.text(key),
-            hint: summary
-                .entry(key)
-                .map_or_else(String::new, |entry| entry.note.clone()),
+            hint: summary.entry(key).map_or_else(String::new, hint_of),
         }),
     );
+}
+
+/// How a result was taken, and what its error rests on.
+fn hint_of(entry: &SummaryEntry) -> String {
+    match entry.estimate() {
+        Some(mean) => format!("{}\n{}", entry.note, number::capitalised(&mean.basis())),
+        None => entry.note.clone(),
+    }
 }
 
 fn latest_ui(ui: &mut egui::Ui, sample: &Sample, applies: impl Fn(Measure) -> bool) {

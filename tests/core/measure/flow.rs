@@ -57,16 +57,18 @@ fn profile_of_a_sheared_bed_is_its_shear() {
     let mut history = FlowHistory::default();
     history.add(&world, &sample, &line.unwrap());
     let profile = history.since(0.0);
-    let velocity = profile.velocity();
+    let velocity = history.velocity_since(0.0);
     let mut compared = 0;
-    for (depth, velocity) in profile.depth.iter().zip(velocity) {
+    for (depth, velocity) in profile.depth.iter().zip(&velocity) {
         // A kernel's reach away from the surface and from the rim.
         if (0.012..0.028).contains(depth) {
-            assert_close(velocity, 0.1 - 2.0 * depth, 1.5e-3);
+            assert_close(velocity.mean, 0.1 - 2.0 * depth, 1.5e-3);
             compared += 1;
         }
     }
     assert!(compared > 8, "{compared}");
+    // One second is one event.
+    assert!(velocity[8].error.is_none() && velocity[8].samples == 1);
 }
 
 #[test]

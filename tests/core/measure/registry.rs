@@ -111,7 +111,9 @@ fn results_hold_what_their_rows_say() {
             let format = entry.key.quantity().format;
             let fits = match entry.value {
                 None => true,
-                Some(MeasuredValue::Number(_)) => !matches!(format, Format::Choice(_)),
+                Some(MeasuredValue::Number(_) | MeasuredValue::Mean(_)) => {
+                    !matches!(format, Format::Choice(_))
+                }
                 Some(MeasuredValue::Count(_)) => format == Format::Count,
                 Some(MeasuredValue::Choice(word)) => {
                     matches!(format, Format::Choice(words) if words.contains(&word))

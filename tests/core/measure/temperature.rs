@@ -1,7 +1,9 @@
 //! Granular temperature of velocities whose spread is known.
 
 use super::*;
-use grainfall::measure::granular_temperatures;
+use grainfall::measure::{
+    Regime, RunQuantity, Series, granular_temperatures, results, rotation_temperature, sample,
+};
 
 /// 0.5 rpm.
 const SPEED: f64 = 0.052_359_877_559_829_88;
@@ -66,6 +68,35 @@ fn rigid_rotation_leaves_the_known_floor_in_the_laboratory_and_none_in_the_drum(
         // Rounding: (1e-16 of 3 mm/s)².
         assert!(found.corotating < 1e-30);
     }
+}
+
+#[test]
+fn a_bed_at_rest_in_a_fast_drum_flows_for_the_paper_and_not_for_the_drum() {
+    // 2 rpm: sixteen times the floor of the paper's speed.
+    let mut world = shaken_bed(0.003);
+    world.container.set_drum_speed(4.0 * SPEED);
+    turn_rigidly(&mut world, 4.0 * SPEED);
+    let floor = granular_temperatures(&world).laboratory;
+    assert_close(rotation_temperature(&world) / floor, 1.0, 1e-12);
+    let mut series = Series::default();
+    for step in 0..50 {
+        let mut state = sample(&world);
+        state.time = 0.02 * f64::from(step);
+        series.push(state);
+    }
+    let found = results(&series, &world, 0.0, 0.01);
+    assert_eq!(found.value(RunQuantity::NonRigidShare), Some(1.0));
+    assert_eq!(found.value(RunQuantity::CorotatingShare), Some(0.0));
+    assert_eq!(found.regime(), Some(Regime::Avalanching));
+    let note = found.rotation_note().expect("rotation passes the line");
+    assert!(
+        note.contains("passes the paper's line of 2.00·10⁻⁹ m²/s²"),
+        "{note}"
+    );
+    // A bed of smaller grains at the paper's speed says nothing.
+    let mut slow = shaken_bed(0.002);
+    turn_rigidly(&mut slow, SPEED);
+    assert_eq!(results(&series, &slow, 0.0, 0.01).rotation_note(), None);
 }
 
 #[test]

@@ -1,0 +1,99 @@
+//! Cases that differ in nothing but their seed: one experiment, repeated.
+//!
+//! In: what became of the cases. Out: their ensembles, and each result of one as a mean with its
+//! standard error: over the seeds, `s/√n`; of a single run, the run's own.
+
+use super::Sweep;
+use super::case::CaseResult;
+use super::plan::SEED;
+use crate::measure::{Estimate, MeasuredValue, ResultKey, Summary, SummaryEntry};
+
+/// Cases that differ in their seed alone, of which there is at least one.
+pub struct Ensemble<'a> {
+    /// What they have in common of what is varied, in the order of the variations.
+    pub values: Vec<String>,
+    /// The cases, in their own order.
+    pub members: Vec<&'a CaseResult>,
+}
+
+impl<'a> Ensemble<'a> {
+    /// The first member, for what all have in common.
+    pub fn first(&self) -> &'a CaseResult {
+        self.members[0]
+    }
+
+    /// The result `key` of the members that have it, as a mean over them; of one alone as it stands
+    /// there. None for words, and where no member has it.
+    pub fn estimate(&self, key: impl Into<ResultKey>) -> Option<Estimate> {
+        let key = key.into();
+        let values = self
+            .members
+            .iter()
+            .filter_map(|member| member.results.get(key));
+        let values: Vec<MeasuredValue> = values.collect();
+        match values[..] {
+            [] => None,
+            [value] => value
+                .as_estimate()
+                .or_else(|| Some(Estimate::too_short(value.as_number()?, 1))),
+            _ => {
+                let numbers: Option<Vec<f64>> = values.iter().map(|v| v.as_number()).collect();
+                Some(Estimate::of_runs(&numbers?))
+            }
+        }
+    }
+
+    /// Its results as those of one run, each a mean over the seeds; what no seed changes, and words
+    /// on which all agree, as they are.
+    pub fn results(&self) -> Summary {
+        let first = &self.first().results;
+        let entries = first.entries.iter().map(|entry| SummaryEntry {
+            key: entry.key,
+            value: self.value(entry.key),
+            note: format!("mean over {} seeds: {}", self.members.len(), entry.note),
+        });
+        Summary {
+            from: first.from,
+            to: first.to,
+            samples: first.samples,
+            entries: entries.collect(),
+        }
+    }
+
+    fn value(&self, key: ResultKey) -> Option<MeasuredValue> {
+        let all = || self.members.iter().map(|member| member.results.get(key));
+        let own = all().next().flatten();
+        let is_fixed = own.is_none_or(|own| own.as_estimate().is_none()) && all().all(|v| v == own);
+        if is_fixed {
+            own
+        } else {
+            self.estimate(key).map(MeasuredValue::Mean)
+        }
+    }
+
+    /// The mean of the result `key` over the members that have it.
+    pub fn mean(&self, key: impl Into<ResultKey>) -> Option<f64> {
+        Some(self.estimate(key)?.mean)
+    }
+}
+
+/// The ensembles of these outcomes, in the order of their first members.
+pub fn ensembles<'a>(
+    sweep: &Sweep,
+    outcomes: impl IntoIterator<Item = &'a CaseResult>,
+) -> Vec<Ensemble<'a>> {
+    let mut ensembles: Vec<Ensemble> = Vec::new();
+    for outcome in outcomes {
+        let varied = sweep.variations.iter().zip(&outcome.case.values);
+        let common = varied.filter(|(variation, _)| variation.key != SEED);
+        let values: Vec<String> = common.map(|(_, value)| value.clone()).collect();
+        match ensembles.iter_mut().find(|known| known.values == values) {
+            Some(known) => known.members.push(outcome),
+            None => ensembles.push(Ensemble {
+                values,
+                members: vec![outcome],
+            }),
+        }
+    }
+    ensembles
+}
