@@ -5,7 +5,8 @@
 //! results (`table.csv`, `table.md`) and plots with the paper's laws drawn in. Each case takes one
 //! core. Where the seed is varied, cases that differ in nothing else are one experiment, repeated:
 //! `ensembles.csv` and `ensembles.md` hold means over the seeds with their standard errors, and so
-//! do the plots. A sweep that was stopped goes on when it is called again: finished cases are kept, others
+//! do the plots. A sweep of what a paper varies ends with `statements.md`: the paper's statements,
+//! each with the verdict that follows by rule. A sweep that was stopped goes on when it is called again: finished cases are kept, others
 //! go on from their checkpoints. Several sweeps may work in one folder at the same time: each case
 //! is run by one of them, and each waits for all cases before it writes the tables.
 
@@ -14,12 +15,16 @@ pub(crate) mod chart;
 mod column_laws;
 mod column_plots;
 mod drum_plots;
+mod drums;
 mod ensemble;
 mod ensemble_table;
 mod folder;
+mod kasper_statements;
 mod plan;
 mod plot_files;
 mod results_table;
+mod statements;
+mod statements_file;
 mod velocity_plot;
 
 pub use folder::SWEEP;
@@ -106,6 +111,7 @@ pub fn run(
     } else {
         results_table::markdown(sweep, &outcomes)
     };
+    files.extend(statements_file::write_statements(sweep, &ensembles)?);
     files.extend(plot_files::write_plots(sweep, &outcomes)?);
     files.extend(velocity_plot::write_velocity_plots(sweep, &outcomes)?);
     folder.close(sweep, &outcomes, files)?;

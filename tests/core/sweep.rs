@@ -263,6 +263,11 @@ fn seeds_repeat_an_experiment_and_the_tables_hold_their_means() {
         assert_eq!(&ensemble[column(&heads, "φ samples")], "3");
         assert_eq!(&ensemble[column(&heads, "seeds")], "3");
     }
+    let statements = fs::read_to_string(out.join("statements.md")).unwrap();
+    assert!(
+        statements.contains("| Wet beds are denser than dry ones |"),
+        "{statements}"
+    );
     let plot = fs::read_to_string(out.join("plots/packing-fraction.svg")).unwrap();
     assert!(plot.contains("<svg"));
 }

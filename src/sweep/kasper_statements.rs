@@ -1,0 +1,454 @@
+//! What Kasper et al. 2021 state of dry and wet drums, as rules.
+//!
+//! In: the ensembles of a sweep that varies nothing but liquid, viscosity, radius and seed. Out:
+//! each statement for which there are cases, with its comparisons. Bounds that the paper gives in
+//! words (*about*, *hardly*) stand here as numbers, each in the rule that a reader sees.
+
+use super::Sweep;
+use super::drums::{Drum, Drums};
+use super::ensemble::Ensemble;
+use super::plan::SEED;
+use super::statements::{Part, Statement};
+use crate::measure::{
+    Estimate, Measure, Quantity, ResultKey, RunQuantity, Verdict, drop_ratio_law,
+};
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// The keys that the paper varies.
+const VARIED: [&str; 4] = ["liquid", "viscosity", "radius", SEED];
+/// A bed that flows for this share of the time flows always.
+const ALWAYS: f64 = 0.98;
+/// Viscosity up to which a liquid counts as water [mPa s].
+const WATER: f64 = 2.0;
+
+const ANGLE: ResultKey = ResultKey::OfSamples(Measure::SurfaceAngle);
+const DROP: ResultKey = ResultKey::OfRun(RunQuantity::Drop);
+const TEMPERATURE: ResultKey = ResultKey::OfSamples(Measure::GranularTemperature);
+const PACKING: ResultKey = ResultKey::OfSamples(Measure::PackingFraction);
+const ROUGHNESS: ResultKey = ResultKey::OfSamples(Measure::SurfaceRoughness);
+const CURVATURE: ResultKey = ResultKey::OfSamples(Measure::SurfaceCurvature);
+const SHARE: ResultKey = ResultKey::OfRun(RunQuantity::NonRigidShare);
+
+/// The statements for which `ensembles` has cases; none where the sweep varies anything else.
+pub fn drum_statements(sweep: &Sweep, ensembles: &[Ensemble]) -> Vec<Statement> {
+    let is_known = |key: &str| VARIED.contains(&key);
+    let is_of_drums = !ensembles
+        .iter()
+        .any(|ensemble| ensemble.first().is_column());
+    if !is_of_drums || !sweep.variations.iter().all(|varied| is_known(&varied.key)) {
+        return Vec::new();
+    }
+    let drums = Drums::of(ensembles);
+    let all = [
+        drums.angles(),
+        drums.drops(),
+        drums.temperatures(),
+        drums.shares(),
+        drums.beds(),
+    ];
+    let found = all.into_iter().flatten();
+    found
+        .filter(|statement| !statement.parts.is_empty())
+        .collect()
+}
+
+impl Drums<'_> {
+    /// Compares a result of each wet drum with that of the dry one.
+    fn wet_above_dry(&self, key: ResultKey) -> Vec<Part> {
+        let part = |(wet, dry): (&Drum, &Drum)| {
+            let (own, other) = (wet.get(key)?, dry.get(key)?);
+            let text = |mean| key.quantity().text(mean);
+            Some(Part {
+                place: wet.place(),
+                found: format!("{} against {} dry", text(own), text(other)),
+                verdict: Verdict::of_larger(own, other),
+            })
+        };
+        self.pairs().filter_map(part).collect()
+    }
+
+    fn angles(&self) -> Vec<Statement> {
+        let level = |means: &[Estimate]| Verdict::of_level(means, 1.5 * DEGREE);
+        let (dry, wet): (Vec<_>, Vec<_>) =
+            (self.by_radius().into_iter()).partition(|drums| drums[0].is_dry());
+        vec![
+            Statement {
+                text: "The wet bed stands higher than the dry one",
+                rule: "θ wet is larger than θ dry at the same r",
+                parts: self.wet_above_dry(ANGLE),
+            },
+            Statement {
+                text: "The angle of the wet bed has no clear trend with viscosity",
+                rule: "θ stays level to within 1.5° over the liquids of one r",
+                parts: along(&self.by_viscosity(), ANGLE, level),
+            },
+            Statement {
+                text: "The dry angle rises with r",
+                rule: "θ dry rises along the radii",
+                parts: along(&dry, ANGLE, Verdict::of_rising),
+            },
+            Statement {
+                text: "The wet angle falls slightly with r",
+                rule: "θ of each liquid falls along the radii",
+                parts: along(&wet, ANGLE, Verdict::of_falling),
+            },
+        ]
+    }
+
+    fn drops(&self) -> Vec<Statement> {
+        vec![
+            Statement {
+                text: "Drops fall with viscosity",
+                rule: "Δθ falls along the liquids of one r",
+                parts: along(&self.by_viscosity(), DROP, Verdict::of_falling),
+            },
+            Statement {
+                text: "Drops grow with r",
+                rule: "Δθ of each liquid rises along the radii",
+                parts: along(&self.by_radius(), DROP, Verdict::of_rising),
+            },
+            Statement {
+                text: "The ratio of wet to dry drops follows Eq. 23",
+                rule: "the ratio lies within 0.1 of the law",
+                parts: self.pairs().filter_map(beside_the_law).collect(),
+            },
+            Statement {
+                text: "Drops are below 2.5° where the flow is continuous",
+                rule: "Δθ lies below 2.5° where ta/ts is at least 0.98",
+                parts: (self.0.iter().filter(|drum| flows_always(drum)))
+                    .filter_map(|drum| between(drum, DROP, f64::NEG_INFINITY..2.5 * DEGREE))
+                    .collect(),
+            },
+        ]
+    }
+
+    fn temperatures(&self) -> Vec<Statement> {
+        let ratio = |(wet, dry): (&Drum, &Drum)| {
+            let ratio = dry.get(TEMPERATURE)?.over(wet.get(TEMPERATURE)?);
+            Some(Part {
+                place: wet.place(),
+                found: format!("dry over wet {}", RATIO.text(ratio)),
+                verdict: Verdict::of_between(ratio, 5.0..20.0),
+            })
+        };
+        vec![
+            Statement {
+                text: "The granular temperature falls with viscosity",
+                rule: "Tg falls along the liquids of one r",
+                parts: along(&self.by_viscosity(), TEMPERATURE, Verdict::of_falling),
+            },
+            Statement {
+                text: "The granular temperature rises with r",
+                rule: "Tg of each liquid rises along the radii",
+                parts: along(&self.by_radius(), TEMPERATURE, Verdict::of_rising),
+            },
+            Statement {
+                text: "Dry beds are about ten times as agitated as wet ones",
+                rule: "Tg dry over Tg wet at the same r lies between 5 and 20",
+                parts: self.pairs().filter_map(ratio).collect(),
+            },
+        ]
+    }
+
+    fn shares(&self) -> Vec<Statement> {
+        let of_radius = |drum: &Drum| {
+            // The viscosity from which on the paper's beds of this radius flow always.
+            let from = match drum.radius {
+                1.25 => 500.0,
+                2.0 => 900.0,
+                3.0 => f64::INFINITY,
+                _ => return None,
+            };
+            share(drum, drum.viscosity >= from)
+        };
+        let over_galilei =
+            |drum: &Drum| match drum.ensemble.mean(RunQuantity::InverseRootGalilei)? {
+                x if x <= 0.3 => share(drum, false),
+                x if x >= 2.0 => share(drum, true),
+                _ => None,
+            };
+        let turning = self.0.iter().filter(|drum| drum.viscosity <= WATER);
+        vec![
+            Statement {
+                text: "Dry and with water the bed turns with the drum between avalanches",
+                rule: "the rise rate lies within 5 % of the drum's 3 °/s",
+                parts: turning
+                    .filter_map(|drum| {
+                        let key = ResultKey::OfRun(RunQuantity::RiseRate);
+                        between(drum, key, 2.85 * DEGREE..3.15 * DEGREE)
+                    })
+                    .collect(),
+            },
+            Statement {
+                text: "Flow is continuous from 520 mPa s (r = 1.25 mm), from 940 mPa s (2 mm), never \
+                       at 3 mm",
+                rule: "ta/ts lies above 0.98 there, below elsewhere",
+                parts: self.wet().filter_map(of_radius).collect(),
+            },
+            Statement {
+                text: "Over √(1/Ga) flow becomes continuous near 1",
+                rule: "ta/ts lies below 0.98 up to √(1/Ga) = 0.3, above from 2 on",
+                parts: self.wet().filter_map(over_galilei).collect(),
+            },
+        ]
+    }
+
+    fn beds(&self) -> Vec<Statement> {
+        let level = |means: &[Estimate]| Verdict::of_level(means, 0.005);
+        let convex = |drum: &Drum| between(drum, CURVATURE, 0.0..f64::INFINITY);
+        vec![
+            Statement {
+                text: "Wet beds are denser than dry ones",
+                rule: "φ wet is larger than φ dry at the same r",
+                parts: self.wet_above_dry(PACKING),
+            },
+            Statement {
+                text: "The packing fraction falls with r",
+                rule: "φ of each liquid falls along the radii",
+                parts: along(&self.by_radius(), PACKING, Verdict::of_falling),
+            },
+            Statement {
+                text: "The packing fraction hardly moves with viscosity",
+                rule: "φ stays level to within 0.005 over the liquids of one r",
+                parts: along(&self.by_viscosity(), PACKING, level),
+            },
+            Statement {
+                text: "The surface grows rougher with viscosity",
+                rule: "h rises along the liquids of one r",
+                parts: along(&self.by_viscosity(), ROUGHNESS, Verdict::of_rising),
+            },
+            Statement {
+                text: "The surface turns convex in wet beds",
+                rule: "κ of wet beds is positive",
+                parts: self.wet().filter_map(convex).collect(),
+            },
+        ]
+    }
+}
+
+/// How a ratio is written.
+const RATIO: Quantity = Quantity {
+    key: "ratio",
+    ..*RunQuantity::NonRigidShare.quantity()
+};
+
+fn flows_always(drum: &Drum) -> bool {
+    drum.get(SHARE).is_some_and(|share| share.mean >= ALWAYS)
+}
+
+/// A result along each of several series of drums, judged as a whole.
+fn along(
+    series: &[Vec<&Drum>],
+    key: ResultKey,
+    rule: impl Fn(&[Estimate]) -> Verdict,
+) -> Vec<Part> {
+    let part = |drums: &Vec<&Drum>| {
+        let found = drums
+            .iter()
+            .filter_map(|drum| Some((*drum, drum.get(key)?)));
+        let found: Vec<(&Drum, Estimate)> = found.collect();
+        let (first, last) = (found.first()?.0, found.last()?.0);
+        let means: Vec<Estimate> = found.iter().map(|(_, mean)| *mean).collect();
+        let place = if first.radius == last.radius {
+            format!(
+                "r = {} mm, {} to {}",
+                first.radius,
+                first.liquid(),
+                last.liquid()
+            )
+        } else {
+            let (liquid, from, to) = (first.liquid(), first.radius, last.radius);
+            format!("{liquid}, r = {from} to {to} mm")
+        };
+        let texts: Vec<String> = means
+            .iter()
+            .map(|mean| key.quantity().text(*mean))
+            .collect();
+        let verdict = rule(&means);
+        (means.len() > 1).then(|| Part {
+            place,
+            found: texts.join(", "),
+            verdict,
+        })
+    };
+    series.iter().filter_map(part).collect()
+}
+
+/// Whether a result of `drum` lies within `bounds`.
+fn between(drum: &Drum, key: ResultKey, bounds: std::ops::Range<f64>) -> Option<Part> {
+    let mean = drum.get(key)?;
+    Some(Part {
+        place: drum.place(),
+        found: key.quantity().text(mean),
+        verdict: Verdict::of_between(mean, bounds),
+    })
+}
+
+/// Whether `drum` flows always, or does not; beside the paper's share that of the drum's frame.
+fn share(drum: &Drum, always: bool) -> Option<Part> {
+    let bounds = if always {
+        ALWAYS..f64::INFINITY
+    } else {
+        f64::NEG_INFINITY..ALWAYS
+    };
+    let part = between(drum, SHARE, bounds)?;
+    let corotating = drum.get(ResultKey::OfRun(RunQuantity::CorotatingShare));
+    let beside = corotating.map_or_else(String::new, |share| {
+        let text = RunQuantity::CorotatingShare.quantity().text(share);
+        format!(" (in the drum's frame {text})")
+    });
+    let expected = if always { "above" } else { "below" };
+    Some(Part {
+        found: format!("{}{beside}, to be {expected} {ALWAYS}", part.found),
+        ..part
+    })
+}
+
+/// The ratio of a wet drop to the dry one beside Eq. 23.
+fn beside_the_law((wet, dry): (&Drum, &Drum)) -> Option<Part> {
+    let ratio = wet.get(DROP)?.over(dry.get(DROP)?);
+    let law = drop_ratio_law(1e-3 * wet.viscosity);
+    Some(Part {
+        place: wet.place(),
+        found: format!("{} beside {law:.2}", RATIO.text(ratio)),
+        verdict: Verdict::of_between(ratio, law - 0.1..law + 0.1),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::CaseResult;
+    use super::super::ensemble::ensembles;
+    use super::super::{Case, Variation};
+    use super::*;
+    use crate::measure::{MeasuredValue, Series, Summary, SummaryEntry};
+    use crate::output::Ending;
+    use crate::run::BedStore;
+    use crate::scene::Scene;
+
+    fn scene(radius: f64, liquid: &str) -> Scene {
+        let text = format!(
+            r#"(title: "Any", materials: {{"a": ()}}, {liquid}
+            container: Drum(radius_mm: 60, width_mm: 22, speed_rpm: 0.5, material: "a"),
+            grains: Fill(count: 5, species: [(radius_mm: {radius}, material: "a")]))"#
+        );
+        Scene::parse("any", &text).unwrap()
+    }
+
+    fn sweep(variations: &[&str]) -> Sweep {
+        let parsed = variations
+            .iter()
+            .map(|text| Variation::parse(text).unwrap());
+        Sweep {
+            name: "any".into(),
+            scene: scene(3.0, ""),
+            settings: Vec::new(),
+            variations: parsed.collect(),
+            out: "nowhere".into(),
+            jobs: 1,
+            beds: BedStore::none(),
+            restart: false,
+        }
+    }
+
+    /// A run with these values varied, whose bed stands at `angle` [°] and flows for this `share`.
+    fn outcome(values: &[&str], scene: Scene, angle: f64, share: f64) -> CaseResult {
+        let entry = |key, value| SummaryEntry {
+            key,
+            value: Some(MeasuredValue::Number(value)),
+            note: String::new(),
+        };
+        CaseResult {
+            case: Case {
+                name: values.join("_"),
+                values: values.iter().map(|&value| value.to_owned()).collect(),
+                scene,
+                script: Vec::new(),
+                time_step: 1e-5,
+            },
+            ending: Ending::Done,
+            results: Summary {
+                from: 20.0,
+                to: 50.0,
+                samples: 1500,
+                entries: vec![entry(ANGLE, angle * DEGREE), entry(SHARE, share)],
+            },
+            series: Series::default(),
+            flow: Vec::new(),
+            fastest: None,
+            hash: String::new(),
+        }
+    }
+
+    const WATER: &str = "liquid: (case: 1, volume_ml: 4),";
+    const GLYCEROL: &str = "liquid: (case: 7, volume_ml: 4),";
+
+    #[test]
+    fn statements_are_judged_by_their_rules_over_the_seeds() {
+        let mut outcomes = Vec::new();
+        for (seed, by) in [("1", -0.1), ("2", 0.0), ("3", 0.1)] {
+            for (radius, name, dry, wet) in [(3.0, "3mm", 33.9, 26.2), (2.0, "2mm", 30.0, 31.8)] {
+                outcomes.push(outcome(
+                    &[name, "0", seed],
+                    scene(radius, ""),
+                    dry + by,
+                    0.67,
+                ));
+                outcomes.push(outcome(
+                    &[name, "1", seed],
+                    scene(radius, WATER),
+                    wet - by,
+                    0.65,
+                ));
+                let thick = scene(radius, GLYCEROL);
+                outcomes.push(outcome(&[name, "7", seed], thick, wet + 0.2 + by, 1.0));
+            }
+        }
+        let sweep = sweep(&["radius=3mm,2mm", "liquid=0,1,7", "seed=1..3"]);
+        let ensembles = ensembles(&sweep, &outcomes);
+        assert_eq!(ensembles.len(), 6);
+        let statements = drum_statements(&sweep, &ensembles);
+        let verdict = |text: &str| {
+            let found = statements.iter().find(|own| own.text.starts_with(text));
+            found.unwrap_or_else(|| panic!("{text}")).verdict()
+        };
+        assert_eq!(verdict("The wet bed stands higher"), Verdict::InPart);
+        assert_eq!(verdict("The angle of the wet bed has no"), Verdict::Holds);
+        assert_eq!(verdict("The dry angle rises with r"), Verdict::Holds);
+        assert_eq!(verdict("The wet angle falls slightly"), Verdict::Holds);
+        // Right at 2 mm; at 3 mm glycerol lets the bed flow always.
+        assert_eq!(verdict("Flow is continuous from"), Verdict::InPart);
+        let shares = statements
+            .iter()
+            .find(|own| own.text.starts_with("Flow is"));
+        let places: Vec<&str> = shares
+            .unwrap()
+            .parts
+            .iter()
+            .map(|p| p.place.as_str())
+            .collect();
+        assert_eq!(
+            places[..2],
+            ["r = 2 mm, 1.01 mPa s", "r = 2 mm, 1410 mPa s"]
+        );
+        // Nothing was measured that others need.
+        assert!(!statements.iter().any(|own| own.text.starts_with("Drops")));
+    }
+
+    #[test]
+    fn one_run_of_each_decides_nothing_and_other_variations_are_no_paper() {
+        let dry = outcome(&["0"], scene(3.0, ""), 33.9, 0.67);
+        let wet = outcome(&["1"], scene(3.0, WATER), 26.2, 0.65);
+        let outcomes = [dry, wet];
+        let own = sweep(&["liquid=0,1"]);
+        let statements = drum_statements(&own, &ensembles(&own, &outcomes));
+        assert!(!statements.is_empty());
+        assert!(
+            statements
+                .iter()
+                .all(|own| own.verdict() == Verdict::NotDecided)
+        );
+        let other = sweep(&["drum-speed=1rpm,2rpm"]);
+        assert!(drum_statements(&other, &ensembles(&other, &outcomes)).is_empty());
+    }
+}

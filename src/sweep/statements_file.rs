@@ -1,0 +1,32 @@
+//! `statements.md`: what becomes of a paper's statements in a sweep.
+//!
+//! In: the ensembles of a sweep. Out: the file, where the sweep varies what the paper varies.
+
+use super::Sweep;
+use super::ensemble::Ensemble;
+use super::kasper_statements::drum_statements;
+use super::statements::markdown;
+use crate::output::write_file;
+use crate::runner::RunnerError;
+
+/// The file's name.
+const FILE: &str = "statements.md";
+
+/// Writes the file where there is something to compare; returns its name.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write_statements(
+    sweep: &Sweep,
+    ensembles: &[Ensemble],
+) -> Result<Option<String>, RunnerError> {
+    let statements = drum_statements(sweep, ensembles);
+    if statements.is_empty() {
+        return Ok(None);
+    }
+    let text = markdown(&statements);
+    write_file(&sweep.out.join(FILE), |file| {
+        file.write_all(text.as_bytes())
+    })?;
+    Ok(Some(FILE.to_owned()))
+}
