@@ -163,8 +163,8 @@ enum Task {
         /// What to vary: liquid=0..7, radius=3mm,2mm (may be repeated: every combination is run)
         #[arg(long, value_name = "KEY=VALUES", required_unless_present = "seeds")]
         vary: Vec<String>,
-        /// Run every case from so many seeds, the scene's and those that follow it: tables and plots
-        /// give means with their standard errors over the seeds
+        /// Run every case from so many seeds, the scene's and those that follow it: tables and
+        /// plots give means with their standard errors over the seeds
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
         seeds: Option<u16>,
         /// Change a value in every case, as in a single run

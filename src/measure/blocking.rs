@@ -7,10 +7,10 @@
 //! samples: `S(B) = B · variance of the block means` grows with `B` until blocks are independent of
 //! each other, and the error of the mean is `√(S/N)`. Three choices make it automatic:
 //!
-//! - The block is the shortest of 1, 2, 3, 4, 6, 8, 12 … samples with `B³ > 2 N (S(B)/S(1))²`, where
-//!   what longer blocks would still add is smaller than their own noise (U. Wolff, Comput. Phys.
-//!   Commun. 156, 143, 2004; as a rule for blocks: R. M. Lee et al., Phys. Rev. E 83, 066706, 2011),
-//!   but none so long that fewer than [`FEWEST_BLOCKS`] remain.
+//! - The block is the shortest of 1, 2, 3, 4, 6, 8, 12 … samples with `B³ > 2 N (S(B)/S(1))²`,
+//!   where what longer blocks would still add is smaller than their own noise (U. Wolff, Comput.
+//!   Phys. Commun. 156, 143, 2004; as a rule for blocks: R. M. Lee et al., Phys. Rev. E 83, 066706,
+//!   2011), but none so long that fewer than [`FEWEST_BLOCKS`] remain.
 //! - Blocks overlap, one begins at every eighth of a block (M. S. Meketon and B. Schmeiser, Proc.
 //!   Winter Simulation Conf., 1984): the noise of `S` is a third less.
 //! - What correlations longer than a block leave out is added once more, as far as half a block

@@ -53,8 +53,8 @@ impl Estimate {
         }
     }
 
-    /// The ratio of two sums over events, each of which adds its `(sum, count)`: a mean over samples
-    /// that come in bursts. Every event counts once, however many samples it has.
+    /// The ratio of two sums over events, each of which adds its `(sum, count)`: a mean over
+    /// samples that come in bursts. Every event counts once, however many samples it has.
     pub fn of_bursts(events: &[(f64, f64)]) -> Self {
         let add = |all: (f64, f64), own: &(f64, f64)| (all.0 + own.0, all.1 + own.1);
         let (sum, count) = events.iter().fold((0.0, 0.0), add);

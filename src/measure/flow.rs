@@ -93,9 +93,9 @@ impl FlowHistory {
         seconds + self.fastest.iter().map(moment).sum::<usize>()
     }
 
-    /// Velocity along the surface, positive uphill to the right, at each depth of that profile [m/s]:
-    /// a mean with its standard error, for which every second in which the bed flows is one event;
-    /// NaN where nothing was averaged.
+    /// Velocity along the surface, positive uphill to the right, at each depth of that profile
+    /// [m/s]: a mean with its standard error, for which every second in which the bed flows is one
+    /// event; NaN where nothing was averaged.
     pub fn velocity_since(&self, time: f64) -> Vec<Estimate> {
         let first = time.max(0.0).ceil() as usize;
         let seconds: Vec<&FlowProfile> = self.seconds.iter().skip(first).collect();

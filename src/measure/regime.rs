@@ -1,6 +1,7 @@
 //! How a bed in a drum moves, in the three words of Kasper et al. 2021.
 //!
-//! In: the non-rigid share, as the turning drum sees it, and the mean drop of a window of a run. Out: a [`Regime`].
+//! In: the non-rigid share, as the turning drum sees it, and the mean drop of a window of a run.
+//! Out: a [`Regime`].
 
 /// A bed that flows for a smaller share of the time than this avalanches.
 const AVALANCHING_BELOW: f64 = 0.9;

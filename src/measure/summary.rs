@@ -126,8 +126,8 @@ impl Summary {
         rotation_note(self.value(RunQuantity::RotationTemperature)?)
     }
 
-    /// How the bed moves, by the drops and by the share of the time in which it flows as the turning
-    /// drum sees it, where rigid rotation is no flow; none where nothing was sampled.
+    /// How the bed moves, by the drops and by the share of the time in which it flows as the
+    /// turning drum sees it, where rigid rotation is no flow; none where nothing was sampled.
     pub fn regime(&self) -> Option<Regime> {
         let flowing = self.value(RunQuantity::CorotatingShare)?;
         let drop = self.value(RunQuantity::Drop).unwrap_or(0.0);

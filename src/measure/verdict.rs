@@ -10,9 +10,9 @@
 //! | *a series stays level to within a tolerance* | the 95 % interval of each difference from its mean lies within | one lies wholly outside |
 //! | *all of several* | each holds | none holds, and one does not |
 //!
-//! *In part* is a series that rises as a whole and falls by more than scatter on the way, and several
-//! statements of which some hold and some do not. Whatever the rules leave open is *not decided*: it
-//! takes more seeds or longer runs. *More than scatter* is Welch's test at 5 %
+//! *In part* is a series that rises as a whole and falls by more than scatter on the way, and
+//! several statements of which some hold and some do not. Whatever the rules leave open is *not
+//! decided*: it takes more seeds or longer runs. *More than scatter* is Welch's test at 5 %
 //! ([`Difference`]); where an error is not known, nothing is decided.
 
 use super::difference::Difference;

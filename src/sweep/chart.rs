@@ -260,8 +260,8 @@ impl Plot {
 }
 
 impl Plot {
-    /// Draws the error bars of `line` in `colour` on a chart that shows these ranges. A bar that has
-    /// no lower end, as zero on a logarithmic axis, goes down to the edge.
+    /// Draws the error bars of `line` in `colour` on a chart that shows these ranges. A bar that
+    /// has no lower end, as zero on a logarithmic axis, goes down to the edge.
     fn draw_bars(
         &self,
         chart: &mut Chart,

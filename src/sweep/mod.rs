@@ -6,9 +6,10 @@
 //! core. Where the seed is varied, cases that differ in nothing else are one experiment, repeated:
 //! `ensembles.csv` and `ensembles.md` hold means over the seeds with their standard errors, and so
 //! do the plots. A sweep of what a paper varies ends with `statements.md`: the paper's statements,
-//! each with the verdict that follows by rule. A sweep that was stopped goes on when it is called again: finished cases are kept, others
-//! go on from their checkpoints. Several sweeps may work in one folder at the same time: each case
-//! is run by one of them, and each waits for all cases before it writes the tables.
+//! each with the verdict that follows by rule. A sweep that was stopped goes on when it is called
+//! again: finished cases are kept, others go on from their checkpoints. Several sweeps may work in
+//! one folder at the same time: each case is run by one of them, and each waits for all cases
+//! before it writes the tables.
 
 mod case;
 pub(crate) mod chart;

@@ -64,9 +64,9 @@ fn sawtooth(noise: &mut Noise, count: usize, scatter: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The true standard error of its mean: of a renewal process with tops `h + σ x` and bottoms
-/// `−h + σ y` about the middle, one tooth adds `((h + σ x)² − (−h + σ y)²)/(2 rise)` to the integral,
-/// of variance `(2 h² σ² + σ⁴)/rise²`, and takes `2 h/rise` in the mean.
+/// The true standard error of its mean: of a renewal process with tops `h + σ x` and bottoms `−h +
+/// σ y` about the middle, one tooth adds `((h + σ x)² − (−h + σ y)²)/(2 rise)` to the integral, of
+/// variance `(2 h² σ² + σ⁴)/rise²`, and takes `2 h/rise` in the mean.
 fn error_of_sawtooth(count: usize, scatter: f64) -> f64 {
     let (h, s) = (HALF_HEIGHT, scatter * scatter);
     ((2.0 * h * h * s + s * s) / (2.0 * h * STEP * count as f64)).sqrt()
