@@ -6,6 +6,7 @@
 
 mod bridges;
 mod cloud;
+mod collapse;
 mod determinism;
 mod drum;
 mod evaluate;

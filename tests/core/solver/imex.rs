@@ -1,12 +1,10 @@
 //! The IMEX integrator: implicit dashpots keep momentum, close the energy balance, restitute to the
-//! second order of the step, agree with the explicit integrator as steps become short, and leave
-//! the same bits whatever the threads.
+//! second order of the step, and agree with the explicit integrator as steps become short.
 
 use super::*;
 use glam::DVec3;
 use grainfall::measure::EnergyLedger;
-use grainfall::solver::{Processor, advise};
-use grainfall::world::StateHash;
+use grainfall::solver::advise;
 
 /// Two grains, `integrator` and a step.
 fn two(grains: &str, gravity: &str, integrator: &str, dt: f64) -> World {
@@ -136,69 +134,11 @@ fn box_at_rest_sinks_by_its_weight_and_stays_still() {
     assert_below("energy", world.kinetic_energy(), 1e-20);
 }
 
-/// A small column in the open.
-const COLUMN: &str = r#"(
-    title: "A few dozen cells",
-    materials: {
-        "smooth": (density: 2650, restitution: 0.1, friction: 0.1),
-        "rough": (density: 2650, restitution: 0.1, friction: 0.4),
-        "floor": (restitution: 0.1, friction: 0.4),
-    },
-    container: Column(radius_mm: 8, height_mm: 16, material: "floor"),
-    grains: Voronoi(cell_mm: 3, rounding_mm: 0.3, solid_fraction: 0.8, species: [
-        (material: "smooth", share: 0.7), (material: "rough", share: 0.3),
-    ]),
-    law: Hooke(normal_stiffness: 4000, tangential_stiffness: 2000, features: RULE),
-    integrator: INTEGRATOR,
-)"#;
-
-fn column(rule: &str, integrator: &str, dt: f64) -> World {
-    let text = COLUMN.replace("RULE", rule);
-    world(&text.replace("INTEGRATOR", integrator), dt)
-}
-
-fn fallen(rule: &str, mut solver: Solver, slices: &[u64]) -> StateHash {
-    let mut world = column(rule, "Imex", 8e-6);
-    for &steps in slices {
-        solver.advance(&mut world, steps).unwrap();
-    }
-    world.hash()
-}
-
-#[test]
-fn collapse_has_the_same_bits_for_any_threads_lanes_and_slices() {
-    for rule in ["Full", "Shared"] {
-        let whole = fallen(rule, Solver::new(1), &[2000]);
-        for threads in [2, 3, 8] {
-            let found = fallen(rule, Solver::new(threads), &[2000]);
-            assert_eq!(found, whole, "{rule}, {threads} threads");
-        }
-        for processor in Processor::all() {
-            let found = fallen(rule, Solver::on(processor, 1), &[2000]);
-            assert_eq!(found, whole, "{rule}, {processor}");
-        }
-        let found = fallen(rule, Solver::new(1), &[1, 999, 500, 500]);
-        assert_eq!(found, whole, "{rule}, in slices");
-    }
-}
-
-#[test]
-fn restored_collapse_goes_on_to_the_same_bits() {
-    let mut world = column("Full", "Imex", 8e-6);
-    let mut solver = Solver::new(2);
-    solver.advance(&mut world, 1000).unwrap();
-    let bytes = postcard::to_stdvec(&world).unwrap();
-    solver.advance(&mut world, 500).unwrap();
-    let mut fresh: World = postcard::from_bytes(&bytes).unwrap();
-    Solver::new(1).advance(&mut fresh, 500).unwrap();
-    assert_eq!(fresh.hash(), world.hash());
-}
-
 #[test]
 fn integrators_agree_as_steps_become_short() {
     // The first contacts of a column: before chaos has its say.
     let after = |integrator: &str, dt: f64| {
-        let mut world = column("Full", integrator, dt);
+        let mut world = collapse::column("Full", integrator, dt);
         run(&mut world, 4e-3);
         world
     };
@@ -215,7 +155,7 @@ fn integrators_agree_as_steps_become_short() {
 
 #[test]
 fn collapse_closes_its_energy_balance_and_comes_to_rest() {
-    let text = COLUMN.replace("RULE", "Full").replace("INTEGRATOR", "Imex");
+    let text = collapse::text_of_column("Full", "Imex");
     let text = text.replace("radius_mm: 8, height_mm: 16", "radius_mm: 6, height_mm: 12");
     let mut world = world(&text, 8e-6);
     run(&mut world, 0.4);
@@ -240,9 +180,7 @@ fn collapse_closes_its_energy_balance_and_comes_to_rest() {
 #[test]
 fn integrator_of_the_scene_sets_the_limit_of_the_step() {
     let limits = |integrator: &str| {
-        let text = COLUMN
-            .replace("RULE", "Full")
-            .replace("INTEGRATOR", integrator);
+        let text = collapse::text_of_column("Full", integrator);
         advise(&Scene::parse("column", &text).unwrap())
     };
     let (explicit, imex) = (limits("Explicit"), limits("Imex"));

@@ -1,11 +1,11 @@
 //! Rounded polyhedra: free rotation, resting, sliding, tipping, each kind of contact, shared
-//! stiffness, the same bits.
+//! stiffness.
 
 use super::*;
 use glam::{DQuat, DVec3};
 use grainfall::measure::EnergyLedger;
-use grainfall::solver::{FaultKind, Processor};
-use grainfall::world::{Feature, StateHash};
+use grainfall::solver::FaultKind;
+use grainfall::world::Feature;
 
 /// Stiffness of the contacts of these tests [N/m].
 const STIFFNESS: f64 = 4000.0;
@@ -372,86 +372,15 @@ fn polyhedron_of_one_vertex_is_a_sphere() {
     }
 }
 
-/// A small column that has begun to fall.
-const COLUMN: &str = r#"(
-    title: "A small column",
-    materials: {
-        "smooth": (density: 2650, restitution: 0.1, friction: 0.1),
-        "rough": (density: 2650, restitution: 0.1, friction: 0.4),
-        "floor": (restitution: 0.1, friction: 0.4),
-    },
-    container: Column(radius_mm: 8, height_mm: 16, material: "floor"),
-    grains: Voronoi(cell_mm: 3, rounding_mm: 0.3, solid_fraction: 0.8, species: [
-        (material: "smooth", share: 0.7), (material: "rough", share: 0.3),
-    ]),
-    law: Hooke(normal_stiffness: 4000, tangential_stiffness: 2000, features: RULE),
-)"#;
-
-fn column(rule: &str) -> World {
-    world(&COLUMN.replace("RULE", rule), 2e-6)
-}
-
-fn fallen(rule: &str, mut solver: Solver, slices: &[u64]) -> StateHash {
-    let mut world = column(rule);
-    for &steps in slices {
-        solver.advance(&mut world, steps).unwrap();
-    }
-    world.hash()
-}
-
-#[test]
-fn collapse_has_the_same_bits_for_any_threads_lanes_and_slices() {
-    for rule in ["Full", "Shared"] {
-        let whole = fallen(rule, Solver::new(1), &[3000]);
-        for threads in [2, 3, 8] {
-            assert_eq!(
-                fallen(rule, Solver::new(threads), &[3000]),
-                whole,
-                "{rule}, {threads} threads"
-            );
-        }
-        for processor in Processor::all() {
-            assert_eq!(
-                fallen(rule, Solver::on(processor, 1), &[3000]),
-                whole,
-                "{rule}, {processor}"
-            );
-        }
-        assert_eq!(
-            fallen(rule, Solver::new(1), &[1, 999, 500, 1500]),
-            whole,
-            "{rule}, in slices"
-        );
-    }
-}
-
-#[test]
-fn restored_collapse_goes_on_to_the_same_bits() {
-    let mut world = column("Full");
-    let mut solver = Solver::new(2);
-    solver.advance(&mut world, 2000).unwrap();
-    let snapshot = world.clone();
-    solver.advance(&mut world, 1000).unwrap();
-    let whole = world.hash();
-    // Into the solver that has gone on, and into one that knows nothing, from bytes that know no shared memory.
-    let mut again = snapshot.clone();
-    solver.advance(&mut again, 1000).unwrap();
-    assert_eq!(again.hash(), whole);
-    let bytes = postcard::to_stdvec(&snapshot).unwrap();
-    let mut fresh: World = postcard::from_bytes(&bytes).unwrap();
-    Solver::new(1).advance(&mut fresh, 1000).unwrap();
-    assert_eq!(fresh.hash(), whole);
-}
-
 /// A handful of grains on softer springs, which comes to rest soon.
 fn small_column(rule: &str) -> World {
-    let text = COLUMN
+    let text = collapse::text_of_column(rule, "Explicit")
         .replace("radius_mm: 8, height_mm: 16", "radius_mm: 6, height_mm: 12")
         .replace(
             "normal_stiffness: 4000, tangential_stiffness: 2000",
             "normal_stiffness: 1000, tangential_stiffness: 500",
         );
-    world(&text.replace("RULE", rule), 4e-6)
+    world(&text, 4e-6)
 }
 
 #[test]
