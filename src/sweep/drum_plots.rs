@@ -243,8 +243,7 @@ fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
             y: ChartAxis::linear("velocity along the surface, downhill [mm/s]"),
             lines: Vec::new(),
         });
-        let name = viscosity(outcome)
-            .map_or_else(|| outcome.case.name.clone(), |eta| format!("{eta} mPa s"));
+        let name = viscosity(outcome).map_or_else(|| ensemble.name(), |eta| format!("{eta} mPa s"));
         plot.lines.push(Line::means(name, profile(ensemble)));
     }
     plots.into_values().collect()

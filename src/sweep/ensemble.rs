@@ -22,6 +22,14 @@ impl<'a> Ensemble<'a> {
         self.members[0]
     }
 
+    /// What it is called: its case's name, of several cases the values that they share.
+    pub fn name(&self) -> String {
+        match self.members[..] {
+            [only] => only.case.name.clone(),
+            _ => self.values.join(" "),
+        }
+    }
+
     /// The result `key` of the members that have it, as a mean over them; of one alone as it stands
     /// there. None for words, and where no member has it.
     pub fn estimate(&self, key: impl Into<ResultKey>) -> Option<Estimate> {

@@ -112,6 +112,7 @@ pub fn run(
     } else {
         results_table::markdown(sweep, &outcomes)
     };
+    files.push(results_table::write_metadata(sweep, &files)?);
     files.extend(statements_file::write_statements(sweep, &ensembles)?);
     files.extend(plot_files::write_plots(sweep, &outcomes)?);
     files.extend(velocity_plot::write_velocity_plots(sweep, &outcomes)?);

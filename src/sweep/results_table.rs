@@ -188,7 +188,7 @@ pub(super) fn columns(is_of_columns: bool) -> &'static [TableColumn] {
     if is_of_columns { COLLAPSE } else { DRUM }
 }
 
-/// Writes `table.csv` and `table.md`, and where they come from; returns the files' names.
+/// Writes `table.csv` and `table.md`; returns the files' names.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -206,16 +206,24 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String
         }
         writer.flush()
     })?;
-    write_file(&sweep.out.join(TABLES_METADATA), |file| {
-        Provenance::of_scene(&sweep.scene).write_tables(&[TABLE], file)
-    })?;
     let text = markdown(sweep, outcomes);
     write_file(&sweep.out.join("table.md"), |file| {
         file.write_all(text.as_bytes())
     })?;
-    Ok([TABLE, TABLES_METADATA, "table.md"]
-        .map(str::to_owned)
-        .into())
+    Ok([TABLE, "table.md"].map(str::to_owned).into())
+}
+
+/// Writes where the tables among `files` come from; returns the file's name.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write_metadata(sweep: &Sweep, files: &[String]) -> Result<String, RunnerError> {
+    let tables = files.iter().map(String::as_str);
+    let tables: Vec<&str> = tables.filter(|file| file.ends_with(".csv")).collect();
+    write_file(&sweep.out.join(TABLES_METADATA), |file| {
+        Provenance::of_scene(&sweep.scene).write_tables(&tables, file)
+    })?;
+    Ok(TABLES_METADATA.to_owned())
 }
 
 /// The table in Markdown.

@@ -268,6 +268,8 @@ fn seeds_repeat_an_experiment_and_the_tables_hold_their_means() {
         statements.contains("| Wet beds are denser than dry ones |"),
         "{statements}"
     );
+    let metadata = fs::read_to_string(out.join("csv-metadata.json")).unwrap();
+    assert!(metadata.contains("table.csv") && metadata.contains("ensembles.csv"));
     let plot = fs::read_to_string(out.join("plots/packing-fraction.svg")).unwrap();
     assert!(plot.contains("<svg"));
 }
