@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(with_error(1.0, 0.0, ""), "1 ± 0");
         assert_eq!(with_error(0.0, 0.0, "mm"), "(0 ± 0) mm");
         // The larger of the two decides the power of ten.
-        assert_eq!(with_error(1e-8, 3.2e-7, ""), "(0.1 ± 3.2)·10⁻⁷");
+        assert_eq!(with_error(1e-8, 3.2e-7, ""), "(0 ± 3)·10⁻⁷");
         assert_eq!(beside_unit("28.31", "°"), "28.31°");
         assert_eq!(beside_unit("3", "mm"), "3 mm");
     }

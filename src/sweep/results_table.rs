@@ -219,7 +219,9 @@ pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String
 /// When it cannot be written.
 pub fn write_metadata(sweep: &Sweep, files: &[String]) -> Result<String, RunnerError> {
     let tables = files.iter().map(String::as_str);
-    let tables: Vec<&str> = tables.filter(|file| file.ends_with(".csv")).collect();
+    let tables: Vec<&str> = tables
+        .filter(|file| file.strip_suffix(".csv").is_some())
+        .collect();
     write_file(&sweep.out.join(TABLES_METADATA), |file| {
         Provenance::of_scene(&sweep.scene).write_tables(&tables, file)
     })?;
@@ -280,8 +282,8 @@ mod tests {
         };
         assert_eq!(
             heads(DRUM),
-            "θ [°],θ_m [°],θ_r [°],Δθ [°],drops,Δθ ≥ 0.5° [°],Δθ ≥ 2° [°],Δθ ≥ 3° [°],Tg [m²/s²],\
-             Tg′ [m²/s²],ta/ts,√(1/Ga),Ca,φ,Z,h [mm],κ [1/m],bridges,ruptures [1/s],\
+            "θ [°],θ_m [°],θ_r [°],Δθ [°],drops,Δθ ≥ 0.5° [°],Δθ ≥ 2° [°],Δθ ≥ 3° [°],T_a [s],\
+             Tg [m²/s²],Tg′ [m²/s²],ta/ts,ta/ts′,√(1/Ga),Ca,φ,Z,h [mm],κ [1/m],bridges,ruptures [1/s],\
              drum power [mW],viscous loss [J],largest overlap,energy residual"
         );
         assert_eq!(
@@ -290,6 +292,37 @@ mod tests {
              V_cone/V_init,t_max [s],t_f [s],T_max,T_f,peak energy [g cm²/s²],P11,P12,P22,\
              deposit shape,Z,largest overlap,energy residual"
         );
+    }
+
+    #[test]
+    fn beside_a_mean_stand_its_error_and_its_samples() {
+        let cells = |error| {
+            let mean = crate::measure::Estimate {
+                mean: 24.31_f64.to_radians(),
+                error,
+                samples: 45,
+                freedom: 9,
+            };
+            let results = Summary {
+                from: 0.0,
+                to: 1.0,
+                samples: 50,
+                entries: vec![SummaryEntry {
+                    key: Measure::SurfaceAngle.into(),
+                    value: Some(mean.into()),
+                    note: String::new(),
+                }],
+            };
+            let angle = &DRUM[0];
+            assert_eq!(angle.heads(), ["θ [°]", "θ error [°]", "θ samples"]);
+            (angle.cells(&results), angle.cell_for_people(&results))
+        };
+        let (own, people) = cells(Some(0.4_f64.to_radians()));
+        assert_eq!(own, ["24.31", "4.000e-1", "45"]);
+        assert_eq!(people, "24.3 ± 0.4");
+        let (own, people) = cells(None);
+        assert_eq!(own, ["24.31", "too short", "45"]);
+        assert_eq!(people, "24.31 ± ?");
     }
 
     #[test]
