@@ -30,16 +30,12 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     let Some(polyhedra) = &world.polyhedra else {
         return Vec::new();
     };
-    let of_pair = |feature: &&FeatureContact| {
-        (feature.grain, feature.partner) == (contact.grain, contact.partner)
-    };
-    let features: Vec<FeatureContact> =
-        polyhedra.features.iter().filter(of_pair).copied().collect();
+    let features = of_pair(&polyhedra.features, (contact.grain, contact.partner));
     let alone = PairAlone::of(world, contact);
     match polyhedra.integrator {
-        Integrator::Explicit => alone.terms::<false>(world, &features),
+        Integrator::Explicit => alone.terms::<false>(world, features),
         Integrator::Imex => {
-            let mut terms = alone.terms::<true>(world, &features);
+            let mut terms = alone.terms::<true>(world, features);
             share_dashpots(&mut terms, contact.force);
             terms
         }
@@ -47,6 +43,14 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     .into_iter()
     .map(|(terms, _)| terms)
     .collect()
+}
+
+/// The `features` of the pair of these two sides; they are sorted by grain and partner.
+fn of_pair(features: &[FeatureContact], pair: (u32, Partner)) -> &[FeatureContact] {
+    let sides = |feature: &FeatureContact| (feature.grain, feature.partner);
+    let start = features.partition_point(|feature| sides(feature) < pair);
+    let count = features[start..].partition_point(|feature| sides(feature) == pair);
+    &features[start..start + count]
 }
 
 /// Gives each feature its share of what the implicit dashpots of the pair do, which is what the
