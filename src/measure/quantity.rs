@@ -109,11 +109,6 @@ impl Quantity {
         }
     }
 
-    /// Head of its column in a file, with the SI unit: `surface angle [rad]`.
-    pub fn column(&self) -> String {
-        format!("{} [{}]", self.key, self.unit.si)
-    }
-
     /// Label of an axis that shows it, with the unit that people read: `surface angle θ [°]`.
     pub fn axis(&self) -> String {
         self.unit.beside(&self.title())
@@ -383,7 +378,6 @@ mod tests {
     fn names_hold_key_symbol_unit_and_source() {
         assert_eq!(ANGLE.title(), "drop Δθ");
         assert_eq!(ANGLE.label(), "Drop Δθ");
-        assert_eq!(ANGLE.column(), "drop [rad]");
         assert_eq!(ANGLE.axis(), "drop Δθ [°]");
         assert_eq!(ANGLE.explanation(), "A fall, Eq. 3");
         let with_symbol = Quantity {

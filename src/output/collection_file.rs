@@ -1,4 +1,4 @@
-//! `grains.pvd`: the list of the grains' files, which `ParaView` opens as a series in time.
+//! `grains.pvd` and `contacts.pvd`: lists of files that programs open as a series in time.
 //!
 //! In: each file with its time. Out: a list that is whole after each of them.
 
@@ -7,13 +7,11 @@ use crate::files::GrowingFile;
 use crate::run::Provenance;
 use serde::{Deserialize, Serialize};
 
-/// The file's name.
-pub const COLLECTION: &str = "grains.pvd";
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
                     byte_order=\"LittleEndian\">\n  <Collection>\n";
 const TAIL: &str = "  </Collection>\n</VTKFile>\n";
 
-/// A file of grains.
+/// A file that shows one instant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CollectedFile {
     /// Simulated time of the state in it [s].
@@ -32,21 +30,25 @@ impl CollectedFile {
 }
 
 /// The list while a run goes on.
-pub struct CollectionFile(GrowingFile);
+pub struct CollectionFile {
+    name: &'static str,
+    file: GrowingFile,
+}
 
 impl CollectionFile {
-    /// Writes the list of these `frames`, all `from` one run.
+    /// Writes the list called `name` of these `frames`, all `from` one run.
     ///
     /// # Errors
     /// When it cannot be written.
     pub fn begin(
         folder: &OutputFolder,
+        name: &'static str,
         frames: &[CollectedFile],
         from: &Provenance,
     ) -> Result<Self, OutputError> {
         let head = from.in_xml(&opening(frames));
-        let file = folder.begin(COLLECTION, head.as_bytes(), TAIL.as_bytes())?;
-        Ok(Self(file))
+        let file = folder.begin(name, head.as_bytes(), TAIL.as_bytes())?;
+        Ok(Self { name, file })
     }
 
     /// Adds `frame`.
@@ -54,8 +56,8 @@ impl CollectionFile {
     /// # Errors
     /// When it cannot be written.
     pub fn add(&mut self, folder: &OutputFolder, frame: &CollectedFile) -> Result<(), OutputError> {
-        let added = self.0.add(frame.entry().as_bytes());
-        folder.named(COLLECTION, added)
+        let added = self.file.add(frame.entry().as_bytes());
+        folder.named(self.name, added)
     }
 
     /// Makes it durable.
@@ -63,21 +65,23 @@ impl CollectionFile {
     /// # Errors
     /// When the disk fails.
     pub fn sync(&self, folder: &OutputFolder) -> Result<(), OutputError> {
-        folder.named(COLLECTION, self.0.sync())
+        folder.named(self.name, self.file.sync())
     }
 }
 
-/// Writes the list of all `frames` of a run, `from` its last state, and returns its digest.
+/// Writes the list called `name` of all `frames` of a run, `from` its last state, and returns its
+/// digest.
 ///
 /// # Errors
 /// When it cannot be written.
 pub fn write_collection(
     folder: &OutputFolder,
+    name: &str,
     frames: &[CollectedFile],
     from: &Provenance,
 ) -> Result<String, OutputError> {
     let text = from.in_xml(&(opening(frames) + TAIL));
-    folder.write(COLLECTION, |file| file.write_all(text.as_bytes()))
+    folder.write(name, |file| file.write_all(text.as_bytes()))
 }
 
 /// All but the end of the list of `frames`.

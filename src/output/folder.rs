@@ -10,6 +10,7 @@ use crate::files::{
     FolderLock, GrowingFile, LOCK, LockError, is_temporary, read_whole, remove_file, sync_file,
     sync_folder, write_whole, write_whole_unsynced,
 };
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -22,8 +23,8 @@ pub const CHECKPOINT: &str = "checkpoint.bin";
 pub const SAMPLES: &str = "checkpoint-samples.bin";
 /// Largest summary that is read [bytes].
 const LARGEST: u64 = 256 << 20;
-/// The folder of the grains' files.
-const GRAINS: &str = "grains";
+/// The kinds of frames, each with a folder of its own.
+pub const FRAMES: [&str; 2] = ["grains", "contacts"];
 /// What [`SUMMARY`] contains in a run's folder.
 const MARK: &[u8] = b"\"program\": \"grainfall\"";
 
@@ -87,9 +88,9 @@ impl OutputFolder {
         Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
     }
 
-    /// Name of the grains' file number `index` with this extension, relative to the folder.
-    pub fn grains_name(index: usize, extension: &str) -> String {
-        format!("{GRAINS}/grains_{index:06}.{extension}")
+    /// Name of the frame number `index` of this `kind`, relative to the folder.
+    pub fn frame_name(kind: &str, index: usize) -> String {
+        format!("{kind}/{kind}_{index:06}.vtp")
     }
 
     /// Writes the file called `name` with what `fill` writes, whole or not at all, and returns the
@@ -129,21 +130,21 @@ impl OutputFolder {
         Ok(digest)
     }
 
-    /// Makes the files called `names`, which lie in one folder, durable.
+    /// Makes the files called `names` durable.
     ///
     /// # Errors
     /// When the disk fails.
     pub fn sync(&self, names: &[String]) -> Result<(), OutputError> {
+        let mut folders = BTreeSet::new();
         for name in names {
-            self.named(name, sync_file(&self.path.join(name)))?;
+            let path = self.path.join(name);
+            self.named(name, sync_file(&path))?;
+            folders.extend(path.parent().map(Path::to_owned));
         }
-        let folder = names.last().map(|name| self.path.join(name));
-        match folder.as_deref().and_then(Path::parent) {
-            Some(folder) => {
-                sync_folder(folder).map_err(|source| OutputError::write(folder, source))
-            }
-            None => Ok(()),
+        for folder in folders {
+            sync_folder(&folder).map_err(|source| OutputError::write(&folder, source))?;
         }
+        Ok(())
     }
 
     /// Begins the growing file called `name` with `head` and `tail`.
@@ -176,8 +177,8 @@ impl OutputFolder {
         self.named(name, remove_file(&self.path.join(name)))
     }
 
-    /// Removes the files called `names`, the grains' files, and what was not whole when a program
-    /// stopped here, but for what is `kept`.
+    /// Removes the files called `names`, the frames, and what was not whole when a program stopped
+    /// here, but for what is `kept`.
     ///
     /// # Errors
     /// When one of them cannot be removed.
@@ -192,20 +193,19 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Grains' files that are not `kept`, and files that were never whole.
+    /// Frames that are not `kept`, and files that were never whole.
     fn leftovers(&self, kept: &[&str]) -> io::Result<Vec<PathBuf>> {
-        let grains = self.path.join(GRAINS);
         let mut left = Vec::new();
-        for folder in [&self.path, &grains]
-            .into_iter()
-            .filter(|path| path.is_dir())
-        {
+        for kind in [""].into_iter().chain(FRAMES) {
+            let folder = self.path.join(kind);
+            if !folder.is_dir() {
+                continue;
+            }
             for entry in fs::read_dir(folder)? {
                 let entry = entry?;
                 let name = entry.file_name().to_string_lossy().into_owned();
-                let is_own = *folder == grains
-                    && is_grains_file(&name)
-                    && !kept.contains(&format!("{GRAINS}/{name}").as_str());
+                let is_own =
+                    is_frame(kind, &name) && !kept.contains(&format!("{kind}/{name}").as_str());
                 if (is_own || is_temporary(&name)) && entry.file_type()?.is_file() {
                     left.push(entry.path());
                 }
@@ -231,17 +231,19 @@ fn is_foreign(path: &Path) -> io::Result<bool> {
     if summary.is_file() && contains(&read_whole(&summary, LARGEST)?, MARK) {
         return Ok(false);
     }
-    let grains = path.join(GRAINS);
     for entry in fs::read_dir(path)? {
         let name = entry?.file_name();
-        let of_a_run = [GRAINS, CHECKPOINT, SAMPLES, LOCK]
-            .iter()
-            .any(|own| name == *own);
-        if !of_a_run && !name.to_str().is_some_and(is_temporary) {
+        let own = [CHECKPOINT, SAMPLES, LOCK].into_iter().chain(FRAMES);
+        if !own.into_iter().any(|own| name == *own) && !name.to_str().is_some_and(is_temporary) {
             return Ok(true);
         }
     }
-    Ok(grains.is_dir() && fs::read_dir(grains)?.next().is_some())
+    for kind in FRAMES.map(|kind| path.join(kind)) {
+        if kind.is_dir() && fs::read_dir(kind)?.next().is_some() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Writes the file at `path` with what `fill` writes, whole or not at all.
@@ -255,9 +257,15 @@ pub fn write_file(
     write_whole(path, fill).map_err(|source| OutputError::write(path, source))
 }
 
-fn is_grains_file(name: &str) -> bool {
+/// Whether frames of this `kind` have such a `name`; earlier programs wrote polyhedra as `.vtu`.
+fn is_frame(kind: &str, name: &str) -> bool {
     let extension = Path::new(name).extension();
-    name.starts_with("grains_") && extension.is_some_and(|e| e == "vtp" || e == "vtu")
+    let number = name
+        .strip_prefix(kind)
+        .and_then(|rest| rest.strip_prefix('_'));
+    FRAMES.contains(&kind)
+        && number.is_some()
+        && extension.is_some_and(|e| e == "vtp" || e == "vtu")
 }
 
 fn contains(bytes: &[u8], part: &[u8]) -> bool {

@@ -8,10 +8,12 @@
 //! | file | holds |
 //! |---|---|
 //! | `recorder` | which file is written when |
-//! | `collection_file` | the list of the grains' files |
-//! | `grains_file` | the grains at each output time, for `ParaView` |
-//! | `polyhedra_file` | polyhedra as cells |
+//! | `frames` | what is written at each output time, and once at the first |
+//! | `collection_file` | the lists of these files |
+//! | `grains_file`, `contacts_file` | the grains and their contacts at an instant, for `ParaView` and OVITO |
+//! | `shapes_file`, `container_file` | what polyhedra and the container look like |
 //! | `vtk` | VTK's XML files |
+//! | `base64` | bytes as text |
 //! | `summary_file` | `summary.json`: what was run, how it ended, what came out |
 //! | `series_file`, `profile_files`, `velocity_file` | tables: `series.csv`, `flow.csv` … |
 //! | `folder` | where the files go; nobody else's are touched |
@@ -19,21 +21,27 @@
 //! | `run_so_far`, `ending` | what is seen of a run; how it ended |
 //! | `error` | why files cannot be written |
 
+mod base64;
 mod collection_file;
+mod contacts_file;
+mod container_file;
 mod digest;
 mod ending;
 mod error;
 mod folder;
+mod frames;
 mod grains_file;
-mod polyhedra_file;
 mod profile_files;
 mod recorder;
 mod run_so_far;
 mod series_file;
+mod shapes_file;
 mod summary_file;
 mod velocity_file;
 mod vtk;
 
+pub use contacts_file::write_contacts;
+pub use container_file::write_container;
 pub use digest::digest_of_file;
 pub use ending::Ending;
 pub use error::OutputError;
@@ -41,3 +49,4 @@ pub use folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY, write_file};
 pub use grains_file::write_grains;
 pub use recorder::{Recorder, Subject, Written};
 pub use run_so_far::RunSoFar;
+pub use shapes_file::write_shapes;

@@ -2,6 +2,7 @@
 //! that results count, and `profile.csv`, that of a heap's height over the radius at the end.
 
 use crate::measure::{Estimate, FlowProfile, HeightProfile};
+use crate::run::{Cells, Column, Table};
 use std::io::{self, Write};
 
 /// The files' names.
@@ -16,6 +17,30 @@ pub struct Flow {
     pub velocity: Vec<Estimate>,
 }
 
+/// What stands in [`FLOW`].
+pub fn flow_table() -> Table {
+    Table::new(
+        FLOW,
+        [
+            Column::numbers("depth", "m").described("below the middle of the surface"),
+            Column::numbers("velocity", "m/s").described("along the surface, mean"),
+            Column::new("samples", Cells::Counts).described("samples averaged"),
+            Column::numbers("error", "m/s").described("standard error of the velocity"),
+        ],
+    )
+}
+
+/// What stands in [`PROFILE`].
+pub fn profile_table() -> Table {
+    Table::new(
+        PROFILE,
+        [
+            Column::numbers("radius", "m").described("distance from the column's axis"),
+            Column::numbers("height", "m").described("mean over the azimuth"),
+        ],
+    )
+}
+
 /// Writes `flow` to `file`: depth below the middle of the surface, velocity along it there and its
 /// standard error (NaN where the run is too short for one), samples averaged.
 ///
@@ -23,7 +48,7 @@ pub struct Flow {
 /// When the file cannot be written.
 pub fn write_flow(flow: &Flow, file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    writer.write_record(["depth [m]", "velocity [m/s]", "samples [1]", "error [m/s]"])?;
+    writer.write_record(flow_table().heads())?;
     let rows = flow.profile.depth.iter().zip(&flow.velocity);
     for ((depth, velocity), samples) in rows.zip(&flow.profile.samples) {
         writer.write_record([
@@ -42,7 +67,7 @@ pub fn write_flow(flow: &Flow, file: &mut dyn Write) -> io::Result<()> {
 /// When the file cannot be written.
 pub fn write_profile(profile: &HeightProfile, file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    writer.write_record(["radius [m]", "height [m]"])?;
+    writer.write_record(profile_table().heads())?;
     for (radius, height) in profile.radius.iter().zip(&profile.height) {
         writer.write_record([format!("{radius:?}"), format!("{height:?}")])?;
     }

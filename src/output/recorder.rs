@@ -1,21 +1,21 @@
 //! Which file of a run is written when.
 //!
 //! In: a [`RunSoFar`] at each output time, and one at the end. Out: the files of the folder, each
-//! whole at any time; whatever happens after a file was written, it stays. The series and the list
-//! of the grains' files grow with the run, and are made durable with them at an output, at most
-//! once a second. Bytes written grow like what there is to say: nothing but the summary is written
-//! twice.
+//! whole at any time; whatever happens after a file was written, it stays. The series and the lists
+//! of frames grow with the run, and are made durable with them at an output, at most once a
+//! second. Bytes written grow like what there is to say: nothing but the summary is written twice.
 
-use super::collection_file::{COLLECTION, CollectedFile, CollectionFile, write_collection};
 use super::folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY};
-use super::grains_file::{extension, write_grains};
-use super::profile_files::{FLOW, Flow, PROFILE, write_flow, write_profile};
+use super::frames::{self, FrameFiles, WrittenFrames};
+use super::profile_files::{
+    FLOW, Flow, PROFILE, flow_table, profile_table, write_flow, write_profile,
+};
 use super::series_file::{SERIES, SeriesFile};
 use super::summary_file::SummaryFile;
-use super::velocity_file::{VELOCITY, write_velocity};
+use super::velocity_file::{VELOCITY, velocity_table, write_velocity};
 use super::{Ending, OutputError, RunSoFar};
 use crate::measure::{Deposit, Summary};
-use crate::run::{Provenance, TABLES_METADATA, VERSION};
+use crate::run::{Provenance, TABLES_METADATA, VERSION, write_metadata};
 use crate::scene::Scene;
 use crate::solver::{Extremes, TimeStepAdvice, advise};
 use crate::world::{Clock, World};
@@ -30,17 +30,22 @@ use std::time::{Duration, Instant};
 const SYNC_TIME: Duration = Duration::from_secs(1);
 /// Most of a run's wall-clock time that this may cost, as one part in so many.
 const SHARE_OF_TIME: u32 = 20;
-/// Files by these names are a run's own; those of an earlier run give way to a later one.
-const OWN: [&str; 8] = [
+/// Files by these names, and the frames', are a run's own; those of an earlier run give way to a
+/// later one.
+const OWN: [&str; 7] = [
     CHECKPOINT,
     SAMPLES,
     SERIES,
-    COLLECTION,
     FLOW,
     VELOCITY,
     PROFILE,
     TABLES_METADATA,
 ];
+
+/// All of them.
+fn own() -> Vec<&'static str> {
+    OWN.into_iter().chain(frames::OTHERS).collect()
+}
 
 /// What is recorded.
 #[derive(Clone, Debug)]
@@ -58,8 +63,7 @@ pub struct Subject {
 /// What was written so far, to go on with later.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Written {
-    /// The grains' files.
-    frames: Vec<CollectedFile>,
+    frames: WrittenFrames,
     /// Outputs that are done or past.
     outputs: u64,
     /// Wall-clock time that it took [s].
@@ -67,10 +71,9 @@ pub struct Written {
 }
 
 impl Written {
-    /// The first of the grains' files that `folder` does not hold.
+    /// The first of the frames' files that `folder` does not hold.
     pub fn missing(&self, folder: &Path) -> Option<&str> {
-        let mut names = self.frames.iter().map(|frame| frame.name.as_str());
-        names.find(|name| !folder.join(name).is_file())
+        self.frames.missing(folder)
     }
 
     /// Wall-clock time that the run took until then [s].
@@ -86,9 +89,7 @@ pub struct Recorder {
     folder: OutputFolder,
     written: Written,
     series: Option<SeriesFile>,
-    collection: Option<CollectionFile>,
-    /// The grains' files that are not durable yet.
-    unsynced: Vec<String>,
+    frames: Option<FrameFiles>,
     /// When all that was written was last made durable.
     synced: Instant,
     /// Wall-clock time that this took: a busy disk takes its time.
@@ -107,8 +108,8 @@ impl Recorder {
         folder.remove(CHECKPOINT)?;
         let mut recorder = Self::new(subject, folder, Written::default());
         recorder.mark()?;
-        recorder.folder.clear(&OWN, &[])?;
-        recorder.begin_collection()?;
+        recorder.folder.clear(&own(), &[])?;
+        recorder.begin_frames()?;
         Ok(recorder)
     }
 
@@ -124,13 +125,14 @@ impl Recorder {
     ) -> Result<Self, OutputError> {
         let mut recorder = Self::new(subject, folder, written);
         recorder.mark()?;
-        recorder.begin_collection()?;
-        let frames = recorder.written.frames.iter();
-        let kept = [CHECKPOINT, SAMPLES, SERIES, COLLECTION].into_iter();
-        let kept: Vec<&str> = kept
-            .chain(frames.map(|frame| frame.name.as_str()))
+        recorder.begin_frames()?;
+        let files = recorder.written.frames.files();
+        let kept: Vec<&str> = [CHECKPOINT, SAMPLES, SERIES]
+            .into_iter()
+            .chain(frames::LISTS)
+            .chain(files.map(|frame| frame.name.as_str()))
             .collect();
-        recorder.folder.clear(&OWN, &kept)?;
+        recorder.folder.clear(&own(), &kept)?;
         Ok(recorder)
     }
 
@@ -147,8 +149,7 @@ impl Recorder {
             folder,
             written,
             series: None,
-            collection: None,
-            unsynced: Vec::new(),
+            frames: None,
             synced: Instant::now(),
             sync_cost: Duration::ZERO,
             started: Instant::now(),
@@ -167,11 +168,10 @@ impl Recorder {
         )
     }
 
-    fn begin_collection(&mut self) -> Result<(), OutputError> {
+    fn begin_frames(&mut self) -> Result<(), OutputError> {
         if self.subject.grains {
-            let from = self.provenance(None);
-            let file = CollectionFile::begin(&self.folder, &self.written.frames, &from)?;
-            self.collection = Some(file);
+            let (from, written) = (self.provenance(None), self.written.frames.clone());
+            self.frames = Some(FrameFiles::begin(&self.folder, written, &from)?);
         }
         Ok(())
     }
@@ -192,7 +192,7 @@ impl Recorder {
         let is_due = |step: Option<u64>| step.is_some_and(|step| step <= clock.step);
         let is_output = is_due(self.next_output(clock));
         if is_output {
-            self.write_grains(run.world)?;
+            self.write_frame(run.world)?;
             let affordable = self.sync_cost.saturating_mul(SHARE_OF_TIME);
             if self.synced.elapsed() >= affordable.max(SYNC_TIME) {
                 self.sync()?;
@@ -210,13 +210,11 @@ impl Recorder {
     /// When the disk fails.
     pub fn sync(&mut self) -> Result<(), OutputError> {
         let started = Instant::now();
-        self.folder.sync(&self.unsynced)?;
-        self.unsynced.clear();
+        if let Some(frames) = &mut self.frames {
+            frames.sync(&self.folder)?;
+        }
         if let Some(series) = &self.series {
             series.sync(&self.folder)?;
-        }
-        if let Some(collection) = &self.collection {
-            collection.sync(&self.folder)?;
         }
         self.synced = Instant::now();
         self.sync_cost = started.elapsed();
@@ -235,21 +233,16 @@ impl Recorder {
         warnings: &[String],
     ) -> Result<Summary, OutputError> {
         if let Some(RunSoFar { world, .. }) = run
-            && self.subject.grains
-            && self.written.frames.last().map(|frame| frame.time) != Some(world.time())
+            && let Some(frames) = &self.frames
+            && frames.written().last_time() != Some(world.time())
         {
-            self.write_grains(world)?;
+            self.write_frame(world)?;
         }
         self.write_series(run)?;
         self.sync()?;
         let mut files = self.write_tables(run)?;
-        if self.subject.grains {
-            let from = self.provenance(run);
-            let frames = &self.written.frames;
-            let digest = write_collection(&self.folder, frames, &from)?;
-            files.insert(COLLECTION.into(), digest);
-            let frames = frames.iter();
-            files.extend(frames.map(|frame| (frame.name.clone(), frame.digest.clone())));
+        if let Some(frames) = &self.frames {
+            files.extend(frames.finish(&self.folder, &self.provenance(run))?);
         }
         let results = RunSoFar::results_of(run);
         let end = Some((ending, &results));
@@ -259,9 +252,11 @@ impl Recorder {
 
     /// What was written so far.
     pub fn written(&self) -> Written {
+        let frames = self.frames.as_ref().map(FrameFiles::written);
         Written {
             wall_time: self.wall_time(),
-            ..self.written.clone()
+            frames: frames.unwrap_or(&self.written.frames).clone(),
+            ..self.written
         }
     }
 
@@ -275,23 +270,12 @@ impl Recorder {
         self.written.wall_time + self.started.elapsed().as_secs_f64()
     }
 
-    fn write_grains(&mut self, world: &World) -> Result<(), OutputError> {
-        let name = OutputFolder::grains_name(self.written.frames.len(), extension(world));
+    fn write_frame(&mut self, world: &World) -> Result<(), OutputError> {
         let from = Provenance::of(&self.subject.scene, world);
-        let digest = self
-            .folder
-            .write_unsynced(&name, |file| write_grains(world, &from, file))?;
-        self.unsynced.push(name.clone());
-        let frame = CollectedFile {
-            time: world.time(),
-            name,
-            digest,
-        };
-        if let Some(collection) = &mut self.collection {
-            collection.add(&self.folder, &frame)?;
+        match &mut self.frames {
+            Some(frames) => frames.write(&self.folder, world, &from),
+            None => Ok(()),
         }
-        self.written.frames.push(frame);
-        Ok(())
     }
 
     /// Writes the samples that are new.
@@ -318,33 +302,37 @@ impl Recorder {
         let fastest = run.and_then(|run| run.flow.fastest_since(from));
         let deposit = run.and_then(|run| Deposit::of(run.world));
         let heights = deposit.map(|deposit| deposit.height_profile());
-        let series = self.series.as_ref().map(SeriesFile::digest);
+        let series = self.series.as_ref();
         let tables = [
-            (SERIES, series),
-            (FLOW, self.write_table(FLOW, flow.as_ref(), write_flow)?),
             (
-                VELOCITY,
+                series.map(SeriesFile::table),
+                series.map(SeriesFile::digest),
+            ),
+            (
+                Some(flow_table()),
+                self.write_table(FLOW, flow.as_ref(), write_flow)?,
+            ),
+            (
+                Some(velocity_table()),
                 self.write_table(VELOCITY, fastest, write_velocity)?,
             ),
             (
-                PROFILE,
+                Some(profile_table()),
                 self.write_table(PROFILE, heights.as_ref(), write_profile)?,
             ),
         ];
         let written = tables
-            .iter()
-            .filter_map(|(name, digest)| digest.as_ref().map(|_| *name));
-        let written: Vec<&str> = written.collect();
+            .into_iter()
+            .filter_map(|(table, digest)| Some((table?, digest?)));
+        let (tables, digests): (Vec<_>, Vec<_>) = written.unzip();
         let from = self.provenance(run);
         let metadata = self
             .folder
-            .write(TABLES_METADATA, |file| from.write_tables(&written, file))?;
-        let tables = tables
-            .into_iter()
-            .chain([(TABLES_METADATA, Some(metadata))]);
-        Ok(tables
-            .filter_map(|(name, digest)| Some((name.to_owned(), digest?)))
-            .collect())
+            .write(TABLES_METADATA, |file| write_metadata(&tables, &from, file))?;
+        let names = tables.into_iter().map(|table| table.name);
+        let mut files: BTreeMap<String, String> = names.zip(digests).collect();
+        files.insert(TABLES_METADATA.into(), metadata);
+        Ok(files)
     }
 
     /// Writes the table called `name` and returns its digest; where the run has nothing for it,

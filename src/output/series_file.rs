@@ -6,6 +6,7 @@
 use super::{OutputError, OutputFolder, RunSoFar};
 use crate::files::GrowingFile;
 use crate::measure::{Measure, Series};
+use crate::run::{Cells, Column, Table};
 use std::io::{self, Write};
 use std::ops::Range;
 
@@ -76,17 +77,31 @@ impl SeriesFile {
         folder.named(SERIES, self.file.sync())
     }
 
+    /// What stands in it.
+    pub fn table(&self) -> Table {
+        table(&self.measures)
+    }
+
     /// The digest of its bytes.
     pub fn digest(&self) -> String {
         self.digest.finalize().to_hex().to_string()
     }
 }
 
+fn table(measures: &[Measure]) -> Table {
+    let clock = [
+        Column::new("step", Cells::Counts),
+        Column::numbers("time", "s"),
+    ];
+    let measured = measures
+        .iter()
+        .map(|measure| Column::of(measure.quantity()));
+    Table::new(SERIES, clock.into_iter().chain(measured))
+}
+
 fn write_head(measures: &[Measure], file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    let head = |measure: &Measure| measure.quantity().column();
-    let first = ["step [1]", "time [s]"].map(str::to_owned);
-    writer.write_record(first.into_iter().chain(measures.iter().map(head)))?;
+    writer.write_record(table(measures).heads())?;
     writer.flush()
 }
 

@@ -16,7 +16,7 @@ use std::path::Path;
 struct Cost {
     /// Of memory, for a grain of a running world with its solver and output [bytes].
     memory: f64,
-    /// Of a file of grains, for each grain [bytes].
+    /// Of the files of an output, grains and contacts, for each grain [bytes].
     file: f64,
     /// Of one thread's time, for each step of a grain [s].
     time: f64,
@@ -25,19 +25,19 @@ struct Cost {
 /// Spheres, dry.
 const SPHERE: Cost = Cost {
     memory: 2e3,
-    file: 160.0,
+    file: 500.0,
     time: 45e-9,
 };
 /// Spheres with a liquid between them.
 const WET_SPHERE: Cost = Cost {
     memory: 3e3,
-    file: 160.0,
+    file: 600.0,
     time: 60e-9,
 };
 /// Rounded Voronoi cells, and listed polyhedra.
 const POLYHEDRON: Cost = Cost {
     memory: 21e3,
-    file: 2.5e3,
+    file: 800.0,
     time: 2e-6,
 };
 /// Memory that the points of a lattice take while its cells are cut, for each [bytes].

@@ -18,6 +18,7 @@
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `estimate` | what a scene asks of a machine, before any work |
+//! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
@@ -46,6 +47,7 @@ mod shared;
 mod snapshot;
 mod soundness;
 mod steps;
+mod tables;
 mod timeline;
 mod trajectory;
 mod undo;
@@ -64,13 +66,14 @@ pub use history::{History, Moment};
 pub use past::Past;
 pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};
-pub use provenance::{Provenance, TABLES_METADATA, printable};
+pub use provenance::{Provenance, printable};
 pub use record::{RunRecord, VERSION, fingerprint};
 pub use sampling::SAMPLE_INTERVAL;
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use snapshot::{Checkpoint, CheckpointParts, Snapshot};
 pub use steps::StepTimes;
+pub use tables::{Cells, Column, TABLES_METADATA, Table, write_metadata};
 pub use timeline::Timeline;
 pub use trajectory::Run;
 pub use undo::Changed;

@@ -1,19 +1,13 @@
 //! Where an exported file came from: program and version, scene and seed, and the state it shows.
 //!
 //! In: a scene and a state. Out: the same few words for every kind of exported file: text chunks of
-//! a PNG, a description in an SVG, a comment in XML, and beside tables a `csv-metadata.json` as the
-//! W3C's *CSV on the Web* has it, so that the tables themselves begin with their header for every
-//! reader.
+//! a PNG, a description in an SVG, a comment in XML, and beside tables a file that says it of them
+//! ([`super::write_metadata`]).
 
 use super::VERSION;
 use crate::scene::Scene;
 use crate::world::World;
-use serde_json::json;
 use std::fmt;
-use std::io::{self, Write};
-
-/// The file beside tables that says where they came from.
-pub const TABLES_METADATA: &str = "csv-metadata.json";
 
 /// Where a file came from.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,17 +82,29 @@ impl Provenance {
         entries
     }
 
-    /// `xml` with a comment that says so, after its first line where that declares what it is.
+    /// What the scene is called.
+    pub fn title(&self) -> &str {
+        &self.scene
+    }
+
+    /// Simulated time of the state [s]; none of no one state.
+    pub fn time(&self) -> Option<f64> {
+        self.state.as_ref().map(|state| state.time)
+    }
+
+    /// `xml` with a comment that says so, behind the tag that opens its first element: there are
+    /// readers that find out what a file is by what stands first.
     pub fn in_xml(&self, xml: &str) -> String {
-        let declared = xml.strip_prefix("<?xml").and_then(|rest| rest.find("?>"));
-        let (head, body) = xml.split_at(declared.map_or(0, |end| end + "<?xml?>".len()));
-        let space = if head.is_empty() { "" } else { "\n" };
+        let mut tags = xml.match_indices('<').map(|(at, _)| at);
+        let element = tags.find(|at| !xml[*at..].starts_with("<?"));
+        let end = element.and_then(|at| Some(at + xml[at..].find('>')? + 1));
+        let (head, body) = xml.split_at(end.unwrap_or(0));
         // Two hyphens would end the comment, and three hold two of them.
         let mut text = self.to_string();
         while text.contains("--") {
             text = text.replace("--", "- -");
         }
-        format!("{head}{space}<!-- {text} -->\n{}", body.trim_start())
+        format!("{head}\n<!-- {text} -->\n{}", body.trim_start())
     }
 
     /// `svg` with a description that says so, which readers for the blind speak as well.
@@ -109,26 +115,6 @@ impl Provenance {
         let inside = svg[start..].find('>').map_or(0, |end| start + end + 1);
         let (head, body) = svg.split_at(inside);
         format!("{head}\n<desc>{text}</desc>{body}")
-    }
-
-    /// Writes to `file` that the tables called `names`, beside it, came from here.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
-    pub fn write_tables(&self, names: &[&str], file: &mut dyn Write) -> io::Result<()> {
-        let tables: Vec<_> = names.iter().map(|name| json!({ "url": name })).collect();
-        let notes: serde_json::Map<_, _> = (self.entries().into_iter())
-            .map(|(name, value)| (name.to_lowercase(), value.into()))
-            .collect();
-        let metadata = json!({
-            "@context": "http://www.w3.org/ns/csvw",
-            "dc:title": self.scene,
-            "dc:source": self.to_string(),
-            "tables": tables,
-            "notes": [notes],
-        });
-        serde_json::to_writer_pretty(&mut *file, &metadata)?;
-        file.write_all(b"\n")
     }
 }
 
@@ -189,11 +175,12 @@ mod tests {
 
     #[test]
     fn xml_stays_xml_whatever_a_scene_is_called() {
-        let declared = provenance().in_xml("<?xml version=\"1.0\"?>\n<a/>\n");
-        assert!(declared.starts_with("<?xml version=\"1.0\"?>\n<!-- Grainfall"));
-        assert!(declared.ends_with("-->\n<a/>\n") && declared.matches("--").count() == 2);
+        let declared = provenance().in_xml("<?xml version=\"1.0\"?>\n<a b=\"c\">\n<d/>\n</a>\n");
+        let opening = "<?xml version=\"1.0\"?>\n<a b=\"c\">\n<!-- Grainfall";
+        assert!(declared.starts_with(opening), "{declared}");
+        assert!(declared.ends_with("-->\n<d/>\n</a>\n") && declared.matches("--").count() == 2);
         let bare = provenance().in_xml("<a/>");
-        assert!(bare.starts_with("<!-- ") && bare.ends_with("<a/>"));
+        assert!(bare.starts_with("<a/>\n<!-- ") && bare.ends_with("-->\n"));
         let svg = provenance().in_svg("<?xml version=\"1.0\"?><svg width=\"3\">\n<g/></svg>");
         assert!(svg.contains("<svg width=\"3\">\n<desc>Grainfall"), "{svg}");
         assert!(svg.contains("a --&gt; b &lt;c&gt; &amp; d”, seed"), "{svg}");
@@ -211,7 +198,7 @@ mod tests {
         ] {
             scene.title = title.into();
             let xml = Provenance::of_scene(&scene).in_xml("<a/>");
-            let inside = &xml["<!--".len()..xml.find("-->").unwrap()];
+            let inside = &xml["<a/>\n<!--".len()..xml.find("-->").unwrap()];
             assert!(!inside.contains("--") && !inside.ends_with('-'), "{xml}");
             assert!(!xml.contains(is_unprintable), "{xml:?}");
             let svg = Provenance::of_scene(&scene).in_svg("<svg>\u{8}</svg>");

@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 /// What the file begins with.
 const MARK: &str = "grainfall checkpoint";
 /// Raised whenever the file is laid out otherwise.
-const LAYOUT: &str = "4";
+const LAYOUT: &str = "5";
 /// Largest file of a checkpoint that is read [bytes].
 const LARGEST: u64 = 16 << 30;
 /// Most of the file in which its first line ends.

@@ -1,41 +1,29 @@
-//! The table of means over the seeds, one row for each ensemble of cases.
+//! The means over the seeds that people compare, one row for each ensemble of cases:
+//! `ensembles.md`.
 //!
-//! In: the ensembles of a sweep. Out: `ensembles.csv` and `ensembles.md`, with the columns of the
-//! table of cases, each a mean with its standard error and the number of seeds that it is of.
+//! In: the ensembles of a sweep. Out: a table in Markdown with the columns of the table of cases,
+//! each a mean with its standard error, and the number of seeds that it is of.
 
 use super::Sweep;
 use super::ensemble::Ensemble;
 use super::plan::SEED;
 use super::results_table::{TableColumn, columns};
 use crate::measure::Format;
-use crate::output::write_file;
-use crate::runner::RunnerError;
+use crate::output::{OutputError, write_file};
 
-/// The names of both files.
-const FILES: [&str; 2] = ["ensembles.csv", "ensembles.md"];
+/// The file's name.
+const FILE: &str = "ensembles.md";
 
-/// Writes both files; returns their names.
+/// Writes the table in Markdown; returns its name.
 ///
 /// # Errors
-/// When a file cannot be written.
-pub fn write_tables(sweep: &Sweep, ensembles: &[Ensemble]) -> Result<Vec<String>, RunnerError> {
-    let columns = own_columns(ensembles);
-    write_file(&sweep.out.join(FILES[0]), |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        let heads = columns.iter().flat_map(TableColumn::heads);
-        writer.write_record(row(common_keys(sweep), "seeds".into(), heads))?;
-        for ensemble in ensembles {
-            let results = ensemble.results();
-            let cells = columns.iter().flat_map(|column| column.cells(&results));
-            writer.write_record(row(ensemble.values.clone(), seeds(ensemble), cells))?;
-        }
-        writer.flush()
-    })?;
+/// When the file cannot be written.
+pub fn write_markdown(sweep: &Sweep, ensembles: &[Ensemble]) -> Result<String, OutputError> {
     let text = markdown(sweep, ensembles);
-    write_file(&sweep.out.join(FILES[1]), |file| {
+    write_file(&sweep.out.join(FILE), |file| {
         file.write_all(text.as_bytes())
     })?;
-    Ok(FILES.map(str::to_owned).into())
+    Ok(FILE.to_owned())
 }
 
 /// The table in Markdown.

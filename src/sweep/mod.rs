@@ -23,6 +23,7 @@ mod folder;
 mod kasper_statements;
 mod plan;
 mod plot_files;
+mod results_csv;
 mod results_table;
 mod statements;
 mod statements_file;
@@ -99,20 +100,22 @@ pub fn run(
     let folder = SweepFolder::open(sweep, &cases)?;
     let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
-    let mut files = results_table::write_tables(sweep, &outcomes)?;
     let sound: Vec<CaseResult> = outcomes
         .iter()
         .filter(|own| own.is_sound())
         .cloned()
         .collect();
     let ensembles = ensemble::ensembles(sweep, &sound);
-    let table = if ensembles.iter().any(|ensemble| ensemble.members.len() > 1) {
-        files.extend(ensemble_table::write_tables(sweep, &ensembles)?);
-        ensemble_table::markdown(sweep, &ensembles)
+    let has_seeds = ensembles.iter().any(|ensemble| ensemble.members.len() > 1);
+    let means = if has_seeds { &ensembles[..] } else { &[] };
+    let mut files = results_csv::write_csv(sweep, &outcomes, means)?;
+    files.push(results_table::write_markdown(sweep, &outcomes)?);
+    let table = if has_seeds {
+        files.push(ensemble_table::write_markdown(sweep, means)?);
+        ensemble_table::markdown(sweep, means)
     } else {
         results_table::markdown(sweep, &outcomes)
     };
-    files.push(results_table::write_metadata(sweep, &files)?);
     files.extend(statements_file::write_statements(sweep, &ensembles)?);
     files.extend(plot_files::write_plots(sweep, &outcomes)?);
     files.extend(velocity_plot::write_velocity_plots(sweep, &outcomes)?);

@@ -1,23 +1,14 @@
-//! The table of all results, one row per case.
+//! The results that people compare, one row per case: `table.md`.
 //!
-//! In: what became of the cases of a sweep. Out: `table.csv` and `table.md`, with the columns that
-//! suit drums or columns. Units and digits come from the registry of quantities.
+//! In: what became of the cases of a sweep. Out: a table in Markdown with the columns that suit
+//! drums or columns. Units and digits come from the registry of quantities.
 
 use super::Sweep;
 use super::case::CaseResult;
 use crate::measure::numeral::NOTHING;
 use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary};
-use crate::output::Ending;
-use crate::output::write_file;
+use crate::output::{Ending, OutputError, write_file};
 use crate::physics::{Unit, units};
-use crate::run::{Provenance, TABLES_METADATA};
-use crate::runner::RunnerError;
-
-/// The table's name.
-const TABLE: &str = "table.csv";
-
-/// What stands in the place of an error where too little was seen for one.
-const TOO_SHORT: &str = "too short";
 
 /// A column: the result it shows under a short head, in the unit and with the digits of the
 /// registry or others.
@@ -81,39 +72,11 @@ impl TableColumn {
         self.unit.beside(self.head)
     }
 
-    /// The heads of its cells in a file: its own and, of a mean, those of its standard error and of
-    /// the number of independent samples.
-    pub(super) fn heads(&self) -> Vec<String> {
-        let mut heads = vec![self.head()];
-        if self.is_mean {
-            heads.push(self.unit.beside(&format!("{} error", self.head)));
-            heads.push(format!("{} samples", self.head));
-        }
-        heads
-    }
-
     fn cell(&self, results: &Summary) -> String {
         results.get(self.key).map_or_else(
             || NOTHING.to_owned(),
             |value| (self.key.quantity()).number_as(value, self.unit, self.format),
         )
-    }
-
-    /// Its cells in a file, under its [`heads`](Self::heads).
-    pub(super) fn cells(&self, results: &Summary) -> Vec<String> {
-        let mut cells = vec![self.cell(results)];
-        if self.is_mean {
-            let mean = results.estimate(self.key);
-            let error = mean.and_then(|mean| mean.error);
-            let error = error.map(|error| format!("{:.3e}", error * self.unit.shown.factor));
-            let short = mean
-                .and_then(|mean| mean.reason())
-                .map(|_| TOO_SHORT.to_owned());
-            cells.push(error.or(short).unwrap_or_else(|| NOTHING.to_owned()));
-            let samples = mean.map_or_else(|| NOTHING.to_owned(), |mean| mean.samples.to_string());
-            cells.push(samples);
-        }
-        cells
     }
 
     /// Its cell for people, a mean with its error.
@@ -188,44 +151,19 @@ pub(super) fn columns(is_of_columns: bool) -> &'static [TableColumn] {
     if is_of_columns { COLLAPSE } else { DRUM }
 }
 
-/// Writes `table.csv` and `table.md`; returns the files' names.
+/// The name of the table in Markdown.
+const TABLE: &str = "table.md";
+
+/// Writes the table in Markdown; returns its name.
 ///
 /// # Errors
-/// When a file cannot be written.
-pub fn write_tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>, RunnerError> {
-    let columns = columns(outcomes.iter().any(CaseResult::is_column));
-    write_file(&sweep.out.join(TABLE), |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        let of_results = columns.iter().flat_map(TableColumn::heads);
-        writer.write_record(heads(sweep, of_results))?;
-        for outcome in outcomes {
-            let of_results = columns
-                .iter()
-                .flat_map(|column| column.cells(&outcome.results));
-            writer.write_record(cells(outcome, of_results))?;
-        }
-        writer.flush()
-    })?;
+/// When the file cannot be written.
+pub fn write_markdown(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<String, OutputError> {
     let text = markdown(sweep, outcomes);
-    write_file(&sweep.out.join("table.md"), |file| {
+    write_file(&sweep.out.join(TABLE), |file| {
         file.write_all(text.as_bytes())
     })?;
-    Ok([TABLE, "table.md"].map(str::to_owned).into())
-}
-
-/// Writes where the tables among `files` come from; returns the file's name.
-///
-/// # Errors
-/// When it cannot be written.
-pub fn write_metadata(sweep: &Sweep, files: &[String]) -> Result<String, RunnerError> {
-    let tables = files.iter().map(String::as_str);
-    let tables: Vec<&str> = tables
-        .filter(|file| file.strip_suffix(".csv").is_some())
-        .collect();
-    write_file(&sweep.out.join(TABLES_METADATA), |file| {
-        Provenance::of_scene(&sweep.scene).write_tables(&tables, file)
-    })?;
-    Ok(TABLES_METADATA.to_owned())
+    Ok(TABLE.to_owned())
 }
 
 /// The table in Markdown.
@@ -273,9 +211,8 @@ mod tests {
     use super::*;
     use crate::measure::{MeasuredValue, SummaryEntry};
 
-    /// Scripts of users read these columns.
     #[test]
-    fn heads_of_the_tables_stay_as_they_are() {
+    fn heads_name_the_papers_symbols_and_units() {
         let heads = |columns: &[TableColumn]| {
             let heads: Vec<String> = columns.iter().map(TableColumn::head).collect();
             heads.join(",")
@@ -295,8 +232,8 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_mean_stand_its_error_and_its_samples() {
-        let cells = |error| {
+    fn beside_a_mean_stands_its_error() {
+        let cell = |error| {
             let mean = crate::measure::Estimate {
                 mean: 24.31_f64.to_radians(),
                 error,
@@ -314,15 +251,10 @@ mod tests {
                 }],
             };
             let angle = &DRUM[0];
-            assert_eq!(angle.heads(), ["θ [°]", "θ error [°]", "θ samples"]);
-            (angle.cells(&results), angle.cell_for_people(&results))
+            angle.cell_for_people(&results)
         };
-        let (own, people) = cells(Some(0.4_f64.to_radians()));
-        assert_eq!(own, ["24.31", "4.000e-1", "45"]);
-        assert_eq!(people, "24.3 ± 0.4");
-        let (own, people) = cells(None);
-        assert_eq!(own, ["24.31", "too short", "45"]);
-        assert_eq!(people, "24.31 ± ?");
+        assert_eq!(cell(Some(0.4_f64.to_radians())), "24.3 ± 0.4");
+        assert_eq!(cell(None), "24.31 ± ?");
     }
 
     #[test]

@@ -5,6 +5,7 @@
 use crate::files::write_whole;
 use crate::measure::{Measure, Series};
 use crate::physics::{Unit, units};
+use crate::run::{Cells, Column, Table, write_metadata};
 use crate::simulation::Provenance;
 use crate::sweep::chart;
 use crate::ui::words::number;
@@ -37,10 +38,10 @@ impl PlotAxis {
         self.unit().beside(&name)
     }
 
-    /// Name and SI unit, as in the files of a run.
-    fn column(self) -> String {
-        let time = || "time [s]".to_owned();
-        (self.0).map_or_else(time, |measure| measure.quantity().column())
+    /// Its column, as in the files of a run.
+    fn column(self) -> Column {
+        let time = || Column::numbers("time", "s");
+        (self.0).map_or_else(time, |measure| Column::of(measure.quantity()))
     }
 }
 
@@ -91,7 +92,9 @@ impl Export {
         // A path without a file's name could not have been written to.
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let beside = path.with_file_name(format!("{name}-metadata.json"));
-        write_whole(&beside, |file| self.from.write_tables(&[&name], file))
+        write_whole(&beside, |file| {
+            write_metadata(&[self.table(&name)], &self.from, file)
+        })
     }
 
     fn svg(&self) -> io::Result<String> {
@@ -119,14 +122,18 @@ impl Export {
             .map_err(|reason| io::Error::other(reason.to_string()))
     }
 
+    /// What stands in the table called `name`.
+    fn table(&self, name: &str) -> Table {
+        let time = PlotAxis(None);
+        let axes = [time, self.x, self.y].into_iter();
+        let axes = axes.skip(usize::from(self.x == time));
+        let run = Column::new("run", Cells::Words);
+        Table::new(name, [run].into_iter().chain(axes.map(PlotAxis::column)))
+    }
+
     fn csv(&self) -> io::Result<String> {
         let mut table = csv::Writer::from_writer(Vec::new());
-        let mut header = vec!["run".to_owned(), "time [s]".to_owned()];
-        header.extend([self.x, self.y].map(PlotAxis::column));
-        if self.x.0.is_none() {
-            header.remove(2);
-        }
-        table.write_record(&header)?;
+        table.write_record(self.table("").heads())?;
         for run in &self.runs {
             for (time, [x, y]) in run.time.iter().zip(&run.points) {
                 let mut row = vec![run.name.clone(), time.to_string()];

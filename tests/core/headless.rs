@@ -73,10 +73,13 @@ impl Place {
 }
 
 /// What a run leaves in its folder.
-const FILES_OF_A_RUN: [&str; 8] = [
+const FILES_OF_A_RUN: [&str; 11] = [
     ".grainfall.lock",
     "checkpoint-samples.bin",
     "checkpoint.bin",
+    "contacts",
+    "contacts.pvd",
+    "container.vtp",
     "csv-metadata.json",
     "grains",
     "grains.pvd",
@@ -140,11 +143,13 @@ fn run_leaves_series_grains_and_summary() {
     let out = place.path("out");
     assert_eq!(names(&out), FILES_OF_A_RUN);
     // Every 0.05 s from 0 to 0.2 s.
-    let frames: Vec<String> = (0..5).map(|k| format!("grains_{k:06}.vtp")).collect();
-    assert_eq!(names(&out.join("grains")), frames);
-    let collection = fs::read_to_string(out.join("grains.pvd")).unwrap();
-    for frame in &frames {
-        assert!(collection.contains(&format!("file=\"grains/{frame}\"")));
+    for kind in ["grains", "contacts"] {
+        let frames: Vec<String> = (0..5).map(|k| format!("{kind}_{k:06}.vtp")).collect();
+        assert_eq!(names(&out.join(kind)), frames);
+        let collection = fs::read_to_string(out.join(format!("{kind}.pvd"))).unwrap();
+        for frame in &frames {
+            assert!(collection.contains(&format!("file=\"{kind}/{frame}\"")));
+        }
     }
     let (head, rows) = series(&out);
     assert_eq!(head[..3], ["step [1]", "time [s]", "surface angle [rad]"]);
@@ -171,13 +176,11 @@ fn grains_file_reads_back_as_the_grains() {
         file.header
             .contains("NumberOfPoints=\"100\" NumberOfVerts=\"100\"")
     );
-    let names = file.names("PointData");
-    assert_eq!(names, ["radius", "velocity", "spin", "species"]);
     assert!(file.floats("radius").iter().all(|radius| *radius == 0.003));
-    let lengths = ["radius", "velocity", "spin"].map(|name| file.floats(name).len());
-    assert_eq!(lengths, [100, 300, 300]);
-    assert_eq!(file.integers("species").len(), 100);
-    assert_eq!(file.floats("points").len(), 300);
+    let lengths = ["radius", "v", "omega", "f"].map(|name| file.floats(name).len());
+    assert_eq!(lengths, [100, 300, 300, 300]);
+    assert_eq!(file.integers("shapetype").len(), 100);
+    assert_eq!(file.floats("Points").len(), 300);
 }
 
 #[test]
@@ -238,14 +241,20 @@ fn every_file_says_where_it_came_from_and_tables_still_begin_with_their_header()
     let metadata = fs::read_to_string(out.join("csv-metadata.json")).unwrap();
     let metadata: Value = serde_json::from_str(&metadata).unwrap();
     assert_eq!(metadata["@context"], "http://www.w3.org/ns/csvw");
-    assert_eq!(
-        metadata["tables"],
-        serde_json::json!([{ "url": "series.csv" }])
-    );
+    let tables = metadata["tables"].as_array().unwrap();
+    assert_eq!(tables.len(), 1);
+    assert_eq!(tables[0]["url"], "series.csv");
     assert_eq!(metadata["notes"][0]["state hash"], hash);
     assert!(metadata["dc:source"].as_str().unwrap().contains(&state));
     let (head, _) = series(&out);
     assert_eq!(head[0], "step [1]");
+    let columns = tables[0]["tableSchema"]["columns"].as_array().unwrap();
+    let declared: Vec<&str> = (columns.iter())
+        .map(|column| column["titles"].as_str().unwrap())
+        .collect();
+    assert_eq!(declared, head, "every column is declared by its head");
+    assert_eq!(columns[0]["datatype"], "integer");
+    assert_eq!(columns[2]["schema:unitText"], "rad");
 }
 
 #[test]
@@ -518,16 +527,20 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
     assert_eq!(summary(&parts)["state_hash"], summary(&whole)["state_hash"]);
     assert_eq!(summary(&parts)["commands"], summary(&whole)["commands"]);
     assert_eq!(series(&parts), series(&whole));
-    let files = |out: &Path| {
-        let grains = out.join("grains");
-        let files = names(&grains).into_iter();
-        files
-            .map(|name| fs::read(grains.join(name)).unwrap())
-            .collect::<Vec<_>>()
-    };
-    assert!(files(&parts) == files(&whole), "the same grains' files");
-    let list = |out: &Path| fs::read_to_string(out.join("grains.pvd")).unwrap();
-    assert_eq!(list(&parts), list(&whole));
+    for kind in ["grains", "contacts"] {
+        let files = |out: &Path| {
+            let folder = out.join(kind);
+            let files = names(&folder).into_iter();
+            files
+                .map(|name| fs::read(folder.join(name)).unwrap())
+                .collect::<Vec<_>>()
+        };
+        assert!(files(&parts) == files(&whole), "the same files of {kind}");
+    }
+    for list in ["grains.pvd", "contacts.pvd", "container.vtp"] {
+        let read = |out: &Path| fs::read(out.join(list)).unwrap();
+        assert!(read(&parts) == read(&whole), "{list}");
+    }
 }
 
 /// Waits until `path` exists, a minute at most, while `child` runs.

@@ -55,8 +55,9 @@ fn sweep_sets_every_combination_beside_each_other() {
     assert_eq!((ending, ending.exit_code()), (SweepEnding::Done, 0));
     let table = fs::read_to_string(out.join("table.csv")).unwrap();
     let rows: Vec<&str> = table.lines().collect();
-    assert!(rows[0].starts_with("liquid,radius,θ [°],"), "{}", rows[0]);
-    let starts = ["0,3mm,", "0,2.5mm,", "7,3mm,", "7,2.5mm,"];
+    let begin = "liquid,radius [m],surface angle [rad],";
+    assert!(rows[0].starts_with(begin), "{}", rows[0]);
+    let starts = ["dry,0.003,", "dry,0.0025,", "7,0.003,", "7,0.0025,"];
     assert_eq!(rows.len(), 5);
     for (row, start) in rows[1..].iter().zip(starts) {
         assert!(row.starts_with(start) && row.contains(",done,"), "{row}");
@@ -239,11 +240,11 @@ fn seeds_repeat_an_experiment_and_the_tables_hold_their_means() {
         place.unwrap_or_else(|| panic!("no {head} in {heads:?}"))
     };
     let number = |row: &csv::StringRecord, at: usize| row[at].parse::<f64>().unwrap();
-    let at = column(&heads, "φ");
+    let at = column(&heads, "packing fraction [1]");
     assert_eq!(cases.len(), 6);
-    assert_eq!(&cases[2][column(&heads, "seed")], "5");
+    assert_eq!(&cases[2][column(&heads, "seed [1]")], "5");
     // 0.3 s with samples every 20 ms: too few for an error of one run.
-    assert_eq!(&cases[0][column(&heads, "φ error")], "too short");
+    assert_eq!(&cases[0][column(&heads, "packing fraction error [1]")], "");
     let (heads, ensembles) = read("ensembles.csv");
     assert_eq!(ensembles.len(), 2);
     for (ensemble, cases) in ensembles.iter().zip(cases.chunks(3)) {
@@ -253,15 +254,18 @@ fn seeds_repeat_an_experiment_and_the_tables_hold_their_means() {
             .iter()
             .map(|value| (value - mean) * (value - mean))
             .sum();
-        // Cells have three digits after the point.
-        let [own, error] = ["φ", "φ error"].map(|head| number(ensemble, column(&heads, head)));
-        assert!((own - mean).abs() < 2e-3, "{own} {mean}");
+        let heads_of_both = ["packing fraction [1]", "packing fraction error [1]"];
+        let [own, error] = heads_of_both.map(|head| number(ensemble, column(&heads, head)));
+        assert!((own - mean).abs() < 1e-12, "{own} {mean}");
         assert!(
-            (error - (squares / 6.0).sqrt()).abs() < 2e-3,
+            (error - (squares / 6.0).sqrt()).abs() < 1e-12,
             "{error} {squares}"
         );
-        assert_eq!(&ensemble[column(&heads, "φ samples")], "3");
-        assert_eq!(&ensemble[column(&heads, "seeds")], "3");
+        assert_eq!(
+            &ensemble[column(&heads, "packing fraction samples [1]")],
+            "3"
+        );
+        assert_eq!(&ensemble[column(&heads, "seeds [1]")], "3");
     }
     let statements = fs::read_to_string(out.join("statements.md")).unwrap();
     assert!(

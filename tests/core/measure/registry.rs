@@ -6,6 +6,7 @@ use grainfall::measure::{
     DepositShape, DropThreshold, Format, GrainQuantity, Measure, MeasuredValue, Quantity, Regime,
     ResultKey, RunQuantity, Series, results, sample,
 };
+use grainfall::run::Column;
 use std::collections::HashSet;
 
 fn rows() -> impl Iterator<Item = &'static Quantity> {
@@ -61,10 +62,8 @@ fn measures_and_grain_quantities_have_their_own_keys_and_columns() {
     assert_eq!(keys.len(), GrainQuantity::COUNT);
     assert_eq!(GrainQuantity::Liquid.unit(), "L");
     assert_eq!(Measure::SurfaceAngle.quantity().label(), "Surface angle θ");
-    assert_eq!(
-        Measure::SurfaceAngle.quantity().column(),
-        "surface angle [rad]"
-    );
+    let column = Column::of(Measure::SurfaceAngle.quantity());
+    assert_eq!(column.head(), "surface angle [rad]");
 }
 
 #[test]

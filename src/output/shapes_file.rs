@@ -1,9 +1,11 @@
-//! Polyhedra as a VTK unstructured grid (`.vtu`): one cell of type `VTK_POLYHEDRON` per grain.
+//! What polyhedra look like: a VTK unstructured grid (`.vtu`) with one cell of type
+//! `VTK_POLYHEDRON` per grain, along the axes of its body and about its centroid.
 //!
-//! In: a world of polyhedra. Out: the file. A cell is the grain's core with its faces moved out by
-//! the rounding radius: the solid whose edges the rounding takes off, of a Voronoi grain its whole
-//! cell. A core without faces is a single point; *Glyph* with spheres shows it by `radius`, the
-//! distance of its farthest point from its centre.
+//! In: a world of polyhedra. Out: the file, which holds for the whole run. A cell is the grain's
+//! core with its faces moved out by the rounding radius: the solid whose edges the rounding takes
+//! off, of a Voronoi grain its whole cell. A core without faces is a single point. A point `p` of
+//! grain `id` is at `x + p₁ e₁ + p₂ e₂ + p₃ e₃`, where `x` is the point and `e` are the rows of
+//! `tensor` of that grain in `grains_file`; `docs/analysis.md` does it for `ParaView` and pyvista.
 
 use super::vtk::{Array, DataSet};
 use crate::run::Provenance;
@@ -16,32 +18,39 @@ use std::iter::once;
 const VERTEX: u8 = 1;
 const POLYHEDRON: u8 = 42;
 
-/// Writes the grains of `world`, whose shapes are `polyhedra` and which come `from` there, to
-/// `file` with `radius` and `rounding` [m], `velocity` [m/s], `spin` [rad/s] and `species`.
+/// Writes the shapes of the grains of `world`, which are `polyhedra` and come `from` there, to
+/// `file`: each point with the `id` and the `rounding` radius \[m\] of its grain. Cells have no data
+/// of their own: meshio mixes up those of polyhedra.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_polyhedra(
+pub fn write_shapes(
     world: &World,
     polyhedra: &Polyhedra,
     from: &Provenance,
     file: &mut dyn Write,
 ) -> io::Result<()> {
-    let cells = Cells { world, polyhedra };
+    let count = world.grains.len();
+    let cells = Cells { count, polyhedra };
     let points = cells.shapes().map(|shape| shape.vertices.len()).sum();
+    // Everything in it is numbered in 32 bits.
+    i32::try_from(cells.shapes().map(face_entries).sum::<usize>()).map_err(io::Error::other)?;
     let grid = DataSet {
         kind: "UnstructuredGrid",
-        counts: vec![
-            ("NumberOfPoints", points),
-            ("NumberOfCells", world.grains.len()),
-        ],
+        counts: vec![("NumberOfPoints", points), ("NumberOfCells", count)],
         elements: vec![
             (
+                "PointData",
+                vec![
+                    Array::integers("id", points, move || cells.owners()).appended(),
+                    Array::scalars("rounding", points, move || cells.roundings()).appended(),
+                ],
+            ),
+            (
                 "Points",
-                vec![Array::vectors("points", points, move || cells.points())],
+                vec![Array::vectors("Points", points, move || cells.points()).appended()],
             ),
             ("Cells", cells.topology(points)),
-            ("CellData", cells.data()),
         ],
     };
     grid.write(from, file)
@@ -50,89 +59,82 @@ pub fn write_polyhedra(
 /// The grains as VTK numbers them: each cell has points of its own, one cell's after another's.
 #[derive(Clone, Copy)]
 struct Cells<'a> {
-    world: &'a World,
+    count: usize,
     polyhedra: &'a Polyhedra,
 }
 
 #[expect(
     clippy::cast_possible_wrap,
-    reason = "numbers of points in memory are far below 2⁶³"
+    reason = "all that is numbered is counted before"
 )]
 impl<'a> Cells<'a> {
     /// Which of the `points` make up each cell, and how.
     fn topology(self, points: usize) -> Vec<Array<'a>> {
-        let count = self.world.grains.len();
+        let count = self.count;
         let faces = self.shapes().map(face_entries).sum();
         vec![
-            Array::integers("connectivity", points, move || self.connectivity()),
-            Array::integers("offsets", count, move || self.offsets()),
+            Array::integers("connectivity", points, move || self.connectivity()).appended(),
+            Array::integers("offsets", count, move || self.offsets()).appended(),
             Array::bytes("types", count, move || self.shapes().map(kind)),
-            Array::integers("faces", faces, move || self.faces()),
-            Array::integers("faceoffsets", count, move || self.face_offsets()),
-        ]
-    }
-
-    /// What each cell has beside its shape.
-    fn data(self) -> Vec<Array<'a>> {
-        let grains = &self.world.grains;
-        let count = grains.len();
-        let rounding = move || self.shapes().map(|shape| shape.rounding);
-        let species = || grains.species.iter().map(|species| i64::from(species.0));
-        vec![
-            Array::scalars("radius", count, || grains.radius.iter().copied()),
-            Array::scalars("rounding", count, rounding),
-            Array::vectors("velocity", count, || grains.velocity.iter().copied()),
-            Array::vectors("spin", count, || grains.spin.iter().copied()),
-            Array::integers("species", count, species),
+            Array::integers("faces", faces, move || self.faces()).appended(),
+            Array::integers("faceoffsets", count, move || self.face_offsets()).appended(),
         ]
     }
 
     /// The shape of each cell.
     fn shapes(self) -> impl Iterator<Item = &'a Polyhedron> {
-        (0..self.world.grains.len()).map(move |i| self.polyhedra.shape_of(i))
+        (0..self.count).map(move |i| self.polyhedra.shape_of(i))
     }
 
-    /// The points of each cell [m].
+    /// The rounding radius of each point's cell [m].
+    fn roundings(self) -> impl Iterator<Item = f64> {
+        let of_points = |shape: &'a Polyhedron| shape.vertices.iter().map(|_| shape.rounding);
+        self.shapes().flat_map(of_points)
+    }
+
+    /// The points of each cell along the axes of its body [m].
     fn points(self) -> impl Iterator<Item = DVec3> {
-        self.shapes().enumerate().flat_map(move |(i, shape)| {
-            let turn = self.polyhedra.orientation[i];
-            let centre = self.world.grains.position[i];
-            solid(shape).into_iter().map(move |x| centre + turn * x)
-        })
+        self.shapes().flat_map(solid)
+    }
+
+    /// The grain of each point.
+    fn owners(self) -> impl Iterator<Item = i32> {
+        let shapes = self.shapes().enumerate();
+        shapes.flat_map(|(i, shape)| shape.vertices.iter().map(move |_| i as i32))
     }
 
     /// The points of each cell.
-    fn connectivity(self) -> impl Iterator<Item = i64> {
+    fn connectivity(self) -> impl Iterator<Item = i32> {
         0..self.offsets().last().unwrap_or(0)
     }
 
     /// Where each cell's points end.
-    fn offsets(self) -> impl Iterator<Item = i64> {
+    fn offsets(self) -> impl Iterator<Item = i32> {
         self.shapes().scan(0, |end, shape| {
-            *end += shape.vertices.len() as i64;
+            *end += shape.vertices.len() as i32;
             Some(*end)
         })
     }
 
     /// For each polyhedron its number of faces, then for each of them its number of points and
     /// these.
-    fn faces(self) -> impl Iterator<Item = i64> {
+    fn faces(self) -> impl Iterator<Item = i32> {
         let shapes = self.shapes().zip(self.offsets());
         let polyhedra = shapes.filter(|(shape, _)| !shape.faces.is_empty());
         polyhedra.flat_map(|(shape, end)| {
-            let first = end - shape.vertices.len() as i64;
+            let first = end - shape.vertices.len() as i32;
             let faces = shape.faces.iter().flat_map(move |face| {
-                let corners = face.iter().map(move |&corner| first + i64::from(corner));
-                once(face.len() as i64).chain(corners)
+                let corners = face.iter().map(move |&corner| first + i32::from(corner));
+                once(face.len() as i32).chain(corners)
             });
-            once(shape.faces.len() as i64).chain(faces)
+            once(shape.faces.len() as i32).chain(faces)
         })
     }
 
     /// Where each cell's faces end; −1 for a cell that is no polyhedron.
-    fn face_offsets(self) -> impl Iterator<Item = i64> {
+    fn face_offsets(self) -> impl Iterator<Item = i32> {
         self.shapes().scan(0, |end, shape| {
-            let entries = face_entries(shape) as i64;
+            let entries = face_entries(shape) as i32;
             *end += entries;
             Some(if entries == 0 { -1 } else { *end })
         })
