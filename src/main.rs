@@ -5,7 +5,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use grainfall::headless::terminal::{say, tell};
-use grainfall::headless::{self, Report, Said, check_threads, interruption};
+use grainfall::headless::{self, Report, Said, SweepTask, check_threads, interruption};
 use grainfall::output::write_file;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
@@ -16,8 +16,7 @@ use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exi
 use grainfall::scene::{Scene, StoredCells, built_in, take_packings_from_anywhere};
 #[cfg(feature = "desktop")]
 use grainfall::simulation::Options;
-use grainfall::simulation::{BedStore, Estimate, ScriptedCommand, Session, make_bed};
-use grainfall::sweep::{Sweep, Variation};
+use grainfall::simulation::{Estimate, ScriptedCommand, Session, make_bed};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
 use std::error::Error;
@@ -156,35 +155,9 @@ enum Task {
     /// Run a scene's variations side by side and set their results beside each other
     ///
     /// Stopped with Ctrl-C or killed, it goes on where it was when it is called again; called twice
-    /// at the same time, both share the cases. Results: table.csv, table.md and plots.
-    Sweep {
-        /// A scene file, or the name of a built-in scene
-        scene: String,
-        /// What to vary: liquid=0..7, radius=3mm,2mm (may be repeated: every combination is run)
-        #[arg(long, value_name = "KEY=VALUES", required_unless_present = "seeds")]
-        vary: Vec<String>,
-        /// Run every case from so many seeds, the scene's and those that follow it: tables and
-        /// plots give means with their standard errors over the seeds
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
-        seeds: Option<u16>,
-        /// Change a value in every case, as in a single run
-        #[arg(long, value_name = "KEY=VALUE")]
-        set: Vec<String>,
-        /// Simulated time of each case: 10s, 2min
-        #[arg(long, value_name = "TIME")]
-        duration: Option<String>,
-        /// Folder for the results [default: out/<scene>-sweep]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// Cases that run at the same time [default: all cores]
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
-        jobs: Option<u16>,
-        /// Run every case anew, in the place of those that the folder holds
-        #[arg(long)]
-        restart: bool,
-        #[command(flatten)]
-        said: Said,
-    },
+    /// at the same time, both share the cases. On a cluster each job runs one of them, see --count,
+    /// --case and --merge. Results: table.csv, table.md and plots.
+    Sweep(SweepTask),
     /// Compute a run again and confirm that it comes to the same state, to the bit
     Verify {
         /// A run's summary.json, or a session or a list of changes saved in the window
@@ -251,7 +224,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         }
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
         Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
-        Some(task @ Task::Sweep { .. }) => return run_sweep(task, &allowed),
+        Some(Task::Sweep(task)) => return run_sweep(&task, &allowed),
         None => {}
     }
     let what = arguments.what;
@@ -416,41 +389,14 @@ fn open_window(
 const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
                          `desktop`";
 
-fn run_sweep(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
-    let Task::Sweep {
-        scene: name,
-        vary,
-        seeds,
-        set,
-        duration,
-        out,
-        jobs,
-        restart,
-        said,
-    } = task
-    else {
-        return Ok(0);
-    };
-    let mut scene = Scene::open(&name)?;
-    let duration = duration.map(|duration| format!("duration={duration}"));
-    apply_settings(&mut scene, duration.as_slice())?;
-    let report = said.report();
-    let interruption = interruption()?;
-    let variations = vary.iter().map(|text| Variation::parse(text));
-    let seeds = seeds.map(|count| Ok(Variation::of_seeds(scene.seed, count)));
-    let sweep = Sweep {
-        out: out.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", short_name(&name)))),
-        name,
-        scene,
-        settings: set,
-        variations: variations.chain(seeds).collect::<Result<_, _>>()?,
-        jobs: checked_threads(jobs, report)?,
-        beds: BedStore::user(),
-        restart,
-    };
-    allowed.begin(&sweep.scene, sweep.jobs, report)?;
-    let ending = headless::run_sweep(&sweep, report, &interruption)?;
-    Ok(ending.exit_code())
+fn run_sweep(task: &SweepTask, allowed: &Allowed) -> Result<u8, RunnerError> {
+    let report = task.report();
+    let jobs = checked_threads(task.jobs, report)?;
+    let sweep = task.sweep(&short_name(&task.scene), jobs)?;
+    if let Some(at_once) = task.runs_at_once(jobs) {
+        allowed.begin(&sweep.scene, at_once, report)?;
+    }
+    task.carry_out(&sweep, &*interruption()?)
 }
 
 /// Prints what can be set in the scene called `name`. Returns the exit code.

@@ -70,6 +70,25 @@ impl Report {
         }
     }
 
+    /// Says how case number `number` of a sweep, in its `folder`, ended.
+    ///
+    /// # Errors
+    /// When its summary cannot be read.
+    pub fn case(self, number: usize, folder: &Path, ending: &Ending) -> Result<(), RunnerError> {
+        match self {
+            Self::Quiet => Ok(()),
+            Self::Json => say_file(&folder.join(SUMMARY)),
+            Self::Text => {
+                say(&format!(
+                    "case {number}: {}, files in {}",
+                    ended(ending),
+                    folder.display()
+                ));
+                Ok(())
+            }
+        }
+    }
+
     /// Says what came out of a sweep.
     ///
     /// # Errors

@@ -116,6 +116,17 @@ impl DirectRun {
         Self { checkpoint, ..self }
     }
 
+    /// The run of `scene` as it stands at `checkpoint`, to be read: nothing is prepared, so its bed is
+    /// that state and not the one it began with.
+    pub fn standing_at(checkpoint: Checkpoint, scene: Arc<Scene>, threads: usize) -> Self {
+        let mut run = Run::new(scene.clone(), checkpoint.world().clone(), threads);
+        run.resume(checkpoint);
+        Self {
+            stage: RunStage::Standing(Box::new(run)),
+            ..Self::new(scene, Vec::new(), threads, BedStore::none())
+        }
+    }
+
     /// The run, once it stands at a state.
     pub fn run(&self) -> Option<&Run> {
         match &self.stage {

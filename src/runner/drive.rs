@@ -10,6 +10,7 @@ use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subje
 use crate::run::Checkpoint;
 use crate::world::Clock;
 use serde_json::Value;
+use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -29,7 +30,8 @@ pub struct Finished {
 }
 
 /// Runs `job` by itself, without an app, until it is done, a fault occurs or `stop` says so;
-/// `watch` hears how far it has come. Returns how it ended, and the run as it stands then.
+/// `watch` hears how far it has come. Returns how it ended, and the run as it stands then; one that
+/// was done already is only read ([`DirectRun::standing_at`]).
 ///
 /// ```
 /// use grainfall::runner::{self, Job};
@@ -54,8 +56,13 @@ pub fn run(
     stop: &dyn Fn() -> bool,
 ) -> Result<(Finished, DirectRun), RunnerError> {
     let mut runner = Runner::open(job)?;
-    let checkpoint = runner.take_checkpoint();
-    let mut run = DirectRun::of(job).from_checkpoint(checkpoint);
+    let is_done = runner.is_done();
+    let mut run = match runner.take_checkpoint() {
+        Some(end) if is_done => {
+            DirectRun::standing_at(end, Arc::new(job.scene.clone()), job.threads)
+        }
+        checkpoint => DirectRun::of(job).from_checkpoint(checkpoint),
+    };
     let finished = runner.finish(&mut run, watch, stop)?;
     Ok((finished, run))
 }
@@ -78,6 +85,55 @@ pub fn look(job: &Job) -> Result<(), RunnerError> {
         .into()),
         None => Ok(()),
     }
+}
+
+/// How a job stands in its folder.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// It has come to nothing yet.
+    Nothing,
+    /// It was stopped at this simulated time [s].
+    Until(f64),
+    /// All of it is there.
+    Done,
+    /// Another program runs it.
+    Taken(String),
+}
+
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nothing => f.write_str("not begun"),
+            Self::Until(time) => write!(f, "stopped at t = {time:.6} s"),
+            Self::Done => f.write_str("done"),
+            Self::Taken(holder) => write!(f, "being run by {holder}"),
+        }
+    }
+}
+
+/// How `job` stands in its folder. Nothing is computed, and nothing is written but the folder's
+/// lock.
+///
+/// # Errors
+/// When the job asks for something that cannot be, or its folder holds another run or cannot be
+/// read.
+pub fn standing(job: &Job) -> Result<Standing, RunnerError> {
+    job.check()?;
+    if !job.out.is_dir() {
+        return Ok(Standing::Nothing);
+    }
+    let folder = match OutputFolder::lock(&job.out) {
+        Err(OutputError::Taken { holder, .. }) => return Ok(Standing::Taken(holder)),
+        folder => folder?,
+    };
+    let Some(kept) = find(job, &mut CheckpointFile::of(job)?, &folder)? else {
+        return Ok(Standing::Nothing);
+    };
+    Ok(if is_done(&kept, &folder, job.scene.duration)? {
+        Standing::Done
+    } else {
+        Standing::Until(kept.checkpoint.world().time())
+    })
 }
 
 impl DirectRun {

@@ -32,7 +32,7 @@ mod watch;
 
 pub use advance::{Advance, At, DirectRun, Halt};
 pub use commands_file::read_commands;
-pub use drive::{Finished, Runner, look, run};
+pub use drive::{Finished, Runner, Standing, look, run, standing};
 pub use error::RunnerError;
 pub use job::{Job, available_threads};
 pub use setting::{apply_settings, compared_value};

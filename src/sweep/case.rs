@@ -24,7 +24,8 @@ impl CaseProgress {
         self.is_preparing.load(Ordering::Relaxed)
     }
 
-    fn set(&self, share: f64) {
+    /// Says that it has come so far.
+    pub fn set(&self, share: f64) {
         self.is_preparing.store(false, Ordering::Relaxed);
         self.share.store(share.to_bits(), Ordering::Relaxed);
     }
@@ -114,11 +115,11 @@ pub fn job(sweep: &Sweep, case: &Case) -> Job {
 pub fn run(
     sweep: &Sweep,
     case: &Case,
-    mut share: &CaseProgress,
+    watch: &mut dyn Watch,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<CaseResult>, RunnerError> {
     let job = job(sweep, case);
-    let finished = runner::run(&job, &mut share, stop);
+    let finished = runner::run(&job, watch, stop);
     let (finished, run) = finished.map_err(|error| error.within(&case.name))?;
     let (ending, results) = (finished.ending, finished.results);
     let Some(view) = run.at().state() else {
@@ -130,8 +131,5 @@ pub fn run(
             Ending::Done | Ending::Interrupted => Ok(None),
         };
     };
-    if ending != Ending::Interrupted {
-        share.set(1.0);
-    }
     Ok(Some(CaseResult::of(case, ending, results, view)))
 }

@@ -12,7 +12,7 @@ use super::column_laws::{
     cone_volume_line, height_slopes, peak_time_line, rest_time_lines, run_out_line, run_out_slopes,
 };
 use super::ensemble::ensembles;
-use super::plan::SEED;
+use super::variation::SEED;
 use crate::measure::{Measure, RunQuantity, contact_shares_law};
 use crate::physics::units;
 

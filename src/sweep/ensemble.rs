@@ -5,7 +5,7 @@
 
 use super::Sweep;
 use super::case::CaseResult;
-use super::plan::SEED;
+use super::variation::SEED;
 use crate::measure::{Estimate, MeasuredValue, ResultKey, Summary, SummaryEntry};
 
 /// Cases that differ in their seed alone, of which there is at least one.

@@ -6,8 +6,8 @@
 
 use super::Sweep;
 use super::ensemble::Ensemble;
-use super::plan::SEED;
 use super::results_table::{TableColumn, columns};
+use super::variation::SEED;
 use crate::measure::Format;
 use crate::output::{OutputError, write_file};
 

@@ -41,18 +41,30 @@ impl SweepFolder {
             path: sweep.out.clone(),
         };
         let failed = |source| OutputError::write(&sweep.out, source);
-        let record = folder.record()?;
-        if record.is_none() && folder.holds_files().map_err(failed)? {
+        // Another sweep may have made the folder its own between one look and the next.
+        let is_foreign = folder.record()?.is_none()
+            && folder.holds_files().map_err(failed)?
+            && folder.record()?.is_none();
+        if is_foreign {
             return Err(RunnerError::Input(format!(
                 "the output folder {} holds files that are not a sweep's: choose another with \
                  --out, or empty it",
                 sweep.out.display()
             )));
         }
-        if record.is_none() {
+        if folder.record()?.is_none() {
             folder.write(sweep, &[], &Map::new())?;
         }
         Ok(folder)
+    }
+
+    /// Whether somebody began `sweep` already.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub fn exists(sweep: &Sweep) -> Result<bool, OutputError> {
+        let path = sweep.out.clone();
+        Ok(Self { path }.record()?.is_some())
     }
 
     /// States in the folder what the cases came to, with the digests of the `files` that were
@@ -94,10 +106,13 @@ impl SweepFolder {
         outcomes: &[CaseResult],
         files: &Map<String, Value>,
     ) -> Result<(), RunnerError> {
-        let varied = sweep
-            .variations
-            .iter()
-            .map(|variation| json!({ "key": variation.key, "values": variation.values }));
+        let varied = sweep.variations.iter().map(|variation| {
+            json!({
+                "key": variation.key,
+                "values": variation.values,
+                "tied": variation.is_tied,
+            })
+        });
         let cases = outcomes.iter().map(|outcome| {
             json!({
                 "name": outcome.case.name,

@@ -7,8 +7,8 @@
 use super::Sweep;
 use super::drums::{Drum, Drums};
 use super::ensemble::Ensemble;
-use super::plan::SEED;
 use super::statements::{Part, Statement};
+use super::variation::SEED;
 use crate::measure::{
     Estimate, Measure, Quantity, ResultKey, RunQuantity, Verdict, drop_ratio_law,
 };

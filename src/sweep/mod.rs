@@ -9,7 +9,8 @@
 //! each with the verdict that follows by rule. A sweep that was stopped goes on when it is called
 //! again: finished cases are kept, others go on from their checkpoints. Several sweeps may work in
 //! one folder at the same time: each case is run by one of them, and each waits for all cases
-//! before it writes the tables.
+//! before it writes the tables. A batch system runs the cases one by one ([`run_case`]) and sets
+//! what they came to beside each other in the end ([`merge`]).
 
 mod case;
 pub(crate) mod chart;
@@ -27,13 +28,15 @@ mod results_csv;
 mod results_table;
 mod statements;
 mod statements_file;
+mod variation;
 mod velocity_plot;
 
 pub use folder::SWEEP;
-pub use plan::{Case, Sweep, Variation};
+pub use plan::{Case, Sweep, count};
+pub use variation::Variation;
 
 use crate::output::{Ending, OutputError};
-use crate::runner::{RunnerError, Watch, exit, spoken};
+use crate::runner::{self, RunnerError, Standing, Watch, exit, spoken};
 use case::{CaseProgress, CaseResult};
 use folder::SweepFolder;
 use std::collections::VecDeque;
@@ -84,6 +87,8 @@ pub struct Swept {
     pub ending: SweepEnding,
     /// Its results side by side, in Markdown.
     pub table: String,
+    /// The cases that are not among them, each with how it stands.
+    pub missing: Vec<String>,
 }
 
 /// Runs `sweep` until every case is done or `interrupted` becomes true; `watch` hears how far it
@@ -100,6 +105,72 @@ pub fn run(
     let folder = SweepFolder::open(sweep, &cases)?;
     let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
+    let ending = SweepEnding::of(&outcomes, cases.len());
+    set_beside(sweep, &folder, &outcomes, ending, Vec::new())
+}
+
+/// Runs case number `number` of `sweep`, from 1 on, and no other, until it is done or `interrupted`
+/// becomes true; returns its name and how it ended. Nothing is set beside it: [`merge`] does that.
+///
+/// # Errors
+/// A [`RunnerError`] when there is no such case, the input asks for something that cannot be,
+/// another program runs the case, or a file cannot be written.
+pub fn run_case(
+    sweep: &Sweep,
+    number: usize,
+    interrupted: &AtomicBool,
+    watch: &mut dyn Watch,
+) -> Result<(String, Ending), RunnerError> {
+    let cases = plan::cases(sweep)?;
+    let own = number.checked_sub(1).and_then(|index| cases.get(index));
+    let case = own.ok_or_else(|| {
+        RunnerError::Input(format!(
+            "--case {number}: expected one of 1 to {}",
+            cases.len()
+        ))
+    })?;
+    SweepFolder::open(sweep, std::slice::from_ref(case))?;
+    let stop = || interrupted.load(Ordering::Relaxed);
+    let outcome = case::run(sweep, case, watch, &stop)?;
+    let ending = outcome.map_or(Ending::Interrupted, |outcome| outcome.ending);
+    Ok((case.name.clone(), ending))
+}
+
+/// Sets what the cases of `sweep` came to beside each other, and computes nothing: cases that are
+/// not done are named.
+///
+/// # Errors
+/// A [`RunnerError`] when nobody began the sweep, its cases have other values, or a file cannot be
+/// read or written.
+pub fn merge(sweep: &Sweep) -> Result<Swept, RunnerError> {
+    let cases = plan::cases(sweep)?;
+    if !SweepFolder::exists(sweep)? {
+        return Err(RunnerError::Input(format!(
+            "{} holds no sweep: run its cases first, or say where it is with --out",
+            sweep.out.display()
+        )));
+    }
+    let folder = SweepFolder::open(sweep, &cases)?;
+    let (mut outcomes, mut missing) = (Vec::new(), Vec::new());
+    for (number, case) in (1..).zip(&cases) {
+        let standing = runner::standing(&case::job(sweep, case));
+        match standing.map_err(|error| error.within(&case.name))? {
+            Standing::Done => outcomes.extend(case::run(sweep, case, &mut (), &|| true)?),
+            other => missing.push(format!("{number}, {}: {other}", case.name)),
+        }
+    }
+    let ending = SweepEnding::of(&outcomes, cases.len());
+    set_beside(sweep, &folder, &outcomes, ending, missing)
+}
+
+/// Writes tables and plots of these `outcomes`.
+fn set_beside(
+    sweep: &Sweep,
+    folder: &SweepFolder,
+    outcomes: &[CaseResult],
+    ending: SweepEnding,
+    missing: Vec<String>,
+) -> Result<Swept, RunnerError> {
     let sound: Vec<CaseResult> = outcomes
         .iter()
         .filter(|own| own.is_sound())
@@ -108,21 +179,22 @@ pub fn run(
     let ensembles = ensemble::ensembles(sweep, &sound);
     let has_seeds = ensembles.iter().any(|ensemble| ensemble.members.len() > 1);
     let means = if has_seeds { &ensembles[..] } else { &[] };
-    let mut files = results_csv::write_csv(sweep, &outcomes, means)?;
-    files.push(results_table::write_markdown(sweep, &outcomes)?);
+    let mut files = results_csv::write_csv(sweep, outcomes, means)?;
+    files.push(results_table::write_markdown(sweep, outcomes)?);
     let table = if has_seeds {
         files.push(ensemble_table::write_markdown(sweep, means)?);
         ensemble_table::markdown(sweep, means)
     } else {
-        results_table::markdown(sweep, &outcomes)
+        results_table::markdown(sweep, outcomes)
     };
     files.extend(statements_file::write_statements(sweep, &ensembles)?);
-    files.extend(plot_files::write_plots(sweep, &outcomes)?);
-    files.extend(velocity_plot::write_velocity_plots(sweep, &outcomes)?);
-    folder.close(sweep, &outcomes, files)?;
+    files.extend(plot_files::write_plots(sweep, outcomes)?);
+    files.extend(velocity_plot::write_velocity_plots(sweep, outcomes)?);
+    folder.close(sweep, outcomes, files)?;
     Ok(Swept {
-        ending: SweepEnding::of(&outcomes, cases.len()),
+        ending,
         table,
+        missing,
     })
 }
 
@@ -149,7 +221,8 @@ fn run_cases(
         for _ in 0..sweep.jobs.clamp(1, cases.len().max(1)) {
             scope.spawn(|| {
                 while let Some(index) = next().filter(|_| !stop()) {
-                    let result = case::run(sweep, &cases[index], &shares[index], &stop);
+                    let mut share = &shares[index];
+                    let result = case::run(sweep, &cases[index], &mut share, &stop);
                     if let Err(RunnerError::Output(OutputError::Taken { .. })) = result {
                         // Another sweep is at it: its outcome is read when that is done.
                         let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
@@ -157,6 +230,11 @@ fn run_cases(
                         drop(waiting);
                         std::thread::sleep(LOOK_TIME);
                         continue;
+                    }
+                    if let Ok(Some(outcome)) = &result
+                        && outcome.ending != Ending::Interrupted
+                    {
+                        share.set(1.0);
                     }
                     failed.fetch_or(result.is_err(), Ordering::Relaxed);
                     let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,5 +1,9 @@
-//! What a sweep varies, and the cases that it consists of.
+//! The cases that a sweep consists of.
+//!
+//! In: a scene, what is set in every case, and what is varied. Out: the cases in their order, by
+//! which they are numbered from 1 on.
 
+use super::variation::{MOST_CASES, Variation, check_lengths};
 use crate::parameters::Parameter;
 use crate::run::{BedStore, ScriptedCommand};
 use crate::runner::{RunnerError, apply_settings};
@@ -7,11 +11,6 @@ use crate::scene::Scene;
 use crate::solver::advise;
 use std::collections::HashSet;
 use std::path::PathBuf;
-
-/// The varied key whose values repeat one experiment.
-pub const SEED: &str = "seed";
-/// Cases a sweep may have.
-const MOST_CASES: usize = 10_000;
 
 /// What to run.
 #[derive(Clone, Debug)]
@@ -34,15 +33,6 @@ pub struct Sweep {
     pub restart: bool,
 }
 
-/// A key and the values it takes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Variation {
-    /// A key of `--set`.
-    pub key: String,
-    /// Its values as text.
-    pub values: Vec<String>,
-}
-
 /// One case: a scene with its commands.
 #[derive(Clone, Debug)]
 pub struct Case {
@@ -58,57 +48,6 @@ pub struct Case {
     pub time_step: f64,
 }
 
-impl Variation {
-    /// Reads `key=a,b,c`, or `key=0..7` for whole numbers from the first to the last.
-    ///
-    /// # Errors
-    /// When the text has no such form.
-    pub fn parse(text: &str) -> Result<Self, RunnerError> {
-        let refuse = || {
-            RunnerError::Input(format!(
-                "--vary {text}: expected KEY=VALUES, such as liquid=0..7 or radius=3mm,2mm,1.25mm"
-            ))
-        };
-        let (key, list) = text.split_once('=').ok_or_else(refuse)?;
-        let values: Vec<String> = match list.split_once("..") {
-            Some((first, last)) => {
-                let number = |text: &str| text.trim().parse::<i64>().map_err(|_| refuse());
-                let (first, last) = (number(first)?, number(last)?);
-                let count = (i128::from(last) - i128::from(first)).saturating_add(1);
-                if last < first {
-                    return Err(refuse());
-                }
-                if count > MOST_CASES as i128 {
-                    return Err(RunnerError::Input(format!(
-                        "--vary {text}: expected KEY=VALUES with at most {MOST_CASES} values, not {count}"
-                    )));
-                }
-                (first..=last).map(|n| n.to_string()).collect()
-            }
-            None => list
-                .split(',')
-                .map(|value| value.trim().to_owned())
-                .collect(),
-        };
-        if key.is_empty() || values.iter().any(String::is_empty) {
-            return Err(refuse());
-        }
-        Ok(Self {
-            key: key.to_owned(),
-            values,
-        })
-    }
-
-    /// So many seeds from `first` on: the same experiment, repeated.
-    pub fn of_seeds(first: u64, count: u16) -> Self {
-        let seeds = (0..u64::from(count)).map(|k| first.wrapping_add(k).to_string());
-        Self {
-            key: SEED.to_owned(),
-            values: seeds.collect(),
-        }
-    }
-}
-
 impl Case {
     /// What it costs to run, in grains times steps.
     pub fn cost(&self) -> f64 {
@@ -116,21 +55,36 @@ impl Case {
     }
 }
 
-/// Every combination of the variations, the last one changing fastest.
+/// How many cases there are: every combination of the variations, tied ones counting as one.
 ///
 /// # Errors
-/// When a key or value does not suit the scene, there are too many cases, or two of them would have
-/// the same folder.
-pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
-    let counts = sweep.variations.iter().map(|v| v.values.len() as u128);
+/// When tied ones are not equally long, or there are too many cases.
+pub fn count(sweep: &Sweep) -> Result<usize, RunnerError> {
+    tied(sweep).try_for_each(check_lengths)?;
+    let counts = tied(sweep).map(|variations| variations[0].values.len() as u128);
     let number = counts.fold(1_u128, u128::saturating_mul);
     if number > MOST_CASES as u128 {
         return Err(RunnerError::Input(format!(
             "the sweep has {number} cases; expected at most {MOST_CASES}: vary less, or in several sweeps"
         )));
     }
+    Ok(number as usize)
+}
+
+/// The variations that go value by value, in their order.
+fn tied(sweep: &Sweep) -> impl DoubleEndedIterator<Item = &[Variation]> {
+    sweep.variations.chunk_by(|_, next| next.is_tied)
+}
+
+/// Every case, the last variation changing fastest.
+///
+/// # Errors
+/// When a key or value does not suit the scene, there are too many cases, or two of them would have
+/// the same folder.
+pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
+    let number = count(sweep)?;
     refuse_what_undoes(sweep)?;
-    let cases: Vec<Case> = (0..number as usize)
+    let cases: Vec<Case> = (0..number)
         .map(|index| case(sweep, index))
         .collect::<Result<_, _>>()?;
     let mut names = HashSet::new();
@@ -172,9 +126,10 @@ fn key_of(setting: &str) -> &str {
 fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
     let mut rest = index;
     let mut values: Vec<String> = Vec::new();
-    for variation in sweep.variations.iter().rev() {
-        let count = variation.values.len();
-        values.insert(0, variation.values[rest % count].clone());
+    for variations in tied(sweep).rev() {
+        let count = variations[0].values.len();
+        let own = variations.iter().map(|v| v.values[rest % count].clone());
+        values.splice(0..0, own);
         rest /= count;
     }
     let mut scene = sweep.scene.clone();

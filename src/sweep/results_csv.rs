@@ -9,7 +9,7 @@
 
 use super::case::CaseResult;
 use super::ensemble::Ensemble;
-use super::plan::SEED;
+use super::variation::SEED;
 use super::{Sweep, Variation};
 use crate::measure::{Format, MeasuredValue, ResultKey, Summary};
 use crate::output::{OutputError, write_file};

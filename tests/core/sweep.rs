@@ -1,6 +1,7 @@
 //! Sweeps: cases, results side by side, stopping and going on, wrong input.
 
 use crate::run::until_done;
+use grainfall::output::Ending;
 use grainfall::runner::RunnerError;
 use grainfall::scene::Scene;
 use grainfall::simulation::BedStore;
@@ -308,5 +309,78 @@ fn wrong_variations_say_what_was_expected() {
         ));
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn cases_run_one_by_one_and_merged_are_the_sweep_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    let tied = |out: &Path| {
+        let mut sweep = sweep(out, &["seed=1,2"]);
+        let lists = Variation::parse_tied("viscosity=0.01,0.5; radius=3mm,2.5mm").unwrap();
+        sweep.variations.splice(0..0, lists);
+        sweep
+    };
+    let never = AtomicBool::new(false);
+    run(&tied(&whole), &never).unwrap();
+    let parts = tied(&parts);
+    assert_eq!(sweep::count(&parts).unwrap(), 4);
+    let message = sweep::merge(&parts).unwrap_err().to_string();
+    assert!(message.contains("holds no sweep"), "{message}");
+    assert!(!parts.out.exists(), "nothing is begun");
+    for number in [4, 2, 1] {
+        let (name, ending) = sweep::run_case(&parts, number, &never, &mut ()).unwrap();
+        assert_eq!(ending, Ending::Done, "{name}");
+    }
+    let partial = sweep::merge(&parts).unwrap();
+    assert_eq!(partial.ending, SweepEnding::Interrupted);
+    let missing = "3, viscosity=0.5_radius=2.5mm_seed=1: not begun";
+    assert_eq!(partial.missing, [missing]);
+    assert_eq!(hashes(&parts.out).len(), 3);
+    assert!(!parts.out.join("viscosity=0.5_radius=2.5mm_seed=1").exists());
+    sweep::run_case(&parts, 3, &never, &mut ()).unwrap();
+    let merged = sweep::merge(&parts).unwrap();
+    assert_eq!(
+        (merged.ending, merged.missing.len()),
+        (SweepEnding::Done, 0)
+    );
+    for table in ["table.csv", "table.md", "csv-metadata.json"] {
+        let read = |out: &Path| fs::read_to_string(out.join(table)).unwrap();
+        assert_eq!(read(&parts.out), read(&whole), "{table}");
+    }
+    for number in [0, 5] {
+        let refused = sweep::run_case(&parts, number, &never, &mut ());
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("expected one of 1 to 4"), "{message}");
+    }
+}
+
+#[test]
+fn case_that_was_stopped_is_missing_and_other_values_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = sweep(&folder.path().join("sweep"), &["viscosity=0.1,0.2"]);
+    let stopped = AtomicBool::new(true);
+    let (_, ending) = sweep::run_case(&sweep, 1, &stopped, &mut ()).unwrap();
+    assert_eq!(ending, Ending::Interrupted);
+    let mut shorter = sweep.clone();
+    shorter.scene.duration = 0.1;
+    sweep::run_case(&shorter, 2, &AtomicBool::new(false), &mut ()).unwrap();
+    let merged = sweep::merge(&sweep).unwrap();
+    let [first, second] = &merged.missing[..] else {
+        panic!("{:?}", merged.missing);
+    };
+    assert!(first.starts_with("1, viscosity=0.1: "), "{first}");
+    let stopped = "2, viscosity=0.2: stopped at t = 0.1";
+    assert!(second.starts_with(stopped), "{second}");
+    let mut other = sweep;
+    other.settings = vec!["drum-speed=7rpm".into()];
+    for refused in [
+        sweep::merge(&other).map(drop),
+        sweep::run_case(&other, 2, &AtomicBool::new(false), &mut ()).map(drop),
+    ] {
+        let error = refused.unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("other values"), "{error}");
     }
 }
