@@ -8,7 +8,6 @@ use super::Sweep;
 use super::ensemble::Ensemble;
 use super::results_table::{TableColumn, columns};
 use super::variation::SEED;
-use crate::measure::Format;
 use crate::output::{OutputError, write_file};
 
 /// The file's name.
@@ -43,16 +42,9 @@ pub fn markdown(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
     [line(&heads), rule].into_iter().chain(rows).collect()
 }
 
-/// The columns of the table of cases; over seeds every number has an error.
-fn own_columns(ensembles: &[Ensemble]) -> Vec<TableColumn> {
-    let is_of_columns = ensembles
-        .iter()
-        .any(|ensemble| ensemble.first().is_column());
-    let own = |column: &TableColumn| match column.format {
-        Format::Choice(_) => column.clone(),
-        _ => column.clone().with_error(),
-    };
-    columns(is_of_columns).iter().map(own).collect()
+/// The columns of the table of cases.
+fn own_columns(ensembles: &[Ensemble]) -> &'static [TableColumn] {
+    columns(ensembles.iter().any(|own| own.first().is_column()))
 }
 
 fn row(varied: Vec<String>, seeds: String, results: impl Iterator<Item = String>) -> Vec<String> {

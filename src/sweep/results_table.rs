@@ -12,14 +12,11 @@ use crate::physics::{Unit, units};
 
 /// A column: the result it shows under a short head, in the unit and with the digits of the
 /// registry or others.
-#[derive(Clone)]
 pub(super) struct TableColumn {
     head: &'static str,
     key: ResultKey,
     unit: Unit,
-    pub(super) format: Format,
-    /// Whether it is a mean, beside which its error stands.
-    is_mean: bool,
+    format: Format,
 }
 
 impl TableColumn {
@@ -30,7 +27,6 @@ impl TableColumn {
             key,
             unit: quantity.unit,
             format: quantity.format,
-            is_mean: false,
         }
     }
 
@@ -42,23 +38,8 @@ impl TableColumn {
         Self::new(head, ResultKey::OfRun(quantity))
     }
 
-    const fn mean_of_samples(head: &'static str, measure: Measure) -> Self {
-        Self::of_samples(head, measure).with_error()
-    }
-
-    const fn mean_of_run(head: &'static str, quantity: RunQuantity) -> Self {
-        Self::of_run(head, quantity).with_error()
-    }
-
     const fn drop_from(head: &'static str, threshold: DropThreshold) -> Self {
-        Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold)).with_error()
-    }
-
-    pub(super) const fn with_error(self) -> Self {
-        Self {
-            is_mean: true,
-            ..self
-        }
+        Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold))
     }
 
     const fn with_digits(self, digits: usize) -> Self {
@@ -89,28 +70,28 @@ impl TableColumn {
 }
 
 const DRUM: &[TableColumn] = &[
-    TableColumn::mean_of_samples("θ", Measure::SurfaceAngle),
-    TableColumn::mean_of_run("θ_m", RunQuantity::MaximumAngle),
-    TableColumn::mean_of_run("θ_r", RunQuantity::ReposeAngle),
-    TableColumn::mean_of_run("Δθ", RunQuantity::Drop),
+    TableColumn::of_samples("θ", Measure::SurfaceAngle),
+    TableColumn::of_run("θ_m", RunQuantity::MaximumAngle),
+    TableColumn::of_run("θ_r", RunQuantity::ReposeAngle),
+    TableColumn::of_run("Δθ", RunQuantity::Drop),
     TableColumn::of_run("drops", RunQuantity::Avalanches),
     TableColumn::drop_from("Δθ ≥ 0.5°", DropThreshold::HalfDegree),
     TableColumn::drop_from("Δθ ≥ 2°", DropThreshold::TwoDegrees),
     TableColumn::drop_from("Δθ ≥ 3°", DropThreshold::ThreeDegrees),
-    TableColumn::mean_of_run("T_a", RunQuantity::Period),
-    TableColumn::mean_of_samples("Tg", Measure::GranularTemperature),
-    TableColumn::mean_of_samples("Tg′", Measure::CorotatingTemperature),
-    TableColumn::mean_of_run("ta/ts", RunQuantity::NonRigidShare),
-    TableColumn::mean_of_run("ta/ts′", RunQuantity::CorotatingShare),
+    TableColumn::of_run("T_a", RunQuantity::Period),
+    TableColumn::of_samples("Tg", Measure::GranularTemperature),
+    TableColumn::of_samples("Tg′", Measure::CorotatingTemperature),
+    TableColumn::of_run("ta/ts", RunQuantity::NonRigidShare),
+    TableColumn::of_run("ta/ts′", RunQuantity::CorotatingShare),
     TableColumn::of_run("√(1/Ga)", RunQuantity::InverseRootGalilei),
     TableColumn::of_run("Ca", RunQuantity::CapillaryNumber),
-    TableColumn::mean_of_samples("φ", Measure::PackingFraction),
-    TableColumn::mean_of_samples("Z", Measure::CoordinationNumber),
-    TableColumn::mean_of_samples("h", Measure::SurfaceRoughness),
-    TableColumn::mean_of_samples("κ", Measure::SurfaceCurvature),
-    TableColumn::mean_of_samples("bridges", Measure::Bridges),
-    TableColumn::mean_of_run("ruptures", RunQuantity::RupturesPerSecond),
-    TableColumn::mean_of_run("drum power", RunQuantity::DrumPower),
+    TableColumn::of_samples("φ", Measure::PackingFraction),
+    TableColumn::of_samples("Z", Measure::CoordinationNumber),
+    TableColumn::of_samples("h", Measure::SurfaceRoughness),
+    TableColumn::of_samples("κ", Measure::SurfaceCurvature),
+    TableColumn::of_samples("bridges", Measure::Bridges),
+    TableColumn::of_run("ruptures", RunQuantity::RupturesPerSecond),
+    TableColumn::of_run("drum power", RunQuantity::DrumPower),
     TableColumn::of_samples("viscous loss", Measure::ViscousLoss),
     TableColumn::of_samples("largest overlap", Measure::LargestOverlap).with_digits(4),
     TableColumn::of_run("energy residual", RunQuantity::RelativeEnergyResidual),
