@@ -124,9 +124,10 @@ impl Archive {
         states
     }
 
-    /// The state shown.
-    pub fn shown(&self) -> Option<&World> {
-        self.states.first().map(|state| state.snapshot.world())
+    /// The state shown, with the shapes of its polyhedra, which the archive keeps once.
+    pub fn shown(&self) -> Option<World> {
+        let shown = self.states.first()?.snapshot.clone();
+        Some(shown.sharing(Some(&self.bed)).world().clone())
     }
 
     /// Whether all that it refers to is there.

@@ -23,6 +23,7 @@ mod resume;
 mod rolling;
 mod terms;
 mod time_step;
+mod turning;
 
 use grainfall::scene::Scene;
 use grainfall::solver::Solver;

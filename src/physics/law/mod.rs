@@ -110,6 +110,12 @@ pub struct Coefficients<N> {
 
 /// A contact law: a plain value whose functions the pair loop inlines.
 pub trait Law: LawFacts + Copy + Send + Sync {
+    /// Whether contacts are objective: what they remember turns about the normal with the grains,
+    /// and a step's slip is taken in the middle of it, so that grains that turn as one body neither
+    /// wind up nor turn back what their contacts hold. A law says no to compute as programs do that
+    /// follow the normal alone and take the slip at the end of a step (LAMMPS, LIGGGHTS).
+    const OBJECTIVE: bool = true;
+
     /// Stiffnesses and dashpots at the overlap `δ ≥ 0` [m].
     fn coefficients<N: Lanes>(self, constants: [N; 4], overlap: N) -> Coefficients<N>;
 

@@ -12,7 +12,7 @@
 //! Not here: which features are measured ([`super::workspace`]), sums over a pair's contacts
 //! ([`super::forces`]), dashpots that are taken implicitly ([`super::dashpots`]).
 
-use super::super::tangential::update;
+use super::super::tangential::{Slip, update};
 use super::nearest::Nearest;
 use super::pairs::ContactPoint;
 use super::workspace::ActivePair;
@@ -31,6 +31,8 @@ pub struct ContactGroup<N> {
     velocity: [N; 3],
     /// Relative spins [rad/s].
     spin: [N; 3],
+    /// Mean spins of both sides [rad/s].
+    mean_spin: [N; 3],
     /// Parts of the pairs' stiffness that the contacts have, now and a step ago.
     parts: [N; 2],
     /// `K_n`, the normal dashpot, `K_t`, μ.
@@ -91,6 +93,7 @@ impl<N: Lanes> ContactGroup<N> {
         let [vx, vy, vz, part] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].velocity));
         let [wx, wy, wz, part_before] =
             N::gather(processor, side_by_side::<N, _>(|k| &pair[k].spin));
+        let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].mean_spin));
         let law = N::gather(processor, law);
         let [overlap, dashpot, ..] = N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
         Self {
@@ -99,6 +102,7 @@ impl<N: Lanes> ContactGroup<N> {
             arm: plus(minus([mx, my, mz], [cx, cy, cz]), times(normal, offset)),
             velocity: [vx, vy, vz],
             spin: [wx, wy, wz],
+            mean_spin: [x, y, z],
             parts: [part, part_before],
             law,
             before: [overlap, dashpot],
@@ -157,7 +161,7 @@ impl<N: Lanes> ContactGroup<N> {
         dt: f64,
         springs: Rows<'_>,
     ) -> ContactForces<N> {
-        let zero = N::splat(processor, 0.0);
+        let (zero, step) = (N::splat(processor, 0.0), N::splat(processor, dt));
         let pressed = self.normal_forces::<IMPLICIT>(zero);
         let (normal, arm, touching) = (self.normal, self.arm, pressed.touching);
         let tangential_stiffness = pressed.along.coefficients.tangential_stiffness;
@@ -165,7 +169,10 @@ impl<N: Lanes> ContactGroup<N> {
         let updated = update::<N>(
             processor,
             springs,
-            times(pressed.slip, N::splat(processor, dt)),
+            Slip {
+                way: times(pressed.slip, step),
+                twist: step * dot(self.mean_spin, normal),
+            },
             normal,
             touching,
             stiffness,

@@ -51,8 +51,16 @@ pub struct Relative {
     pub velocity: Row,
     /// Relative spin [rad/s].
     pub spin: Row,
+    /// Mean spin of both, with which the contacts turn [rad/s].
+    pub mean_spin: Row,
     /// How far a point of the first has come in this step, seen from the second, at most [m].
     pub moved: f64,
+}
+
+/// `½ (a + b)`, element by element.
+#[inline(always)]
+fn mean(a: Row, b: Row) -> Row {
+    [0, 1, 2, 3].map(|k| 0.5 * (a[k] + b[k]))
 }
 
 /// `a × b`, of the vector parts.
@@ -104,18 +112,21 @@ impl Surroundings<'_> {
 
     /// How the two move relative to each other.
     ///
-    /// With velocities `v`, spins `ω` and centroids `x` at the end of the step, a point of the
+    /// With velocities `v`, spins `ω` and centroids `x` in the middle of the step, a point of the
     /// first at `y` from its centroid has moved by `Δt (v₁ − v₂ − ω₂ × (x₁ − x₂) + (ω₁ − ω₂) × y)`
     /// seen from the second, but for terms of second order: each body turns on a circle (`½ (ω
     /// Δt)²` of the distance from its centroid), its spin changes by `ω² Δt` at most where its
-    /// momentum stays, and `x₁ − x₂` changes during the step. Together they are less than `3 Δt²
+    /// momentum stays, and `x₁ − x₂` changes during the step. Bodies that turn as one do not move
+    /// so; with the `x` of the step's end they would, by `½ ω² Δt` of their distance. Together they are less than `3 Δt²
     /// (ω₁² + ω₂²) a + Δt² v²/a`, `a` being no smaller than any of these distances.
     #[inline(always)]
     pub fn relative(&self, pair: &Pair) -> Relative {
         let first = &self.bodies[pair.first as usize];
         let [position, velocity, other_spin] = self.motion(pair.second);
-        let turning = crossed(*other_spin, sub(first.position, *position));
-        let velocity = sub(sub(first.velocity, *velocity), turning);
+        let closing = sub(first.velocity, *velocity);
+        let (apart, half_step) = (sub(first.position, *position), 0.5 * self.dt);
+        let apart = [0, 1, 2, 3].map(|k| apart[k] - half_step * closing[k]);
+        let velocity = sub(closing, crossed(*other_spin, apart));
         let (reach, spin) = (first.reach(), sub(first.spin, *other_spin));
         let arm = match pair.partner() {
             Partner::Grain(_) => self.extents.between_grains,
@@ -128,6 +139,7 @@ impl Surroundings<'_> {
         Relative {
             velocity,
             spin,
+            mean_spin: mean(first.spin, *other_spin),
             moved: self.dt * (CAUTION * pace + self.dt * bend) + self.extents.rounding,
         }
     }

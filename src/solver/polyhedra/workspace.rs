@@ -44,6 +44,8 @@ pub struct ActivePair {
     pub velocity: Row,
     /// Relative spin [rad/s]; the part that each contact had a step ago.
     pub spin: Row,
+    /// Mean spin of both [rad/s].
+    pub mean_spin: Row,
     /// Centroid of the first [m]; half the difference of the sphero-radii [m].
     pub centre: Row,
     /// Number of the pair in the block.
@@ -167,6 +169,7 @@ impl Workspace {
             self.active.push(ActivePair {
                 velocity: [vx, vy, vz, 1.0],
                 spin: [wx, wy, wz, 1.0],
+                mean_spin: relative.mean_spin,
                 centre: [x, y, z, block.terms[index].offset],
                 pair: index as u32,
                 choose: choose.then_some(moved),

@@ -1,7 +1,7 @@
 //! The pair loop: contact law, sliding and rolling friction of every listed pair.
 //!
-//! In: bodies, listed pairs with their constants and histories. Out: forces, torques and exchanged
-//! energy per pair, new histories. Pairs are computed in lanes and each writes rows of its
+//! In: bodies, listed pairs with their constants, springs and last forces. Out: forces, torques and
+//! exchanged energy per pair, new springs. Pairs are computed in lanes and each writes rows of its
 //! own; nothing is summed here, so the order of work never shows.
 //!
 //! With the overlap `δ`, the unit vector `n` from a grain to its partner, the speed of approach
@@ -10,11 +10,11 @@
 //! | | |
 //! |---|---|
 //! | repulsion | `R = k_n δ + η_n v_n`, where the law keeps it |
-//! | spring | `ξ + u Δt`, turned into the tangent plane, no longer than `μ B/k_t` |
+//! | spring | `ξ`, turned with the grains and into the tangent plane, `+ u Δt`; no longer than `μ B/k_t` |
 //! | across the normal | `T = −k_t ξ − η_t u`; no dashpot while the spring is at its bound |
 //! | force on the grain | `F = T − R n`, and the bridge's |
 //! | torques | `a n × T` on either side, with the arm `a` of that side |
-//! | rolling friction | the torque so far, changed against the relative spin: see [`rolling_gain`] |
+//! | rolling friction | the torque so far, turned likewise, changed against the relative spin: see [`rolling_gain`] |
 //!
 //! `B` is the force that bounds friction, by the law and, where bridges pull, by the liquid's
 //! choice (Kasper et al. 2021, Eqs. 5–10 and 20; Man et al. 2023, Eqs. 3.3–3.5). The partner gets
@@ -24,12 +24,12 @@
 //! Not here: what a partner is ([`super::partners`]), bridges ([`super::bridges`]), formulas of
 //! laws ([`crate::physics::law`]).
 
-use super::super::tangential::update;
+use super::super::tangential::{Slip, turned, update};
 use super::super::walls::WallBody;
 use super::bridges::{BridgeColumns, BridgeEffect, BridgeGroup, Encounter, LiquidForce, Wetting};
-use super::partners::{GrainAndWall, Partners, TwoGrains};
-use super::rows::{ContactForce, GROUP, History, PairKind, Slot, Sphere, SpherePair, WallId};
-use crate::lanes::{Lanes, Quad, Work, cross, dot, minus, plus, side_by_side, times};
+use super::partners::{GrainAndWall, PairGeometry, Partners, TwoGrains};
+use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
+use crate::lanes::{Lanes, Quad, Row, Work, cross, dot, minus, plus, side_by_side, times};
 use crate::physics::CoulombBound;
 use crate::physics::law::{
     FilmConstants, Law, NormalContact, PairConstants, normal_contact, rolling_gain,
@@ -84,6 +84,13 @@ fn roll<N: Lanes>(
     times(without_twist, -gain)
 }
 
+/// Half a step [s], by which velocities lag behind positions; none for a law that is not
+/// [objective](Law::OBJECTIVE).
+#[inline(always)]
+pub fn half_step<N: Lanes, L: Law>(processor: N::Processor, dt: f64) -> N {
+    N::splat(processor, if L::OBJECTIVE { 0.5 * dt } else { 0.0 })
+}
+
 /// How pairs side by side press each other before anything drags them: geometry, normal force,
 /// slip.
 pub struct Meeting<N: Lanes> {
@@ -106,16 +113,21 @@ pub struct Meeting<N: Lanes> {
 }
 
 impl<N: Lanes> Meeting<N> {
-    /// Pairs of `partners` with these constants.
+    /// Pairs of `partners` with these constants; `half_step` as [`half_step`] has it.
     #[inline(always)]
     pub fn of<L: Law, P: Partners<N>>(
         processor: N::Processor,
         law: L,
         partners: P,
         (law_constants, [_, _, radius, partner_radius]): &Constants<N>,
+        half_step: N,
     ) -> Self {
         let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
-        let (normal, depth) = partners.geometry(processor, [*radius, *partner_radius]);
+        let PairGeometry {
+            normal,
+            middle_normal,
+            depth,
+        } = partners.geometry(processor, [*radius, *partner_radius], half_step);
         let touching = depth.exceeds(zero);
         let overlap = N::choose(touching, depth, zero);
         let arm = *radius - half * overlap;
@@ -125,7 +137,7 @@ impl<N: Lanes> Meeting<N> {
             *partner_radius - half * overlap
         };
         let velocity = partners.velocity(processor);
-        let approach = dot(velocity, normal);
+        let approach = dot(velocity, middle_normal);
         let met = (touching, overlap);
         let along = normal_contact(law, *law_constants, met, approach, zero);
         let (spin, partner_spin) = partners.spins(processor);
@@ -134,6 +146,7 @@ impl<N: Lanes> Meeting<N> {
         } else {
             plus(times(spin, arm), times(partner_spin, partner_arm))
         };
+        let surfaces = plus(velocity, cross(rolling_sum, middle_normal));
         Self {
             normal,
             depth,
@@ -142,10 +155,7 @@ impl<N: Lanes> Meeting<N> {
             along,
             approach,
             spins: [spin, partner_spin],
-            slip: plus(
-                minus(velocity, times(normal, approach)),
-                cross(rolling_sum, normal),
-            ),
+            slip: minus(surfaces, times(normal, dot(surfaces, normal))),
         }
     }
 
@@ -197,24 +207,30 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     all: &PairSurroundings<'_, L>,
     partners: P,
     constants: &Constants<N>,
-    histories: &mut [History],
+    springs: &mut [Row],
     contacts: &mut [ContactForce],
     liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
 ) -> u32 {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
     let dt = N::splat(processor, all.dt);
     let (_, [friction, rolling_arm, ..]) = *constants;
-    let met = Meeting::of(processor, all.law, partners, constants);
+    let half_step = half_step::<N, L>(processor, all.dt);
+    let met = Meeting::of(processor, all.law, partners, constants, half_step);
     let rolling_spin = partners.rolling(processor);
     let (bridge, bounding) = met.wetted(processor, all, liquid, constants, rolling_spin.1);
 
     let (normal, slip, touching) = (met.normal, met.slip, met.touching);
     let (law, elastic) = (met.along.coefficients, met.along.elastic);
     let stiffness = N::choose(touching, law.tangential_stiffness, zero);
+    let [spin, partner_spin] = met.spins;
+    let twist = half_step * dot(plus(spin, partner_spin), normal);
     let updated = update(
         processor,
-        side_by_side::<N, _>(|k| &histories[k].spring),
-        times(slip, dt),
+        side_by_side::<N, _>(|k| &springs[k]),
+        Slip {
+            way: times(slip, dt),
+            twist,
+        },
         normal,
         touching,
         stiffness,
@@ -234,10 +250,10 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let force = minus(tangential, times(normal, repulsion));
     let moment = cross(normal, tangential);
 
-    let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &histories[k].rolling));
-    let cap = rolling_arm * elastic;
-    let rolling = roll(processor, normal, cap, [x, y, z], rolling_spin);
-    let [spin, partner_spin] = met.spins;
+    let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &contacts[k].rolling));
+    let held = turned(processor, [x, y, z], normal, twist);
+    let resisting = roll(processor, normal, rolling_arm * elastic, held, rolling_spin);
+    let rolling = resisting.map(|part| N::choose(touching, part, zero));
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = if P::WALL {
         dt * (dot(force, partners.wall_velocity(processor)) + dot(rolling, partner_spin))
@@ -248,10 +264,8 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
     let companions = [arm, partner_arm, count];
     write(contacts, [force, moment, rolling], companions, exchanged);
-    let springs = updated.rows.iter().zip(contacts.iter());
-    for (history, (spring, contact)) in histories.iter_mut().zip(springs) {
-        history.spring = spring.row();
-        history.rolling = contact.rolling;
+    for (spring, updated) in springs.iter_mut().zip(&updated.rows) {
+        *spring = updated.row();
     }
     ruptures
 }
@@ -282,8 +296,8 @@ pub struct PairRows<'a, P = Slot> {
     pub pairs: &'a [SpherePair<P>],
     /// The kind of all of them, if it is one.
     pub kind: Option<PairKind>,
-    /// What they remember.
-    pub histories: &'a mut [History],
+    /// Their tangential springs.
+    pub springs: &'a mut [Row],
     /// Their contact forces.
     pub forces: &'a mut [ContactForce],
     /// Their bridges, by groups; empty where nothing is wet.
@@ -369,7 +383,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]),
             second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner.index()]),
         };
-        let histories = &mut rows.histories[group.clone()];
+        let springs = &mut rows.springs[group.clone()];
         let forces = &mut rows.forces[group.clone()];
         let liquid = match all.wetting {
             Some(wetting) if WET => Some((
@@ -392,7 +406,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             None => own_constants::<N, _>(processor, all.constants, pairs),
         };
         ruptures += u64::from(interact(
-            processor, all, partners, &constants, histories, forces, liquid,
+            processor, all, partners, &constants, springs, forces, liquid,
         ));
     }
     ruptures
@@ -406,15 +420,19 @@ fn at_walls<N: Lanes, L: Law>(
     rows: PairRows<'_, WallId>,
 ) {
     let outputs = rows
-        .histories
+        .springs
         .chunks_exact_mut(N::COUNT)
         .zip(rows.forces.chunks_exact_mut(N::COUNT));
-    for (pairs, (histories, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
+    for (pairs, (springs, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
         let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]);
-        let partners =
-            GrainAndWall::<N>::new(processor, grain, &all.walls[pairs[0].partner.index()]);
+        let partners = GrainAndWall::<N>::new(
+            processor,
+            grain,
+            &all.walls[pairs[0].partner.index()],
+            half_step::<N, L>(processor, all.dt),
+        );
         let own = own_constants::<N, _>(processor, all.constants, pairs);
-        interact(processor, all, partners, &own, histories, forces, None);
+        interact(processor, all, partners, &own, springs, forces, None);
     }
 }
 

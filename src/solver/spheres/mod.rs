@@ -49,6 +49,7 @@ mod working_copy;
 use super::FaultKind;
 use super::row::{length_squared, row, vector};
 use super::step::{Kernel, Tally};
+use super::tangential::UNLOADED;
 use super::walls::Walls;
 use super::workers::Batch;
 use crate::lanes::Processor;
@@ -58,9 +59,9 @@ use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
 use integrate::{SphereLoad, StartStep, StepConstants};
 pub use normal_law::NormalLaw;
-use pair_list::{PairOrder, SpherePairs};
+use pair_list::{History, PairOrder, SpherePairs};
 use parts::Part;
-use rows::{History, PairKind, Sphere, SpherePair, WallId};
+use rows::{PairKind, Sphere, SpherePair, WallId};
 use share::SphereShare;
 pub use terms::force_terms;
 pub use working_copy::SphereKernel;
@@ -235,16 +236,16 @@ impl<S: LawSource> SphereKernel<S> {
                 BridgeRow::of(bridge, &mut kinds, radii)
             });
             let pair = self.pair(contact, self.slots.slot_of(partner));
-            rows.push((pair, history(contact), bridge));
+            rows.push((pair, bridge));
         }
         rows.sort_unstable_by_key(|(pair, ..)| pair.key());
         let mut list = SpherePairs {
+            springs: vec![UNLOADED; rows.len()],
             bridges: Bridges::none(rows.len()),
             ..SpherePairs::default()
         };
-        for (k, (pair, history, bridge)) in rows.into_iter().enumerate() {
+        for (k, (pair, bridge)) in rows.into_iter().enumerate() {
             list.pairs.push(pair);
-            list.histories.push(history);
             list.bridges.set(k, &bridge);
         }
         self.neighbours.adopt(list);
@@ -283,8 +284,7 @@ impl<S: LawSource> SphereKernel<S> {
                 }
             }
         }
-        self.neighbours.grains.load_histories(of_grains);
-        self.neighbours.walls.load_histories(of_walls);
+        self.neighbours.load_histories(of_grains, of_walls);
     }
 
     /// The contacts of the grains, sorted by grain and partner.

@@ -27,7 +27,7 @@ use super::super::grid::for_each_near;
 use super::super::row::{Row, length_squared, sub, vector};
 use super::super::walls::Walls;
 use super::bridges::BridgeEffect;
-use super::pair_list::{PairOrder, SpherePairs, fill_group};
+use super::pair_list::{History, PairOrder, SpherePairs, fill_group};
 use super::parts::{Part, Parts};
 use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
 use super::slots::Slots;
@@ -124,24 +124,24 @@ impl Neighbours {
         let (index, force) = (part.pair(), &self.forces[part.pair()]);
         let touching = force.touches();
         let bridge = self.grains.bridges.get(index).bridge();
-        let (grain, partner, history) = match index.checked_sub(self.grains.pairs.len()) {
+        let (grain, partner, spring) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
                 let partner = Partner::Grain(slots.grain_in(pair.partner));
-                (pair.grain, partner, self.grains.histories[index])
+                (pair.grain, partner, self.grains.springs[index])
             }
             Some(k) => {
                 let pair = self.walls.pairs[k];
                 let partner = Partner::Wall(pair.partner.0);
-                (pair.grain, partner, self.walls.histories[k])
+                (pair.grain, partner, self.walls.springs[k])
             }
         };
         ((touching || bridge.is_some()) && part.side() == 0).then(|| Contact {
             grain: slots.grain_in(grain),
             partner,
-            spring: vector(history.spring),
-            stiffness: history.spring[3],
-            rolling: vector(history.rolling),
+            spring: vector(spring),
+            stiffness: spring[3],
+            rolling: vector(force.rolling),
             force: vector(force.force),
             touching,
             bridge,
@@ -157,7 +157,19 @@ impl Neighbours {
         }
     }
 
-    /// Takes over pairs with their histories and bridges, sorted by their slots, whatever was listed
+    /// Gives the listed pairs these histories of pairs of grains and of pairs with walls; all others
+    /// have none.
+    pub fn load_histories(
+        &mut self,
+        of_grains: Vec<(SpherePair, History)>,
+        of_walls: Vec<(SpherePair<WallId>, History)>,
+    ) {
+        let (forces, wall_forces) = self.forces.split_at_mut(self.grains.pairs.len());
+        self.grains.load_histories(of_grains, forces);
+        self.walls.load_histories(of_walls, wall_forces);
+    }
+
+    /// Takes over pairs with their bridges, sorted by their slots, whatever was listed
     /// before. They are no whole groups: a refresh must follow.
     pub fn adopt(&mut self, pairs: SpherePairs) {
         self.grains = pairs;
@@ -194,13 +206,23 @@ impl Neighbours {
         }
         let count = bodies.len() - 1;
         let padding = Slot(count as u32);
+        let (of_grains, at_walls) = self
+            .forces
+            .split_at(self.grains.pairs.len().min(self.forces.len()));
         let pairs = self.inner_pairs(bodies, padding);
-        self.grains.replace(pairs, self.reach.is_some());
+        let torques = self.grains.replace(pairs, of_grains, self.reach.is_some());
         let pairs = self.inner_pairs_at_walls(bodies, walls, padding);
-        self.walls.replace(pairs, false);
+        let wall_torques = self.walls.replace(pairs, at_walls, false);
 
         let listed = self.grains.pairs.len() + self.walls.pairs.len();
         self.forces.resize(listed, ContactForce::default());
+        for (force, torque) in self
+            .forces
+            .iter_mut()
+            .zip(torques.iter().chain(&wall_torques))
+        {
+            force.rolling = *torque;
+        }
         let wet = self.grains.bridges.groups.len() * GROUP;
         self.bridge_effects.resize(wet, BridgeEffect::default());
         self.parts

@@ -13,17 +13,19 @@ use crate::lanes::{Lanes, Row, Rows, WIDEST, cross, dot, minus, plus, splat_vect
 ///
 /// With centres `x`, radii `r`, velocities `v`, spins `ω` and arms `a` from the centres to the
 /// contact, the normal is `n = (x₂ − x₁)/|x₂ − x₁|`, the overlap `δ = r₁ + r₂ − |x₂ − x₁|`, the
-/// speed of approach `(v₁ − v₂) · n` and the slip of the surfaces `v − (v · n) n + (a₁ ω₁ + a₂ ω₂)
-/// × n` with `v = v₁ − v₂`. What a law needs of them is read when it is needed: registers are few.
+/// speed of approach `(v₁ − v₂) · m` and the slip of the surfaces `v₁ − v₂ + (a₁ ω₁ + a₂ ω₂) × m`
+/// without its part along `n`. Velocities are those of the middle of the step, and so is the normal `m`
+/// that they go with, `n` as it was half a step ago: grains that turn as one body with the angular
+/// velocity `Ω` would else slip by `½ Ω² Δt` of their distance. What a law needs of them is read
+/// when it is needed: registers are few.
 pub trait Partners<N: Lanes>: Copy {
     /// Whether the second side is a wall: its velocity is taken at the contact, so that it needs no
     /// arm.
     const WALL: bool;
 
-    /// Unit vectors from the grains to their partners, and the overlaps (negative at a gap), for
-    /// these radii.
-    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N);
-    /// Velocity of the partner at the contact, where it is a wall.
+    /// Where the two are, for these radii, and where they were `half_step` ago [s].
+    fn geometry(self, processor: N::Processor, radii: [N; 2], half_step: N) -> PairGeometry<N>;
+    /// Velocity of the partner at the contact in the middle of the step, where it is a wall.
     fn wall_velocity(self, processor: N::Processor) -> [N; 3];
     /// Velocity of the grain relative to its partner.
     fn velocity(self, processor: N::Processor) -> [N; 3];
@@ -31,6 +33,16 @@ pub trait Partners<N: Lanes>: Copy {
     fn spins(self, processor: N::Processor) -> ([N; 3], [N; 3]);
     /// Relative spin for rolling friction, and how much of it a unit of torque stops.
     fn rolling(self, processor: N::Processor) -> ([N; 3], N);
+}
+
+/// Where pairs are.
+pub struct PairGeometry<N> {
+    /// Unit vectors from the grains to their partners.
+    pub normal: [N; 3],
+    /// The same in the middle of the step; as long as one but for terms of second order.
+    pub middle_normal: [N; 3],
+    /// Overlaps, negative at a gap [m].
+    pub depth: N,
 }
 
 /// Pairs of grains.
@@ -51,9 +63,11 @@ pub struct GrainAndWall<'a, N> {
     wall: &'a WallBody,
     /// Unit vectors from the grains to the wall.
     normal: [N; 3],
+    /// The same in the middle of the step.
+    middle_normal: [N; 3],
     /// Distances of their centres from it, not a number behind it [m].
     gap: N,
-    /// Where the forces act [m].
+    /// Where the forces acted in the middle of the step [m].
     contact: [N; 3],
 }
 
@@ -68,7 +82,7 @@ impl<N: Lanes> Partners<N> for TwoGrains<'_> {
     const WALL: bool = false;
 
     #[inline(always)]
-    fn geometry(self, processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
+    fn geometry(self, processor: N::Processor, radii: [N; 2], half_step: N) -> PairGeometry<N> {
         let (a, b) = (
             rows(self.first, |body| &body.position),
             rows(self.second, |body| &body.position),
@@ -76,7 +90,14 @@ impl<N: Lanes> Partners<N> for TwoGrains<'_> {
         let [x, y, z, _] = N::gather_difference(processor, b, a);
         let length = dot([x, y, z], [x, y, z]).sqrt();
         let inverse = N::splat(processor, 1.0) / length;
-        (times([x, y, z], inverse), radii[0] + radii[1] - length)
+        let normal = times([x, y, z], inverse);
+        let velocity = self.velocity(processor);
+        let across = minus(velocity, times(normal, dot(velocity, normal)));
+        PairGeometry {
+            normal,
+            middle_normal: plus(normal, times(across, half_step * inverse)),
+            depth: radii[0] + radii[1] - length,
+        }
     }
 
     #[inline(always)]
@@ -113,30 +134,41 @@ impl<N: Lanes> Partners<N> for TwoGrains<'_> {
 }
 
 impl<'a, N: Lanes> GrainAndWall<'a, N> {
-    /// Grains at `wall`.
+    /// Grains at `wall`, and where they were `half_step` ago [s].
     #[inline(always)]
-    pub fn new(processor: N::Processor, grain: [&'a Sphere; WIDEST], wall: &'a WallBody) -> Self {
+    pub fn new(
+        processor: N::Processor,
+        grain: [&'a Sphere; WIDEST],
+        wall: &'a WallBody,
+        half_step: N,
+    ) -> Self {
         let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.position));
         let [_, _, _, radius] = N::gather(processor, rows(grain, |body| &body.spin));
         let position = [x, y, z];
+        let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.velocity));
+        let middle = minus(position, times([x, y, z], half_step));
         let (gap, normal) = wall.surface.distance_in_lanes(processor, position);
+        let (middle_gap, middle_normal) = wall.surface.distance_in_lanes(processor, middle);
         // A centre on or behind the surface is no contact any more: the check after the step
         // reports it.
-        let gap = N::choose(
-            gap.exceeds(N::splat(processor, 0.0)),
-            gap,
-            N::splat(processor, f64::NAN),
-        );
+        let inside = gap.exceeds(N::splat(processor, 0.0));
+        let nowhere = N::splat(processor, f64::NAN);
+        let gap = N::choose(inside, gap, nowhere);
+        let middle_gap = N::choose(inside, middle_gap, nowhere);
         Self {
             grain,
             wall,
             normal,
+            middle_normal,
             gap,
             // Where the force acts, half the overlap behind the surface: else a grain at rest on a
             // turning wall would slip.
             contact: plus(
-                position,
-                times(normal, N::splat(processor, 0.5) * (radius + gap)),
+                middle,
+                times(
+                    middle_normal,
+                    N::splat(processor, 0.5) * (radius + middle_gap),
+                ),
             ),
         }
     }
@@ -147,8 +179,12 @@ impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
     const WALL: bool = true;
 
     #[inline(always)]
-    fn geometry(self, _processor: N::Processor, radii: [N; 2]) -> ([N; 3], N) {
-        (self.normal, radii[0] - self.gap)
+    fn geometry(self, _processor: N::Processor, radii: [N; 2], _half_step: N) -> PairGeometry<N> {
+        PairGeometry {
+            normal: self.normal,
+            middle_normal: self.middle_normal,
+            depth: radii[0] - self.gap,
+        }
     }
 
     #[inline(always)]

@@ -110,16 +110,6 @@ impl Sphere {
     }
 }
 
-/// What a pair remembers from one step to the next; all zero where grains do not touch.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(64))]
-pub struct History {
-    /// Tangential spring [m]; its stiffness when it was last updated [N/m].
-    pub spring: Row,
-    /// Torque of rolling friction on the grain at the last step [N m]; 1 where the two touched.
-    pub rolling: Row,
-}
-
 /// The contact force of a pair and its torques, in rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(128))]
@@ -129,7 +119,8 @@ pub struct ContactForce {
     /// Normal × force [N]; arm from the partner's centre to the contact [m]. Times the arm, the
     /// torque on either side.
     pub moment: Row,
-    /// Torque of rolling friction on the grain [N m]; 1 while touching, else 0.
+    /// Torque of rolling friction on the grain [N m], which the next step changes; 1 while touching,
+    /// else 0.
     pub rolling: Row,
     /// Energy lost in dashpots, by the tangential spring (in sliding and as its stiffness changes),
     /// in rolling and done by a wall during the step [J].

@@ -25,7 +25,7 @@ use super::contacts::{PairLoop, PairRows, PairSurroundings};
 use super::integrate::{BridgeLoad, FinishStep, PairEffects, SphereLoad, StepConstants};
 use super::neighbours::Neighbours;
 use super::parts::Parts;
-use super::rows::{ContactForce, GROUP, History, PairKind, Sphere, SpherePair, WallId};
+use super::rows::{ContactForce, GROUP, PairKind, Sphere, SpherePair, WallId};
 use crate::lanes::Processor;
 use crate::physics::law::{FilmConstants, Law, LawSource, LawUser, PairConstants};
 use crate::physics::{ContactLaw, Liquid};
@@ -41,12 +41,12 @@ pub struct SphereShare<'a, S> {
     /// Read by all in the motion phase, as are the bridges' effects.
     forces: Column<'a, ContactForce, ForcePhase>,
     bridge_effects: Column<'a, BridgeEffect, ForcePhase>,
-    /// What only this worker touches: loads and bridge loads of its grains, histories and bridges
-    /// of its pairs.
+    /// What only this worker touches: loads and bridge loads of its grains, springs and bridges of
+    /// its pairs.
     loads: &'a mut [SphereLoad],
     bridge_loads: &'a mut [BridgeLoad],
-    grain_histories: &'a mut [History],
-    wall_histories: Vec<&'a mut [History]>,
+    grain_springs: &'a mut [Row],
+    wall_springs: Vec<&'a mut [Row]>,
     bridges: &'a mut [BridgeColumns],
 }
 
@@ -119,8 +119,8 @@ impl<'a, S: LawSource> SphereShare<'a, S> {
         let mut bridge_effects = batch.lend_ranges(bridge_effects, own_bridges());
         let mut loads = split_once(&mut spheres.loads, own_grains());
         let mut bridge_loads = split_once(&mut spheres.bridge_loads, own_films());
-        let mut grain_histories = split_once(&mut grains.histories, own_pairs());
-        let mut wall_histories = split(&mut walls.histories, own_walls).into_iter();
+        let mut grain_springs = split_once(&mut grains.springs, own_pairs());
+        let mut wall_springs = split(&mut walls.springs, own_walls).into_iter();
         let mut bridges = split_once(&mut grains.bridges.groups, own_groups());
         let share = |own: &WorkerRanges| {
             Some(Self {
@@ -132,8 +132,8 @@ impl<'a, S: LawSource> SphereShare<'a, S> {
                 bridge_effects: bridge_effects.next()?,
                 loads: loads.next()?,
                 bridge_loads: bridge_loads.next()?,
-                grain_histories: grain_histories.next()?,
-                wall_histories: wall_histories.next()?,
+                grain_springs: grain_springs.next()?,
+                wall_springs: wall_springs.next()?,
                 bridges: bridges.next()?,
             })
         };
@@ -153,16 +153,16 @@ impl<'a, S: LawSource> SphereShare<'a, S> {
         let of_grains = PairRows {
             pairs: &common.grain_pairs[self.ranges.pairs.clone()],
             kind: common.grain_kind,
-            histories: &mut *self.grain_histories,
+            springs: &mut *self.grain_springs,
             forces: forces.next().unwrap_or_default(),
             bridges: &mut *self.bridges,
             bridge_effects: self.bridge_effects.write_first(phase),
         };
-        let rows = self.ranges.at_walls.iter().zip(&mut self.wall_histories);
-        let of_walls = rows.zip(forces).map(|((own, histories), forces)| PairRows {
+        let rows = self.ranges.at_walls.iter().zip(&mut self.wall_springs);
+        let of_walls = rows.zip(forces).map(|((own, springs), forces)| PairRows {
             pairs: &common.wall_pairs[own.clone()],
             kind: None,
-            histories,
+            springs,
             forces,
             // Walls hold no bridges.
             bridges: &mut [],

@@ -7,7 +7,7 @@
 use super::super::row::row;
 use super::super::terms::{AT_THE_BOUND, ForceTerms};
 use super::super::walls::WallBody;
-use super::contacts::{Meeting, common_constants};
+use super::contacts::{Meeting, common_constants, half_step};
 use super::integrate::{SphereLoad, StepConstants, Total, kick, set_free_spin};
 use super::partners::{GrainAndWall, Partners, TwoGrains};
 use super::rows::Sphere;
@@ -56,7 +56,8 @@ impl LawUser for Explanation<'_> {
                     surface: wall.surface,
                     motion: wall.motion,
                 };
-                let partners = GrainAndWall::<One>::new((), [&first; WIDEST], &wall);
+                let half_step = half_step::<One, L>((), self.world.clock.time_step);
+                let partners = GrainAndWall::<One>::new((), [&first; WIDEST], &wall, half_step);
                 self.terms(law, partners, &first)
             }
         }
@@ -66,9 +67,10 @@ impl LawUser for Explanation<'_> {
 impl Explanation<'_> {
     /// The terms by `law` between these partners, of whom `first` is the contact's grain. What the
     /// bridge does is read where the loop left it, as it depends on films that may be gone.
-    fn terms<P: Partners<One>>(&self, law: impl Law, partners: P, first: &Sphere) -> ForceTerms {
+    fn terms<L: Law, P: Partners<One>>(&self, law: L, partners: P, first: &Sphere) -> ForceTerms {
         let (contact, constants) = (self.contact, common_constants((), &self.constants));
-        let met = Meeting::of((), law, partners, &constants);
+        let half_step = half_step::<One, L>((), self.world.clock.time_step);
+        let met = Meeting::of((), law, partners, &constants, half_step);
         let (elastic, repulsion) = (met.along.elastic.get(), met.along.repulsion.get());
         let (pull, resistance) = (contact.bridge.as_ref())
             .map_or((0.0, 0.0), |bridge| (bridge.capillary, bridge.viscous));

@@ -196,8 +196,8 @@ fn run_has_the_bits_it_always_had() {
     assert_eq!(
         found,
         [
-            "3ce2052f235ddd5e1be1a6c87a1902a0",
-            "c8e6f782a5f37d022203c0339374a16d"
+            "caebdaae53319467c2af7ae16c01a789",
+            "cd8e18b13465ff23f22d6dcb4e6d4084"
         ]
     );
 }

@@ -356,6 +356,11 @@ fn polyhedron_of_one_vertex_is_a_sphere() {
     for i in 0..2 {
         // Sums in another order, along a path that a hit makes ten times more sensitive.
         let (a, b) = (&plain.grains, &rounded.grains);
+        println!(
+            "{:e} {:e}",
+            (a.position[i] - b.position[i]).length(),
+            (a.velocity[i] - b.velocity[i]).length()
+        );
         assert!((a.position[i] - b.position[i]).length() < 1e-12);
         assert!(
             (a.velocity[i] - b.velocity[i]).length() < 1e-9,
