@@ -13,7 +13,7 @@ use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
-use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, Points, VLine};
+use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, PlotUi, Points, VLine};
 
 /// Height of a plot in points.
 const HEIGHT: f32 = 130.0;
@@ -219,6 +219,21 @@ pub fn law_over(powers: std::ops::RangeInclusive<f64>, law: impl Fn(f64) -> f64)
     (0..=80).map(at).map(point).collect()
 }
 
+/// Draws where a run stands, with one standard error below and above: the paper's own first, filled;
+/// beside it a hollow one.
+fn points_ui(plot: &mut PlotUi, points: &[PaperPoint], palette: Palette) {
+    let marks = [(MarkerShape::Diamond, true), (MarkerShape::Circle, false)];
+    for (point, (shape, filled)) in points.iter().zip(marks) {
+        let [x, y] = point.at;
+        if let Some(error) = point.error {
+            let bar = Line::new(point.name, vec![[x, y - error], [x, y + error]]);
+            plot.line(bar.color(palette.temperature).width(1.6));
+        }
+        let mark = Points::new(point.name, vec![point.at]).shape(shape);
+        plot.points(mark.filled(filled).radius(7.0).color(palette.temperature));
+    }
+}
+
 /// Draws one comparison.
 pub fn comparison_ui(ui: &mut egui::Ui, shown: PaperPlot) {
     let palette = Palette::of(ui.visuals());
@@ -261,26 +276,6 @@ pub fn comparison_ui(ui: &mut egui::Ui, shown: PaperPlot) {
                 let line = VLine::new("Ga = 1", x).color(palette.threshold);
                 plot.vline(line.style(LineStyle::dashed_dense()));
             }
-            // The paper's own first, filled; beside it a hollow one.
-            let marks = [(MarkerShape::Diamond, true), (MarkerShape::Circle, false)];
-            for (point, (shape, filled)) in shown.points.iter().zip(marks) {
-                let bar = |error: f64| {
-                    vec![
-                        [point.at[0], point.at[1] - error],
-                        [point.at[0], point.at[1] + error],
-                    ]
-                };
-                if let Some(error) = point.error {
-                    plot.line(
-                        Line::new(point.name, bar(error))
-                            .color(palette.temperature)
-                            .width(1.6),
-                    );
-                }
-                let mark = Points::new(point.name, vec![point.at])
-                    .shape(shape)
-                    .filled(filled);
-                plot.points(mark.radius(7.0).color(palette.temperature));
-            }
+            points_ui(plot, &shown.points, palette);
         });
 }
