@@ -196,8 +196,8 @@ fn run_has_the_bits_it_always_had() {
     assert_eq!(
         found,
         [
-            "caebdaae53319467c2af7ae16c01a789",
-            "cd8e18b13465ff23f22d6dcb4e6d4084"
+            "9df21efa0c4955c13d651e1f8a30fef9",
+            "3e1c87226e22dcc80eb2cc7592327062"
         ]
     );
 }

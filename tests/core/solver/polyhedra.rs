@@ -334,46 +334,30 @@ fn polyhedron_of_one_vertex_is_a_sphere() {
     let as_spheres = spheres.replace("SHAPE ", "");
     let as_polyhedra = spheres.replace("SHAPE", "shape: Sphere,") + far;
     let gravity = "(0, -9.81, 0)";
-    let mut plain = bodies(
-        law,
-        &as_spheres.replace("0.0029", "0.003"),
-        gravity,
-        "Full",
-        1e-6,
-    );
-    let mut rounded = bodies(
-        law,
-        &as_polyhedra.replace("0.0029", "0.003"),
-        gravity,
-        "Full",
-        1e-6,
-    );
-    for world in [&mut plain, &mut rounded] {
-        run(world, 0.02);
-    }
-    assert!(plain.polyhedra.is_none() && rounded.polyhedra.is_some());
-    assert!(plain.grains.velocity[1].x > 0.0, "they hit each other");
-    for i in 0..2 {
-        // Sums in another order, along a path that a hit makes ten times more sensitive.
+    // How far they are apart after 20 ms: ways, velocities, speeds of the surfaces.
+    let apart = |dt: f64| {
+        let in_place = |grains: &str| grains.replace("0.0029", "0.003");
+        let mut plain = bodies(law, &in_place(&as_spheres), gravity, "Full", dt);
+        let mut rounded = bodies(law, &in_place(&as_polyhedra), gravity, "Full", dt);
+        for world in [&mut plain, &mut rounded] {
+            run(world, 0.02);
+        }
+        assert!(plain.polyhedra.is_none() && rounded.polyhedra.is_some());
+        assert!(plain.grains.velocity[1].x > 0.0, "they hit each other");
         let (a, b) = (&plain.grains, &rounded.grains);
-        println!(
-            "{:e} {:e}",
-            (a.position[i] - b.position[i]).length(),
-            (a.velocity[i] - b.velocity[i]).length()
-        );
-        assert!((a.position[i] - b.position[i]).length() < 1e-12);
-        assert!(
-            (a.velocity[i] - b.velocity[i]).length() < 1e-9,
-            "{} {}",
-            a.velocity[i],
-            b.velocity[i]
-        );
-        assert!(
-            (a.spin[i] - b.spin[i]).length() < 1e-6,
-            "{} {}",
-            a.spin[i],
-            b.spin[i]
-        );
+        let off = |i: usize| {
+            let way = (a.position[i] - b.position[i]).length();
+            let surface = (a.spin[i] - b.spin[i]).length() * a.radius[i];
+            [way, (a.velocity[i] - b.velocity[i]).length(), surface]
+        };
+        [0, 1, 2].map(|k| off(0)[k].max(off(1)[k]))
+    };
+    // A sphere's slip is taken with the normal of the middle of a step, a polyhedron's with that of
+    // its end: the difference is of first order.
+    let (coarse, fine) = (apart(1e-6), apart(2.5e-7));
+    println!("{coarse:?} m and m/s, {fine:?} with a quarter of the step");
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(coarse < 5e-6 && fine < 0.35 * coarse, "{coarse:e} {fine:e}");
     }
 }
 
