@@ -183,7 +183,7 @@ fn changes<S: LawSource>(law: S) -> [f64; 2] {
     }
     println!("{} contacts", changes[0].count);
     assert!(changes[0].count > 200);
-    changes.map(|change| change.relative())
+    changes.map(Change::relative)
 }
 
 #[test]
@@ -201,18 +201,18 @@ fn bed_that_turns_as_one_keeps_its_forces_in_its_own_frame() {
 #[derive(Clone, Copy, Default)]
 struct Change {
     count: usize,
-    change: f64,
+    difference: f64,
     all: f64,
 }
 
 impl Change {
     fn add(&mut self, now: DVec3, before: DVec3) {
         self.count += 1;
-        self.change += (now - before).length_squared();
+        self.difference += (now - before).length_squared();
         self.all += before.length_squared();
     }
 
     fn relative(self) -> f64 {
-        (self.change / self.all).sqrt()
+        (self.difference / self.all).sqrt()
     }
 }
