@@ -110,6 +110,8 @@ pub struct Meeting<N: Lanes> {
     pub spins: [[N; 3]; 2],
     /// Velocities of the grains' surfaces over their partners' [m/s].
     pub slip: [N; 3],
+    /// Angles by which the contacts turn about their normals during the step.
+    twist: N,
 }
 
 impl<N: Lanes> Meeting<N> {
@@ -155,8 +157,24 @@ impl<N: Lanes> Meeting<N> {
             along,
             approach,
             spins: [spin, partner_spin],
+            twist: half_step * dot(plus(spin, partner_spin), normal),
             slip: minus(surfaces, times(normal, dot(surfaces, normal))),
         }
+    }
+
+    /// Torques of rolling friction, at most `cap` [N m], from those of the step `before`; none where
+    /// nothing touches.
+    #[inline(always)]
+    fn rolling(
+        &self,
+        processor: N::Processor,
+        cap: N,
+        [x, y, z, _]: [N; 4],
+        spin: ([N; 3], N),
+    ) -> [N; 3] {
+        let held = turned(processor, [x, y, z], self.normal, self.twist);
+        let torque = roll(processor, self.normal, cap, held, spin);
+        torque.map(|part| N::choose(self.touching, part, N::splat(processor, 0.0)))
     }
 
     /// The bridges' forces, where there is liquid, and the normal forces that bound Coulomb
@@ -216,20 +234,19 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let (_, [friction, rolling_arm, ..]) = *constants;
     let half_step = half_step::<N, L>(processor, all.dt);
     let met = Meeting::of(processor, all.law, partners, constants, half_step);
+    let [spin, partner_spin] = met.spins;
     let rolling_spin = partners.rolling(processor);
     let (bridge, bounding) = met.wetted(processor, all, liquid, constants, rolling_spin.1);
 
     let (normal, slip, touching) = (met.normal, met.slip, met.touching);
     let (law, elastic) = (met.along.coefficients, met.along.elastic);
     let stiffness = N::choose(touching, law.tangential_stiffness, zero);
-    let [spin, partner_spin] = met.spins;
-    let twist = half_step * dot(plus(spin, partner_spin), normal);
     let updated = update(
         processor,
         side_by_side::<N, _>(|k| &springs[k]),
         Slip {
             way: times(slip, dt),
-            twist,
+            twist: met.twist,
         },
         normal,
         touching,
@@ -250,16 +267,10 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let force = minus(tangential, times(normal, repulsion));
     let moment = cross(normal, tangential);
 
-    let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &contacts[k].rolling));
-    let held = turned(processor, [x, y, z], normal, twist);
-    let resisting = roll(processor, normal, rolling_arm * elastic, held, rolling_spin);
-    let rolling = resisting.map(|part| N::choose(touching, part, zero));
+    let before = N::gather(processor, side_by_side::<N, _>(|k| &contacts[k].rolling));
+    let rolling = met.rolling(processor, rolling_arm * elastic, before, rolling_spin);
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
-    let by_wall = if P::WALL {
-        dt * (dot(force, partners.wall_velocity(processor)) + dot(rolling, partner_spin))
-    } else {
-        zero
-    };
+    let by_wall = dt * partners.wall_power(processor, force, rolling);
     let ([arm, partner_arm], count) = (met.arms, N::choose(touching, one, zero));
     let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
     let companions = [arm, partner_arm, count];

@@ -59,7 +59,7 @@ use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
 use integrate::{SphereLoad, StartStep, StepConstants};
 pub use normal_law::NormalLaw;
-use pair_list::{History, PairOrder, SpherePairs};
+use pair_list::{ContactMemory, PairOrder, SpherePairs};
 use parts::Part;
 use rows::{PairKind, Sphere, SpherePair, WallId};
 use share::SphereShare;
@@ -336,8 +336,8 @@ impl<S: LawSource> SphereKernel<S> {
 }
 
 /// What a contact remembers, in rows.
-fn history(contact: &Contact) -> History {
-    History {
+fn history(contact: &Contact) -> ContactMemory {
+    ContactMemory {
         spring: row(contact.spring, contact.stiffness),
         rolling: row(contact.rolling, f64::from(u8::from(contact.touching))),
     }

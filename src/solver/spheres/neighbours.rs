@@ -27,7 +27,7 @@ use super::super::grid::for_each_near;
 use super::super::row::{Row, length_squared, sub, vector};
 use super::super::walls::Walls;
 use super::bridges::BridgeEffect;
-use super::pair_list::{History, PairOrder, SpherePairs, fill_group};
+use super::pair_list::{ContactMemory, PairOrder, SpherePairs, fill_group};
 use super::parts::{Part, Parts};
 use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
 use super::slots::Slots;
@@ -161,8 +161,8 @@ impl Neighbours {
     /// have none.
     pub fn load_histories(
         &mut self,
-        of_grains: Vec<(SpherePair, History)>,
-        of_walls: Vec<(SpherePair<WallId>, History)>,
+        of_grains: Vec<(SpherePair, ContactMemory)>,
+        of_walls: Vec<(SpherePair<WallId>, ContactMemory)>,
     ) {
         let (forces, wall_forces) = self.forces.split_at_mut(self.grains.pairs.len());
         self.grains.load_histories(of_grains, forces);

@@ -12,7 +12,7 @@ use crate::lanes::Row;
 
 /// What a contact remembers from one step to the next, as it comes from a world.
 #[derive(Clone, Copy)]
-pub struct History {
+pub struct ContactMemory {
     /// Tangential spring [m]; its stiffness when it was last updated [N/m].
     pub spring: Row,
     /// Torque of rolling friction on the grain [N m]; 1 where the two touched.
@@ -68,7 +68,7 @@ where
     /// order; others have none.
     pub fn load_histories(
         &mut self,
-        mut known: Vec<(SpherePair<P>, History)>,
+        mut known: Vec<(SpherePair<P>, ContactMemory)>,
         forces: &mut [ContactForce],
     ) {
         known.sort_unstable_by_key(|(pair, _)| pair.key());

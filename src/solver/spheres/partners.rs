@@ -25,8 +25,8 @@ pub trait Partners<N: Lanes>: Copy {
 
     /// Where the two are, for these radii, and where they were `half_step` ago [s].
     fn geometry(self, processor: N::Processor, radii: [N; 2], half_step: N) -> PairGeometry<N>;
-    /// Velocity of the partner at the contact in the middle of the step, where it is a wall.
-    fn wall_velocity(self, processor: N::Processor) -> [N; 3];
+    /// Power of this force and this torque on the grain [W], where the partner is a wall that moves.
+    fn wall_power(self, processor: N::Processor, force: [N; 3], torque: [N; 3]) -> N;
     /// Velocity of the grain relative to its partner.
     fn velocity(self, processor: N::Processor) -> [N; 3];
     /// Spins of both.
@@ -101,8 +101,8 @@ impl<N: Lanes> Partners<N> for TwoGrains<'_> {
     }
 
     #[inline(always)]
-    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
-        [N::splat(processor, 0.0); 3]
+    fn wall_power(self, processor: N::Processor, _force: [N; 3], _torque: [N; 3]) -> N {
+        N::splat(processor, 0.0)
     }
 
     #[inline(always)]
@@ -172,6 +172,19 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
             ),
         }
     }
+
+    /// Velocity of the wall at the contact in the middle of the step.
+    #[inline(always)]
+    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
+        let motion = &self.wall.motion;
+        plus(
+            splat_vector(processor, motion.velocity.to_array()),
+            cross(
+                splat_vector(processor, motion.spin.to_array()),
+                self.contact,
+            ),
+        )
+    }
 }
 
 /// A grain and a wall: a partner of infinite mass whose surface moves by the wall's velocity field.
@@ -188,15 +201,9 @@ impl<N: Lanes> Partners<N> for GrainAndWall<'_, N> {
     }
 
     #[inline(always)]
-    fn wall_velocity(self, processor: N::Processor) -> [N; 3] {
-        let motion = &self.wall.motion;
-        plus(
-            splat_vector(processor, motion.velocity.to_array()),
-            cross(
-                splat_vector(processor, motion.spin.to_array()),
-                self.contact,
-            ),
-        )
+    fn wall_power(self, processor: N::Processor, force: [N; 3], torque: [N; 3]) -> N {
+        let spin = splat_vector(processor, self.wall.motion.spin.to_array());
+        dot(force, self.wall_velocity(processor)) + dot(torque, spin)
     }
 
     #[inline(always)]
