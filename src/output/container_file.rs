@@ -234,9 +234,8 @@ mod tests {
         assert!((volume(&mesh) / (area * width) - 1.0).abs() < 1e-12);
         assert_eq!(mesh.ends.len(), 180 + 2);
         let grain = "List([(position: (0.01, 0.01, 0.01), radius_mm: 1, material: \"glass\")])";
-        let open = "Box(size: (0.02, 0.03, 0.05), material: \"glass\")";
-        let mesh = mesh_of(open, grain);
-        println!("{:?}", mesh.points);
+        let closed = "Box(min: (0, 0, 0), max: (0.02, 0.03, 0.05), material: \"glass\")";
+        let mesh = mesh_of(closed, grain);
         assert_eq!(mesh.walls, [0, 1, 2, 3, 4, 5]);
         assert!((volume(&mesh) / (0.02 * 0.03 * 0.05) - 1.0).abs() < 1e-12);
     }

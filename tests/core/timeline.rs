@@ -272,27 +272,27 @@ fn branch_is_a_run_of_its_own_and_keeps_the_one_that_is_left() {
 
 #[test]
 fn undo_and_redo_walk_through_the_changes_bit_for_bit() {
+    // The states that a change began from: the values that it sets are part of a state.
     let (mut unchanged, _) = recorded(PLENTY);
-    seek(&mut unchanged, 7 * unit() - 1);
-    let unchanged = one_step_on(&unchanged);
+    let before = [7, 6, 3].map(|index| {
+        seek(&mut unchanged, index * unit() - 1);
+        (index, one_step_on(&unchanged))
+    });
     for memory in [0, LITTLE, PLENTY] {
         let (mut timeline, hashes) = recorded(memory);
         assert_eq!(
             timeline.past().undo,
             Some(Changed::Parameter(Parameter::LiquidVolume))
         );
-        // A volume of liquid is part of the state, viscosity and friction only move it.
-        let mut before = hashes.clone();
-        before[7] = unchanged;
-        for index in [7, 6, 3] {
+        for (index, before) in before {
             undo(&mut timeline);
             assert_eq!(timeline.run().world().clock.step, index * unit());
-            assert_eq!(hash(&timeline), before[index as usize]);
+            assert_eq!(hash(&timeline), before);
             assert_eq!(timeline.branch().end.step, index * unit());
         }
         assert_eq!(timeline.past().undo, None);
         undo(&mut timeline);
-        assert_eq!(hash(&timeline), before[3], "nothing more to undo");
+        assert_eq!(hash(&timeline), before[2].1, "nothing more to undo");
         for index in [6, 7, 12] {
             redo(&mut timeline);
             assert_eq!(timeline.run().world().clock.step, index * unit());
