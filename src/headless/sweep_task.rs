@@ -32,7 +32,7 @@ pub struct SweepTask {
     /// Simulated time of each case: 10s, 2min
     #[arg(long, value_name = "TIME")]
     duration: Option<String>,
-    /// Folder for the results [default: out/<scene>-sweep]
+    /// Folder for the results [default: out/SCENE-sweep]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Cases that run at the same time [default: all cores]
