@@ -39,6 +39,7 @@
 //! | [`run`] | the trajectory (world, solver, commands, samples), its branches, beds, sessions, records |
 //! | [`output`] | the files that a run leaves behind |
 //! | [`runner`] | a scene run to its end: the one loop that advances, records, keeps checkpoints, stops |
+//! | [`engines`] | scenes for engines that run under MPI, and what they computed |
 //! | [`sweep`] | variations of a scene side by side: cases, table, plots |
 //! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
 //! | [`simulation`] | the Bevy plugin that lets a lab go on |
@@ -62,6 +63,11 @@
     )
 )]
 
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
+pub mod engines;
 pub mod files;
 pub mod geometry;
 #[cfg(feature = "headless")]

@@ -4,8 +4,9 @@
 //! than a file states, 5 another program writes to the output folder, 130 interrupted.
 
 use clap::{Args, Parser, Subcommand};
+use grainfall::engines::MpiEngine;
 use grainfall::headless::terminal::{say, tell};
-use grainfall::headless::{self, Report, Said, SweepTask, check_threads, interruption};
+use grainfall::headless::{self, ImportTask, Report, Said, SweepTask, check_threads, interruption};
 use grainfall::output::write_file;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
@@ -185,6 +186,27 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
+    /// Write what another engine takes to run a scene of spheres on many machines, by MPI
+    ///
+    /// A folder with script, data file of the settled bed, meshes and DEVIATIONS.txt, which says
+    /// what the engine does otherwise. What it does not have is refused.
+    Export {
+        #[command(flatten)]
+        what: What,
+        /// The engine: liggghts or lammps
+        #[arg(long, value_name = "ENGINE")]
+        to: MpiEngine,
+        /// The folder
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        #[command(flatten)]
+        said: Said,
+    },
+    /// Measure what another engine computed and write it as a run's folder
+    ///
+    /// Dumps and data files of LIGGGHTS and LAMMPS become series.csv, summary.json, grains.pvd …; what
+    /// takes forces or the memory of contacts is left out.
+    Import(ImportTask),
     /// Settle a scene's bed and write it to a file
     #[command(hide = true)]
     Bed {
@@ -225,6 +247,13 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
         Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
         Some(Task::Sweep(task)) => return run_sweep(&task, &allowed),
+        Some(Task::Import(task)) => return task.carry_out(),
+        Some(Task::Export {
+            what,
+            to,
+            out,
+            said,
+        }) => return export_scene(&what, to, out, said.report()),
         None => {}
     }
     let what = arguments.what;
@@ -388,6 +417,28 @@ fn open_window(
 #[cfg(not(feature = "desktop"))]
 const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
                          `desktop`";
+
+/// Hands a scene to another engine. Returns the exit code.
+fn export_scene(
+    what: &What,
+    engine: MpiEngine,
+    out: PathBuf,
+    report: Report,
+) -> Result<u8, RunnerError> {
+    let name = what.scene.clone().unwrap_or_else(first_scene);
+    let (scene, script) = changed_scene(&name, what)?;
+    let job = Job {
+        threads: checked_threads(what.threads, report)?,
+        script,
+        ..Job::new(short_name(&name), scene, out)
+    };
+    let is_done = headless::hand_over(&job, engine, report, &*interruption()?)?;
+    Ok(if is_done {
+        exit::DONE
+    } else {
+        exit::INTERRUPTED
+    })
+}
 
 fn run_sweep(task: &SweepTask, allowed: &Allowed) -> Result<u8, RunnerError> {
     let report = task.report();

@@ -5,6 +5,8 @@
 //! loop that moves it to its end, records it and stops it is the one of [`crate::runner`].
 
 mod confirm;
+mod export;
+mod import;
 mod interruption;
 mod pack;
 mod program;
@@ -14,6 +16,8 @@ mod sweep_task;
 pub mod terminal;
 
 pub use confirm::confirm;
+pub use export::hand_over;
+pub use import::ImportTask;
 pub use interruption::{check_threads, interruption};
 pub use pack::pack;
 pub use program::run;

@@ -70,6 +70,17 @@ impl Report {
         }
     }
 
+    /// Says what the summary in `folder` states, where that is asked for.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn folder(self, folder: &Path) -> Result<(), RunnerError> {
+        match self {
+            Self::Quiet | Self::Text => Ok(()),
+            Self::Json => say_file(&folder.join(SUMMARY)),
+        }
+    }
+
     /// Says how case number `number` of a sweep, in its `folder`, ended.
     ///
     /// # Errors

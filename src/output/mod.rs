@@ -47,6 +47,6 @@ pub use ending::Ending;
 pub use error::OutputError;
 pub use folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY, write_file};
 pub use grains_file::write_grains;
-pub use recorder::{Recorder, Subject, Written};
+pub use recorder::{IMPORTED, Recorder, Subject, Written};
 pub use run_so_far::RunSoFar;
 pub use shapes_file::write_shapes;

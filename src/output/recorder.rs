@@ -58,7 +58,12 @@ pub struct Subject {
     pub threads: usize,
     /// Whether the grains are written at each output time.
     pub grains: bool,
+    /// Whether another program computed the run.
+    pub imported: bool,
 }
+
+/// The status of a run that another program computed.
+pub const IMPORTED: &str = "imported";
 
 /// What was written so far, to go on with later.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -204,6 +209,16 @@ impl Recorder {
         Ok(is_output)
     }
 
+    /// Writes the present state as an output, whenever that is: of a run whose outputs are not ours
+    /// to choose.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn record_output(&mut self, run: RunSoFar) -> Result<(), OutputError> {
+        self.write_series(Some(run))?;
+        self.write_frame(run.world)
+    }
+
     /// Makes all that was written durable.
     ///
     /// # Errors
@@ -246,7 +261,12 @@ impl Recorder {
         }
         let results = RunSoFar::results_of(run);
         let end = Some((ending, &results));
-        self.write_summary(run, ending.status(), end, warnings, &files)?;
+        let status = if self.subject.imported {
+            IMPORTED
+        } else {
+            ending.status()
+        };
+        self.write_summary(run, status, end, warnings, &files)?;
         Ok(results)
     }
 

@@ -15,7 +15,7 @@ pub struct SummaryFile<'a> {
     pub program: &'static str,
     /// Version of the program.
     pub version: &'static str,
-    /// `running`, `done`, `interrupted` or `fault`.
+    /// `running`, `done`, `interrupted`, `fault`, or `imported` from another program.
     pub status: &'static str,
     /// What made the solver stop, if anything.
     pub fault: Option<&'a Fault>,

@@ -179,6 +179,7 @@ impl Runner {
             name: job.name.clone(),
             threads: job.threads,
             grains: job.grains,
+            imported: false,
         };
         let warnings = folder.warning().into_iter().collect();
         let is_done = match &kept {

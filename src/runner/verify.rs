@@ -8,7 +8,7 @@
 use super::drive::{End, drive};
 use super::{Advance, DirectRun, RunnerError, Watch, exit};
 use crate::files::read_whole;
-use crate::output::{Ending, RunSoFar, digest_of_file};
+use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file};
 use crate::run::{BedStore, RunRecord, Session, VERSION, fingerprint};
 use crate::scene::within_folders;
 use crate::solver::Fault;
@@ -90,6 +90,12 @@ impl RunRecord {
             .map_err(|error| refuse(error.to_string()))?;
         let stated: Value =
             serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
+        if record.status.as_deref() == Some(IMPORTED) {
+            return Err(refuse(
+                "its run was imported from another engine, and cannot be computed again here"
+                    .into(),
+            ));
+        }
         if record.program != "grainfall" || record.state_hash.is_none() {
             return Err(refuse("states no state to come to".into()));
         }

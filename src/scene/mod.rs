@@ -21,6 +21,7 @@ mod shape;
 mod size_classes;
 mod stored_cells;
 mod syntax;
+mod text;
 
 pub use built_in::{BuiltIn, built_in};
 pub use container::{SceneContainer, ScenePlane, SceneTube};

@@ -9,6 +9,7 @@
 mod architecture;
 mod comparison;
 mod doors;
+mod engines;
 #[cfg(feature = "headless")]
 mod headless;
 mod measure;

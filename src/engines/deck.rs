@@ -1,0 +1,194 @@
+//! What a scene becomes for an engine: a script, meshes, and what is different there.
+//!
+//! In: a scene and its world at time zero. Out: what both engines' scripts have in common: the box
+//! round the grains, the steps, what is refused for either. Lengths, masses and times are in SI
+//! units.
+
+use super::atoms_file::DomainBox;
+use super::wall_mesh::WallMesh;
+use crate::scene::{Scene, TimeStep};
+use crate::world::{Shape, Surface, Wall, World};
+use glam::DVec3;
+
+/// The data file's name.
+pub const GRAINS: &str = "grains.data";
+/// The folder that the engine writes its dumps to.
+pub const DUMPS: &str = "dumps";
+
+/// What is handed over: a scene and the state that it begins with.
+#[derive(Clone, Copy)]
+pub struct Handed<'a> {
+    /// What it is called, for the first line of files.
+    pub title: &'a str,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its world at time zero.
+    pub world: &'a World,
+}
+
+/// What an engine takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deck {
+    /// The script.
+    pub script: String,
+    /// Meshes of walls.
+    pub meshes: Vec<WallMesh>,
+    /// The box round it all.
+    pub domain: DomainBox,
+    /// Types that the engine's coefficients are stated for.
+    pub types: usize,
+    /// What is different in the engine, in sentences.
+    pub deviations: Vec<String>,
+}
+
+/// How a run is divided into steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// Steps of the whole run, a whole number of outputs.
+    pub run: u64,
+    /// Steps between two dumps.
+    pub output: u64,
+}
+
+impl Steps {
+    /// Those of `handed`.
+    pub fn of(handed: Handed) -> Self {
+        let clock = &handed.world.clock;
+        let output = clock.step_at(handed.scene.output_interval).max(1);
+        let run = clock.step_at(handed.scene.duration).max(1);
+        Self {
+            run: run.div_ceil(output).saturating_mul(output),
+            output,
+        }
+    }
+}
+
+/// What no engine can take of `handed`, in sentences.
+pub fn refused(handed: Handed) -> Vec<String> {
+    let Handed { scene, world, .. } = handed;
+    let mut refused = Vec::new();
+    if world.polyhedra.is_some() {
+        refused.push("its grains are polyhedra: these engines compute spheres".to_owned());
+    }
+    if scene.time_step == TimeStep::Following {
+        refused.push(
+            "its time step follows its limit: the engine's is fixed; `--time-step automatic` or a time fixes it"
+                .to_owned(),
+        );
+    }
+    for wall in &world.container.walls {
+        if let Surface::Tube { .. } = wall.surface {
+            refused.push(format!(
+                "the wall `{}` is a rising tube, which the engine does not have",
+                wall.name
+            ));
+        }
+        if let Surface::Plane { normal, .. } = wall.surface
+            && wall.motion.velocity.dot(normal).abs() > 1e-12 * wall.motion.velocity.length()
+        {
+            refused.push(format!(
+                "the wall `{}` moves along its normal, which is not handed over",
+                wall.name
+            ));
+        }
+    }
+    refused
+}
+
+/// What is different in both engines.
+pub fn common_deviations(handed: Handed) -> Vec<String> {
+    let (scene, world) = (handed.scene, handed.world);
+    let mut found = Vec::new();
+    let touching = world.contacts.iter().filter(|c| c.touching).count();
+    if touching > 0 {
+        found.push(format!(
+            "Contacts begin without tangential springs and rolling torques: neither engine reads them from a file. \
+             {touching} contacts have them here; there, grains sink by some micrometres until they have their own."
+        ));
+    }
+    found.push(
+        "A contact's tangential spring follows its normal but does not turn about it, and the slip of a step is \
+         taken with the normal of its end: a bed that turns as one body works against its own springs there \
+         (docs/validation.md)."
+            .to_owned(),
+    );
+    let clock = &world.clock;
+    let steps = Steps::of(handed);
+    let output = steps.output as f64 * clock.time_step;
+    if (output / scene.output_interval - 1.0).abs() > 1e-9 {
+        found.push(format!(
+            "Dumps are {} steps, {output:e} s, apart, no whole number of steps being {:e} s.",
+            steps.output, scene.output_interval
+        ));
+    }
+    found
+}
+
+/// The box round walls and grains, wide enough for squares and drums that turn, and how it ends:
+/// `f` where nothing can leave it, else `m`, which follows the grains.
+pub fn domain(world: &World) -> (DomainBox, &'static str) {
+    let largest = world.grains.radius.iter().copied().fold(0.0, f64::max);
+    let (min, max, boundary) = match world.container.shape {
+        Shape::Drum { radius, width } => {
+            let corner = DVec3::new(radius, radius, 0.5 * width);
+            (-corner, corner, "f f f")
+        }
+        Shape::Box { min, max } => (min, max, "f f f"),
+        Shape::Planes | Shape::Column { .. } => {
+            let (min, max) = extent(world);
+            (min, max, "m m m")
+        }
+    };
+    let reach = if boundary == "f f f" {
+        2.0 * largest
+    } else {
+        0.5 * (max - min).length() + 4.0 * largest
+    };
+    let domain = DomainBox {
+        min: min - reach,
+        max: max + reach,
+    };
+    (domain, boundary)
+}
+
+/// The box round the grains and the points of planes [m].
+fn extent(world: &World) -> (DVec3, DVec3) {
+    let grains = world.grains.position.iter().zip(world.grains.radius.iter());
+    let of_grains = grains.flat_map(|(x, r)| [*x - *r, *x + *r]);
+    let points = world.container.walls.iter().filter_map(Wall::point);
+    let mut all = of_grains.chain(points);
+    let first = all.next().unwrap_or(DVec3::ZERO);
+    all.fold((first, first), |(low, high), x| (low.min(x), high.max(x)))
+}
+
+impl Wall {
+    /// The point that its plane is given by [m]; none of other walls.
+    fn point(&self) -> Option<DVec3> {
+        match self.surface {
+            Surface::Plane { point, .. } => Some(point),
+            Surface::Cylinder { .. } | Surface::Tube { .. } => None,
+        }
+    }
+}
+
+/// A name of a wall that an engine's scripts can hold: `front_plate`, and its number where it has
+/// no letters.
+pub fn wall_name(wall: &Wall, index: usize) -> String {
+    let letters = wall.name.chars().map(|c| match c {
+        c if c.is_ascii_alphanumeric() => c,
+        _ => '_',
+    });
+    format!("{}_{}", letters.take(24).collect::<String>(), index + 1)
+}
+
+/// `x y z` as scripts have them.
+pub fn words(vector: DVec3) -> String {
+    let [x, y, z] = vector.to_array().map(|x| if x == 0.0 { 0.0 } else { x });
+    format!("{x:e} {y:e} {z:e}")
+}
+
+/// Numbers as scripts have them, one behind the other.
+pub fn numbers(values: impl IntoIterator<Item = f64>) -> String {
+    let words: Vec<String> = values.into_iter().map(|x| format!("{x:e}")).collect();
+    words.join(" ")
+}

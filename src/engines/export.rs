@@ -1,0 +1,257 @@
+//! A scene handed to an engine: a folder with all that it takes.
+//!
+//! In: a scene and its world at time zero. Out: script, data file, meshes, a script that calls the
+//! engine, what is different there, and a record by which [`super::import`] knows its results.
+//! A folder that holds anything else, or dumps already, is left alone.
+
+use super::atom_types::{AtomTypes, GrainType};
+use super::atoms_file::write_atoms;
+use super::deck::{DUMPS, Deck, GRAINS, Handed, Steps};
+use super::lammps_deck::{self, lammps_deck};
+use super::liggghts_deck::{self, liggghts_deck};
+use super::mpi_engine::MpiEngine;
+use crate::files::{read_whole, write_whole};
+use crate::output::OutputError;
+use crate::run::{Provenance, ScriptedCommand, VERSION};
+use crate::scene::Scene;
+use crate::world::World;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// The file that says that a folder is an export, and of what.
+pub const RECORD: &str = "export.json";
+/// The script that calls the engine.
+const RUN: &str = "run.sh";
+/// What is different in the engine.
+const DEVIATIONS: &str = "DEVIATIONS.txt";
+/// Largest record that is read [bytes].
+const LARGEST: u64 = 256 << 20;
+
+/// Why a scene cannot be handed over.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The engine does not have what the scene asks for.
+    #[error("{engine} cannot run this scene: {}", .reasons.join("; "))]
+    Refused {
+        /// The engine.
+        engine: MpiEngine,
+        /// Everything that it does not have.
+        reasons: Vec<String>,
+    },
+    /// The folder holds something else.
+    #[error("the folder {} holds {holds}: choose another with --out, or empty it", .path.display())]
+    Foreign {
+        /// Which folder.
+        path: PathBuf,
+        /// What is in it.
+        holds: &'static str,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Unwritten(#[from] OutputError),
+}
+
+/// What `export.json` states.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ExportRecord {
+    /// Always `grainfall export`.
+    pub program: String,
+    /// Version of the program that wrote it.
+    pub version: String,
+    /// The engine's word.
+    pub engine: String,
+    /// What the scene was called.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+    /// What was changed about it at time zero.
+    pub commands: Vec<ScriptedCommand>,
+    /// The engine's time step [s].
+    pub time_step: f64,
+    /// Types of grain, the first being 1.
+    pub types: Vec<GrainType>,
+    /// What is different in the engine, in sentences.
+    pub deviations: Vec<String>,
+}
+
+/// What program wrote a record.
+const PROGRAM: &str = "grainfall export";
+
+/// What is handed over, under its name and with what was changed about it at time zero.
+#[derive(Clone, Copy)]
+pub struct Export<'a> {
+    /// What the scene is called.
+    pub name: &'a str,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What was changed at time zero.
+    pub commands: &'a [ScriptedCommand],
+    /// Its world at time zero, with those changes.
+    pub world: &'a World,
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exported {
+    /// Names of the files, in the folder.
+    pub files: Vec<String>,
+    /// What is different in the engine, in sentences.
+    pub deviations: Vec<String>,
+    /// Steps that the engine is to compute, and between two dumps.
+    pub steps: Steps,
+}
+
+/// Writes what `engine` takes to compute `export` to the folder `out`.
+///
+/// # Errors
+/// When the engine does not have what the scene asks for, the folder holds something else, or a
+/// file cannot be written.
+pub fn export(export: Export, engine: MpiEngine, out: &Path) -> Result<Exported, ExportError> {
+    let from = Provenance::of(export.scene, export.world).to_string();
+    let handed = Handed {
+        title: &from,
+        scene: export.scene,
+        world: export.world,
+    };
+    let refuse = |reasons| ExportError::Refused { engine, reasons };
+    let (types, deck) = deck(handed, engine).map_err(refuse)?;
+    open(out)?;
+    let record = ExportRecord {
+        program: PROGRAM.to_owned(),
+        version: VERSION.to_owned(),
+        engine: engine.word().to_owned(),
+        name: export.name.to_owned(),
+        scene: export.scene.clone(),
+        commands: export.commands.to_vec(),
+        time_step: export.world.clock.time_step,
+        types: types.grains.clone(),
+        deviations: deck.deviations.clone(),
+    };
+    let mut files = Vec::new();
+    let mut write = |name: &str, fill: &dyn Fn(&mut dyn Write) -> io::Result<()>| {
+        let path = out.join(name);
+        files.push(name.to_owned());
+        write_whole(&path, fill).map_err(|source| OutputError::write(&path, source))
+    };
+    // First, so that a folder that was begun is known as one of ours.
+    write(RECORD, &|file| {
+        serde_json::to_writer_pretty(&mut *file, &record)?;
+        file.write_all(b"\n")
+    })?;
+    write(GRAINS, &|file| {
+        write_atoms(
+            export.world,
+            (&types, deck.types),
+            &deck.domain,
+            &from,
+            file,
+        )
+    })?;
+    for mesh in &deck.meshes {
+        write(&format!("{}.stl", mesh.name), &|file| mesh.write(file))?;
+    }
+    let script = script_name(engine);
+    write(&script, &|file| file.write_all(deck.script.as_bytes()))?;
+    write(RUN, &|file| file.write_all(run_script(engine).as_bytes()))?;
+    write(DEVIATIONS, &|file| {
+        file.write_all(deviations_text(engine, &from, &deck.deviations).as_bytes())
+    })?;
+    Ok(Exported {
+        files,
+        deviations: deck.deviations,
+        steps: Steps::of(handed),
+    })
+}
+
+/// The types and the deck for `engine`.
+fn deck(handed: Handed, engine: MpiEngine) -> Result<(AtomTypes, Deck), Vec<String>> {
+    let alone = |reason| vec![reason];
+    match engine {
+        MpiEngine::Liggghts => {
+            let types = liggghts_deck::types(handed.world).map_err(alone)?;
+            let deck = liggghts_deck(handed, &types)?;
+            Ok((types, deck))
+        }
+        MpiEngine::Lammps => {
+            let types = lammps_deck::types(handed.world).map_err(alone)?;
+            let deck = lammps_deck(handed, &types)?;
+            Ok((types, deck))
+        }
+    }
+}
+
+/// `in.liggghts`.
+fn script_name(engine: MpiEngine) -> String {
+    format!("in.{}", engine.word())
+}
+
+fn run_script(engine: MpiEngine) -> String {
+    let (name, program) = (engine.name(), engine.program());
+    format!(
+        "#!/bin/sh\n# Runs {name} on as many processes as are asked for (2): sh run.sh 8\n# MPIRUN and {upper} name \
+         other programs: MPIRUN='mpirun --oversubscribe' {upper}=/opt/{program} sh run.sh 8\nset -e\ncd \"$(dirname \
+         \"$0\")\"\nmkdir -p {DUMPS}\nexec ${{MPIRUN:-mpirun}} -np \"${{1:-2}}\" ${{{upper}:-{program}}} -in {}\n",
+        script_name(engine),
+        upper = name
+    )
+}
+
+fn deviations_text(engine: MpiEngine, from: &str, deviations: &[String]) -> String {
+    let mut text =
+        format!("What {engine} does otherwise than Grainfall with this scene.\n{from}\n");
+    for (index, deviation) in deviations.iter().enumerate() {
+        let _ = writeln!(text, "\n{}. {deviation}", index + 1);
+    }
+    text
+}
+
+/// Makes the folder `out` where it is missing, and refuses one that holds something else.
+fn open(out: &Path) -> Result<(), ExportError> {
+    let failed = |source| OutputError::write(out, source);
+    let refuse = |holds| {
+        let path = out.to_owned();
+        Err(ExportError::Foreign { path, holds })
+    };
+    if out.exists() {
+        let is_empty = fs::read_dir(out).map_err(failed)?.next().is_none();
+        if !is_empty && ExportRecord::read(out).is_err() {
+            return refuse("files that are not an export's");
+        }
+        let dumps = out.join(DUMPS);
+        if dumps.is_dir() && fs::read_dir(&dumps).map_err(failed)?.next().is_some() {
+            return refuse("an export that its engine has run");
+        }
+    }
+    Ok(())
+}
+
+impl ExportRecord {
+    /// The record in the folder at `path`.
+    ///
+    /// # Errors
+    /// What is wrong with it, for people.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let file = path.join(RECORD);
+        let refuse = |reason: String| format!("{}: {reason}", file.display());
+        let bytes = read_whole(&file, LARGEST)
+            .map_err(|error| refuse(format!("cannot be read: {error}")))?;
+        let record: Self =
+            serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
+        if record.program != PROGRAM {
+            return Err(refuse("is no record of an export".to_owned()));
+        }
+        (record.scene.check())
+            .map_err(|error| refuse(format!("states a scene that cannot be run: {error}")))?;
+        let is_time = record.time_step.is_finite() && record.time_step > 0.0;
+        if !is_time {
+            return Err(refuse(format!(
+                "states a time step of {:?} s",
+                record.time_step
+            )));
+        }
+        Ok(record)
+    }
+}

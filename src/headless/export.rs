@@ -1,0 +1,76 @@
+//! `grainfall export SCENE`: a scene handed to an engine that runs under MPI.
+
+use super::terminal::say;
+use super::{Progress, Report};
+use crate::engines::{Export, ExportError, MpiEngine, export};
+use crate::runner::{Advance, At, DirectRun, Halt, Job, RunnerError};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Settles the bed of `job` and writes what `engine` takes to its folder; progress goes to standard
+/// error, what is different in the engine is said. Returns whether it came to that before
+/// `interrupted` became true.
+///
+/// # Errors
+/// When the engine does not have what the job asks for, or the folder cannot be written.
+pub fn hand_over(
+    job: &Job,
+    engine: MpiEngine,
+    report: Report,
+    interrupted: &AtomicBool,
+) -> Result<bool, RunnerError> {
+    job.check()?;
+    let is_at_start = |step: Option<u64>, time: Option<f64>| step == Some(0) || time == Some(0.0);
+    if (job.script.iter()).any(|command| !is_at_start(command.step, command.time)) {
+        return Err(RunnerError::Input(format!(
+            "commands after time zero are not handed to {engine}: it runs the scene as it begins"
+        )));
+    }
+    let mut run = DirectRun::of(job);
+    let mut progress = Progress::of(report);
+    while let At::Preparing { stage, share } = run.at() {
+        if interrupted.load(Ordering::Relaxed) {
+            progress.finish();
+            return Ok(false);
+        }
+        progress.tell(share, || stage.to_owned());
+        run.advance(0).map_err(|halt| match halt {
+            Halt::Fault(fault) => RunnerError::Input(format!("the bed cannot settle: {fault}")),
+            Halt::Refused(reason) => RunnerError::Input(reason),
+        })?;
+    }
+    progress.finish();
+    let At::State(state) = run.at() else {
+        return Ok(false);
+    };
+    let handed = Export {
+        name: &job.name,
+        scene: &job.scene,
+        commands: &job.script,
+        world: state.world,
+    };
+    let exported = export(handed, engine, &job.out).map_err(|error| match error {
+        ExportError::Unwritten(error) => error.into(),
+        refused => RunnerError::Input(refused.to_string()),
+    })?;
+    for warning in run.warnings() {
+        report.note(&warning);
+    }
+    if report == Report::Text {
+        say(&format!(
+            "{} grains for {engine}: {} steps of {:e} s, a dump every {}",
+            state.world.grains.len(),
+            exported.steps.run,
+            state.world.clock.time_step,
+            exported.steps.output
+        ));
+        say(&format!("what {engine} does otherwise:"));
+        for deviation in &exported.deviations {
+            say(&format!("  - {deviation}"));
+        }
+        let folder = job.out.display();
+        say(&format!(
+            "files in {folder}: run them with `sh {folder}/run.sh 4`"
+        ));
+    }
+    Ok(true)
+}
