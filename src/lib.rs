@@ -10,7 +10,7 @@
 //!                               measure ──▶ named numbers with units
 //!                                  │
 //!                                 run     world + solver + commands + samples; branches; the record that verifies
-//!                                  ├──▶ runner, sweep    to the end: files, checkpoints, many cases
+//!                                  ├──▶ runner, sweep, paper    to the end: files, checkpoints, many cases
 //!                                 lab     one or two runs, one clock, one command enum
 //!                                  │
 //!                             simulation  Bevy plugin: steps the lab in FixedUpdate
@@ -41,6 +41,7 @@
 //! | [`runner`] | a scene run to its end: the one loop that advances, records, keeps checkpoints, stops |
 //! | [`engines`] | scenes for engines that run under MPI, and what they computed |
 //! | [`sweep`] | variations of a scene side by side: cases, table, plots |
+//! | [`paper`] | a paper's cases in one command: what they are, their tables in files and documents |
 //! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
 //! | [`simulation`] | the Bevy plugin that lets a lab go on |
 //! | `headless` | the program without a window: the app, progress, what is printed |
@@ -88,6 +89,11 @@ pub mod measure;
     reason = "what it computes reaches no trajectory"
 )]
 pub mod output;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
+pub mod paper;
 pub mod parameters;
 pub mod physics;
 pub mod run;

@@ -6,7 +6,9 @@
 use clap::{Args, Parser, Subcommand};
 use grainfall::engines::MpiEngine;
 use grainfall::headless::terminal::{say, tell};
-use grainfall::headless::{self, ImportTask, Report, Said, SweepTask, check_threads, interruption};
+use grainfall::headless::{
+    self, ImportTask, PaperTask, Report, Said, SweepTask, check_threads, interruption,
+};
 use grainfall::output::write_file;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
@@ -159,6 +161,11 @@ enum Task {
     /// at the same time, both share the cases. On a cluster each job runs one of them, see --count,
     /// --case and --merge. Results: table.csv, table.md and plots.
     Sweep(SweepTask),
+    /// Run a paper's cases, or go on with them, and make its tables and figures
+    ///
+    /// Stopped with Ctrl-C or killed, it goes on where it was when it is called again; the cases that
+    /// tell most come first. Results: tables.md, statements.md, ensembles.csv, table.csv and plots.
+    Paper(PaperTask),
     /// Compute a run again and confirm that it comes to the same state, to the bit
     Verify {
         /// A run's summary.json, or a session or a list of changes saved in the window
@@ -254,6 +261,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
             out,
             said,
         }) => return export_scene(&what, to, out, said.report()),
+        Some(Task::Paper(task)) => return run_paper(&task, &allowed),
         None => {}
     }
     let what = arguments.what;
@@ -448,6 +456,15 @@ fn run_sweep(task: &SweepTask, allowed: &Allowed) -> Result<u8, RunnerError> {
         allowed.begin(&sweep.scene, at_once, report)?;
     }
     task.carry_out(&sweep, &*interruption()?)
+}
+
+fn run_paper(task: &PaperTask, allowed: &Allowed) -> Result<u8, RunnerError> {
+    let at_once = checked_threads(task.threads, task.report())?;
+    let job = task.job(at_once)?;
+    if task.computes() {
+        allowed.begin(job.largest(), at_once, Report::Quiet)?;
+    }
+    task.carry_out(&job, &*interruption()?)
 }
 
 /// Prints what can be set in the scene called `name`. Returns the exit code.

@@ -1,6 +1,6 @@
 //! The program without a window: an app whose systems step a run, progress bars, what is printed.
 //!
-//! In: a [`crate::runner::Job`] or a [`crate::sweep::Sweep`]. Out: their files and a word on the terminal. The
+//! In: a [`crate::runner::Job`], a [`crate::sweep::Sweep`] or a [`crate::paper::PaperJob`]. Out: their files and a word on the terminal. The
 //! run is moved by the same system as in the window, inline and as fast as the machine can; the
 //! loop that moves it to its end, records it and stops it is the one of [`crate::runner`].
 
@@ -9,6 +9,7 @@ mod export;
 mod import;
 mod interruption;
 mod pack;
+mod paper_task;
 mod program;
 mod progress;
 mod report;
@@ -20,6 +21,7 @@ pub use export::hand_over;
 pub use import::ImportTask;
 pub use interruption::{check_threads, interruption};
 pub use pack::pack;
+pub use paper_task::PaperTask;
 pub use program::run;
 pub use progress::Progress;
 pub use report::{Report, Said};

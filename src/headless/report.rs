@@ -106,11 +106,24 @@ impl Report {
     /// When its record cannot be read.
     pub fn sweep(self, sweep: &Sweep, swept: &Swept) -> Result<(), RunnerError> {
         match self {
-            Self::Quiet => Ok(()),
-            Self::Json => say_file(&sweep.out.join(SWEEP)),
+            Self::Quiet | Self::Json => self.cases(&sweep.out),
             Self::Text => {
                 say(swept.table.trim_end());
-                say(&format!("results in {}", sweep.out.display()));
+                self.cases(&sweep.out)
+            }
+        }
+    }
+
+    /// Says in which `folder` the results of several cases are.
+    ///
+    /// # Errors
+    /// When its record cannot be read.
+    pub fn cases(self, folder: &Path) -> Result<(), RunnerError> {
+        match self {
+            Self::Quiet => Ok(()),
+            Self::Json => say_file(&folder.join(SWEEP)),
+            Self::Text => {
+                say(&format!("results in {}", folder.display()));
                 Ok(())
             }
         }

@@ -15,7 +15,7 @@ use super::summary_file::SummaryFile;
 use super::velocity_file::{VELOCITY, velocity_table, write_velocity};
 use super::{Ending, OutputError, RunSoFar};
 use crate::measure::{Deposit, Summary};
-use crate::run::{Provenance, TABLES_METADATA, VERSION, write_metadata};
+use crate::run::{Provenance, TABLES_METADATA, VERSION, method, write_metadata};
 use crate::scene::Scene;
 use crate::solver::{Extremes, TimeStepAdvice, advise};
 use crate::world::{Clock, World};
@@ -401,6 +401,7 @@ impl Recorder {
         let summary = SummaryFile {
             program: "grainfall",
             version: VERSION,
+            method: method(),
             status,
             fault: end.and_then(|(ending, _)| ending.fault()),
             name: &self.subject.name,

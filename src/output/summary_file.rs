@@ -15,6 +15,8 @@ pub struct SummaryFile<'a> {
     pub program: &'static str,
     /// Version of the program.
     pub version: &'static str,
+    /// Hash of how its solver and measures compute ([`crate::run::method`]).
+    pub method: &'static str,
     /// `running`, `done`, `interrupted`, `fault`, or `imported` from another program.
     pub status: &'static str,
     /// What made the solver stop, if anything.

@@ -17,6 +17,7 @@
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
 //! | `snapshot` | where a run stood, in memory or in a file |
+//! | `method` | which solver and measures computed a run |
 //! | `estimate` | what a scene asks of a machine, before any work |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
@@ -34,6 +35,7 @@ mod command;
 mod estimate;
 mod history;
 mod keyframes;
+mod method;
 mod past;
 mod pieces;
 mod preparation;
@@ -63,6 +65,7 @@ pub(crate) use check::accept;
 pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMemory, Estimate};
 pub use history::{History, Moment};
+pub use method::method;
 pub use past::Past;
 pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};

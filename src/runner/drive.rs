@@ -7,7 +7,7 @@ use super::checkpoint::{CheckpointFile, CheckpointLookup, Kept};
 use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
 use crate::measure::Summary;
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
-use crate::run::Checkpoint;
+use crate::run::{Checkpoint, method};
 use crate::world::Clock;
 use serde_json::Value;
 use std::fmt;
@@ -186,6 +186,9 @@ impl Runner {
             Some(kept) => is_done(kept, &folder, job.scene.duration)?,
             None => false,
         };
+        if kept.is_some() && !is_done {
+            check_method(&folder)?;
+        }
         let (recorder, checkpoint) = match kept {
             Some(kept) if is_done => {
                 let recorder = Recorder::of_done(subject, folder, kept.written);
@@ -317,6 +320,21 @@ fn find(
         CheckpointLookup::Nothing => {
             refuse("it has results and no checkpoint to go on from".into())
         }
+    }
+}
+
+/// Refuses to go on in `folder` with a run that another solver computed: its end would be nobody's.
+fn check_method(folder: &OutputFolder) -> Result<(), RunnerError> {
+    match summary(folder)?["method"].as_str() {
+        Some(other) if other != method() => Err(OutputError::OtherRun {
+            path: folder.path().to_owned(),
+            reason: format!(
+                "it was computed by method {other}, and this build of Grainfall computes by {}",
+                method()
+            ),
+        }
+        .into()),
+        _ => Ok(()),
     }
 }
 

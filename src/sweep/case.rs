@@ -1,10 +1,18 @@
 //! One case of a sweep: run, and what came out.
 
 use super::{Case, Sweep};
+use crate::files::read_whole;
 use crate::measure::{Estimate, ResultKey, RunQuantity, Series, Summary, VelocityMap};
-use crate::output::{Ending, RunSoFar};
+use crate::output::{Ending, OutputError, RunSoFar, SUMMARY};
+use crate::run::method;
 use crate::runner::{self, Advance, Job, RunnerError, Watch};
+use serde_json::Value;
+use std::io::ErrorKind;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Largest summary that is read [bytes].
+const LARGEST: u64 = 256 << 20;
 
 /// How far a case has come, for others to see.
 #[derive(Default)]
@@ -58,6 +66,9 @@ pub struct CaseResult {
     pub fastest: Option<VelocityMap>,
     /// Hash of its last state.
     pub hash: String,
+    /// By which solver and measures it was computed ([`method`]); none where its folder does not
+    /// say.
+    pub method: Option<String>,
 }
 
 impl CaseResult {
@@ -78,7 +89,13 @@ impl CaseResult {
         self.ending.fault().is_none() && last.is_some_and(|time| *time > 0.0)
     }
 
-    fn of(case: &Case, ending: Ending, results: Summary, run: RunSoFar) -> Self {
+    fn of(
+        case: &Case,
+        ending: Ending,
+        results: Summary,
+        run: RunSoFar,
+        method: Option<String>,
+    ) -> Self {
         let from = run.results_from();
         Self {
             case: case.clone(),
@@ -90,6 +107,7 @@ impl CaseResult {
                 .collect(),
             fastest: run.flow.fastest_since(from).cloned(),
             hash: run.world.hash().to_string(),
+            method,
         }
     }
 }
@@ -105,6 +123,42 @@ pub fn job(sweep: &Sweep, case: &Case) -> Job {
         restart: sweep.restart,
         ..Job::new(&case.name, case.scene.clone(), sweep.out.join(&case.name))
     }
+}
+
+/// Refuses cases that were computed by another solver or other measures: set beside those of this
+/// build, nobody could say what a difference is of.
+///
+/// # Errors
+/// With the first of them, and what to do.
+pub fn check_method(sweep: &Sweep, cases: &[Case]) -> Result<(), RunnerError> {
+    if sweep.restart {
+        return Ok(());
+    }
+    for case in cases {
+        let stated = stated_method(&sweep.out.join(&case.name))?;
+        if let Some(other) = stated.filter(|stated| stated != method()) {
+            return Err(RunnerError::Input(format!(
+                "{}: it was computed by method {other}, and this build of Grainfall computes by {}: \
+                 --restart computes it anew, another --out leaves it as it is",
+                case.name,
+                method()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The method that the summary in `folder` states, if there is one.
+fn stated_method(folder: &Path) -> Result<Option<String>, RunnerError> {
+    let path = folder.join(SUMMARY);
+    let bytes = match read_whole(&path, LARGEST) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(OutputError::write(&path, error).into()),
+    };
+    // What is no JSON is told of when the case is gone on with.
+    let summary: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+    Ok(summary["method"].as_str().map(str::to_owned))
 }
 
 /// Runs `case`, from its checkpoint where there is one, until it is done or `stop` says so; a
@@ -131,5 +185,6 @@ pub fn run(
             Ending::Done | Ending::Interrupted => Ok(None),
         };
     };
-    Ok(Some(CaseResult::of(case, ending, results, view)))
+    let method = stated_method(&job.out)?;
+    Ok(Some(CaseResult::of(case, ending, results, view, method)))
 }

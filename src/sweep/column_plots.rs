@@ -367,6 +367,7 @@ mod tests {
             flow: Vec::new(),
             fastest: None,
             hash: "0".repeat(32),
+            method: None,
         }
     }
 

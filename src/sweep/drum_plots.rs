@@ -73,15 +73,18 @@ const RESULTS: [ResultPlot; 7] = [
 ];
 
 /// What results are plotted over.
-struct Over {
+struct Over<'a> {
+    /// The varied key, where it is not that of the liquid.
+    key: &'a str,
     axis: ChartAxis,
     value: fn(&CaseResult) -> Option<f64>,
 }
 
-impl Over {
-    fn of(sweep: &Sweep, outcomes: &[CaseResult]) -> Self {
+impl<'a> Over<'a> {
+    fn of(sweep: &'a Sweep, outcomes: &[CaseResult]) -> Self {
         if outcomes.iter().any(|outcome| viscosity(outcome).is_some()) {
             return Self {
+                key: "",
                 axis: ChartAxis::logarithmic("viscosity η [mPa s] (dry at the left edge)"),
                 value: |outcome| Some(viscosity(outcome).unwrap_or(DRY)),
             };
@@ -91,6 +94,7 @@ impl Over {
             .first()
             .map_or("", |variation| &variation.key);
         Self {
+            key,
             axis: ChartAxis::linear(key),
             value: |outcome| leading_number(outcome.case.values.first()?),
         }
@@ -107,7 +111,7 @@ impl Over {
                 ChartAxis::linear(&label)
             },
             title: label,
-            lines: by_radius(ensembles, |ensemble| {
+            lines: by_radius(ensembles, self.key, |ensemble| {
                 let across = (self.value)(ensemble.first())?;
                 Some((across, in_shown_unit(ensemble, result.key)?))
             }),
@@ -146,23 +150,33 @@ fn leading_number(text: &str) -> Option<f64> {
     text[..end.unwrap_or(text.len())].parse().ok()
 }
 
-/// A line for each radius, through the points of its ensembles in the order of x.
+/// A line for each radius, and for each value of what else is varied but `across`, through the
+/// points of its ensembles in the order of x.
 fn by_radius(
     ensembles: &[Ensemble],
+    across: &str,
     point: impl Fn(&Ensemble) -> Option<(f64, Estimate)>,
 ) -> Vec<Line> {
-    let mut points: BTreeMap<u64, (String, Vec<(f64, Estimate)>)> = BTreeMap::new();
+    let [liquid, viscosity, size] = OF_THE_PAPER;
+    let mut lines: BTreeMap<(u64, String), Vec<(f64, Estimate)>> = BTreeMap::new();
     for ensemble in ensembles {
         let radius = radius(ensemble.first());
-        let line = points.entry((1e6 * radius) as u64);
-        let (_, of_radius) = line.or_insert_with(|| (format!("r = {radius} mm"), Vec::new()));
-        of_radius.extend(point(ensemble));
+        let apart = ensemble.apart_from(&[liquid, viscosity, size, across]);
+        let line = (1e6 * radius) as u64;
+        let name = format!("r = {radius} mm{apart}");
+        lines
+            .entry((line, name))
+            .or_default()
+            .extend(point(ensemble));
     }
-    let lines = points.into_values();
+    let lines = lines.into_iter();
     lines
-        .map(|(name, points)| Line::means(name, points))
+        .map(|((_, name), points)| Line::means(name, points))
         .collect()
 }
+
+/// The varied keys that make a line and its points.
+const OF_THE_PAPER: [&str; 3] = ["liquid", "viscosity", "radius"];
 
 /// Wet over dry drop, with Eq. 23 (Fig. 5b).
 fn drop_ratios(ensembles: &[Ensemble]) -> Option<Plot> {
@@ -171,7 +185,7 @@ fn drop_ratios(ensembles: &[Ensemble]) -> Option<Plot> {
         dry.find(|e| radius(e.first()) == radius(wet))?
             .estimate(RunQuantity::Drop)
     };
-    let mut lines = by_radius(ensembles, |ensemble| {
+    let mut lines = by_radius(ensembles, "", |ensemble| {
         let viscosity = viscosity(ensemble.first())?;
         let wet = ensemble.estimate(RunQuantity::Drop)?;
         Some((viscosity, wet.over(dry(ensemble.first())?)))
@@ -196,7 +210,7 @@ fn drop_ratios(ensembles: &[Ensemble]) -> Option<Plot> {
 fn over_galilei(ensembles: &[Ensemble]) -> Vec<Plot> {
     let across = RunQuantity::InverseRootGalilei;
     let plot = |file: &str, quantity: RunQuantity| {
-        let mut lines = by_radius(ensembles, |ensemble| {
+        let mut lines = by_radius(ensembles, "", |ensemble| {
             let value = in_shown_unit(ensemble, quantity.into())?;
             Some((ensemble.mean(across)?, value))
         });
@@ -243,7 +257,9 @@ fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
             y: ChartAxis::linear("velocity along the surface, downhill [mm/s]"),
             lines: Vec::new(),
         });
-        let name = viscosity(outcome).map_or_else(|| ensemble.name(), |eta| format!("{eta} mPa s"));
+        let apart = ensemble.apart_from(&OF_THE_PAPER);
+        let name =
+            viscosity(outcome).map_or_else(|| ensemble.name(), |eta| format!("{eta} mPa s{apart}"));
         plot.lines.push(Line::means(name, profile(ensemble)));
     }
     plots.into_values().collect()

@@ -48,7 +48,7 @@ pub struct Drums<'a>(pub Vec<Drum<'a>>);
 
 impl<'a> Drums<'a> {
     /// Those that are filled with grains.
-    pub fn of(ensembles: &'a [Ensemble<'a>]) -> Self {
+    pub fn of(ensembles: impl IntoIterator<Item = &'a Ensemble<'a>>) -> Self {
         let drum = |ensemble: &'a Ensemble<'a>| {
             let scene = &ensemble.first().case.scene;
             let SceneGrains::Fill { species, .. } = &scene.grains else {
@@ -62,7 +62,7 @@ impl<'a> Drums<'a> {
                 ensemble,
             })
         };
-        let mut drums: Vec<Drum> = ensembles.iter().filter_map(drum).collect();
+        let mut drums: Vec<Drum> = ensembles.into_iter().filter_map(drum).collect();
         drums.sort_by(|a, b| {
             let by_viscosity = a.viscosity.total_cmp(&b.viscosity);
             a.radius.total_cmp(&b.radius).then(by_viscosity)

@@ -12,6 +12,8 @@ use crate::measure::{Estimate, MeasuredValue, ResultKey, Summary, SummaryEntry};
 pub struct Ensemble<'a> {
     /// What they have in common of what is varied, in the order of the variations.
     pub values: Vec<String>,
+    /// Of these, with their keys, the ones in which it differs from another ensemble.
+    pub different: Vec<(String, String)>,
     /// The cases, in their own order.
     pub members: Vec<&'a CaseResult>,
 }
@@ -28,6 +30,23 @@ impl<'a> Ensemble<'a> {
             [only] => only.case.name.clone(),
             _ => self.values.join(" "),
         }
+    }
+
+    /// The value of the varied `key` that sets it apart from others.
+    pub fn value_of(&self, key: &str) -> Option<&str> {
+        let own = self.different.iter().find(|(own, _)| own == key);
+        own.map(|(_, value)| value.as_str())
+    }
+
+    /// What sets it apart from others beside the keys `without`: `, bridge-law=as-coded`.
+    pub fn apart_from(&self, without: &[&str]) -> String {
+        let mut text = String::new();
+        for (key, value) in &self.different {
+            if !without.contains(&key.as_str()) {
+                text = text + ", " + key + "=" + value;
+            }
+        }
+        text
     }
 
     /// The result `key` of the members that have it, as a mean over them; of one alone as it stands
@@ -57,7 +76,7 @@ impl<'a> Ensemble<'a> {
         let first = &self.first().results;
         let entries = first.entries.iter().map(|entry| SummaryEntry {
             key: entry.key,
-            value: self.value(entry.key),
+            value: self.mean_value(entry.key),
             note: format!("mean over {} seeds: {}", self.members.len(), entry.note),
         });
         Summary {
@@ -68,7 +87,7 @@ impl<'a> Ensemble<'a> {
         }
     }
 
-    fn value(&self, key: ResultKey) -> Option<MeasuredValue> {
+    fn mean_value(&self, key: ResultKey) -> Option<MeasuredValue> {
         let all = || self.members.iter().map(|member| member.results.get(key));
         let own = all().next().flatten();
         let is_fixed = own.is_none_or(|own| own.as_estimate().is_none()) && all().all(|v| v == own);
@@ -99,8 +118,21 @@ pub fn ensembles<'a>(
             Some(known) => known.members.push(outcome),
             None => ensembles.push(Ensemble {
                 values,
+                different: Vec::new(),
                 members: vec![outcome],
             }),
+        }
+    }
+    let keys = sweep.variations.iter().map(|variation| &variation.key);
+    for (index, key) in keys.filter(|key| *key != SEED).enumerate() {
+        let first = ensembles.first().map(|own| own.values[index].clone());
+        if ensembles
+            .iter()
+            .any(|own| Some(&own.values[index]) != first.as_ref())
+        {
+            for own in &mut ensembles {
+                own.different.push((key.clone(), own.values[index].clone()));
+            }
         }
     }
     ensembles

@@ -1,7 +1,7 @@
 //! What Kasper et al. 2021 state of dry and wet drums, as rules.
 //!
-//! In: the ensembles of a sweep that varies nothing but liquid, viscosity, radius and seed. Out:
-//! each statement for which there are cases, with its comparisons. Bounds that the paper gives in
+//! In: the ensembles of a sweep that varies nothing but liquid, viscosity, radius, seed and the law
+//! of bridges. Out: for each law the statements for which there are cases, with their comparisons. Bounds that the paper gives in
 //! words (*about*, *hardly*) stand here as numbers, each in the rule that a reader sees.
 
 use super::Sweep;
@@ -14,8 +14,10 @@ use crate::measure::{
 };
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
-/// The keys that the paper varies.
-const VARIED: [&str; 4] = ["liquid", "viscosity", "radius", SEED];
+/// The law of bridges: a reading of the paper, not a case of it.
+const READING: &str = "bridge-law";
+/// The keys that the paper varies, and that of its readings.
+const VARIED: [&str; 5] = ["liquid", "viscosity", "radius", SEED, READING];
 /// A bed that flows for this share of the time flows always.
 const ALWAYS: f64 = 0.98;
 /// Viscosity up to which a liquid counts as water [mPa s].
@@ -29,8 +31,12 @@ const ROUGHNESS: ResultKey = ResultKey::OfSamples(Measure::SurfaceRoughness);
 const CURVATURE: ResultKey = ResultKey::OfSamples(Measure::SurfaceCurvature);
 const SHARE: ResultKey = ResultKey::OfRun(RunQuantity::NonRigidShare);
 
-/// The statements for which `ensembles` has cases; none where the sweep varies anything else.
-pub fn drum_statements(sweep: &Sweep, ensembles: &[Ensemble]) -> Vec<Statement> {
+/// Statements with the reading of the paper under which cases were run, where there are several.
+pub type StatementsOfReading = (Option<String>, Vec<Statement>);
+
+/// The statements for which `ensembles` has cases, reading by reading; none where the sweep varies
+/// anything else. Dry drums, which have no bridges, belong to every reading.
+pub fn statements_by_reading(sweep: &Sweep, ensembles: &[Ensemble]) -> Vec<StatementsOfReading> {
     let is_known = |key: &str| VARIED.contains(&key);
     let is_of_drums = !ensembles
         .iter()
@@ -38,7 +44,45 @@ pub fn drum_statements(sweep: &Sweep, ensembles: &[Ensemble]) -> Vec<Statement> 
     if !is_of_drums || !sweep.variations.iter().all(|varied| is_known(&varied.key)) {
         return Vec::new();
     }
-    let drums = Drums::of(ensembles);
+    let of_reading = |reading| {
+        let own = |ensemble: &&Ensemble| is_of_reading(ensemble, reading, ensembles);
+        let statements = drum_statements(&Drums::of(ensembles.iter().filter(own)));
+        (reading.map(str::to_owned), statements)
+    };
+    let all = readings(ensembles).into_iter().map(of_reading);
+    all.filter(|(_, statements)| !statements.is_empty())
+        .collect()
+}
+
+/// The readings of wet drums, in their order; none stands for the only one.
+fn readings<'a>(ensembles: &'a [Ensemble]) -> Vec<Option<&'a str>> {
+    let wet = ensembles.iter().filter(|own| !is_dry(own));
+    let mut readings: Vec<Option<&str>> = Vec::new();
+    for reading in wet.map(|own| own.value_of(READING)) {
+        if !readings.contains(&reading) {
+            readings.push(reading);
+        }
+    }
+    if readings.is_empty() {
+        readings.push(None);
+    }
+    readings
+}
+
+/// Whether a drum belongs to `reading`: of wet ones those under it, of dry ones likewise, where any
+/// was run under it.
+fn is_of_reading(drum: &Ensemble, reading: Option<&str>, all: &[Ensemble]) -> bool {
+    let is_under = |own: &Ensemble| reading.is_none() || own.value_of(READING) == reading;
+    let is_dry_under = |own: &Ensemble| is_dry(own) && is_under(own);
+    is_under(drum) || (is_dry(drum) && !all.iter().any(is_dry_under))
+}
+
+fn is_dry(ensemble: &Ensemble) -> bool {
+    ensemble.first().case.scene.liquid.is_none()
+}
+
+/// The statements for which there are `drums`.
+pub fn drum_statements(drums: &Drums) -> Vec<Statement> {
     let all = [
         drums.angles(),
         drums.drops(),
@@ -377,6 +421,7 @@ mod tests {
             flow: Vec::new(),
             fastest: None,
             hash: String::new(),
+            method: None,
         }
     }
 
@@ -407,7 +452,9 @@ mod tests {
         let sweep = sweep(&["radius=3mm,2mm", "liquid=0,1,7", "seed=1..3"]);
         let ensembles = ensembles(&sweep, &outcomes);
         assert_eq!(ensembles.len(), 6);
-        let statements = drum_statements(&sweep, &ensembles);
+        let [(None, statements)] = &statements_by_reading(&sweep, &ensembles)[..] else {
+            panic!("one reading")
+        };
         let verdict = |text: &str| {
             let found = statements.iter().find(|own| own.text.starts_with(text));
             found.unwrap_or_else(|| panic!("{text}")).verdict()
@@ -441,14 +488,38 @@ mod tests {
         let wet = outcome(&["1"], scene(3.0, WATER), 26.2, 0.65);
         let outcomes = [dry, wet];
         let own = sweep(&["liquid=0,1"]);
-        let statements = drum_statements(&own, &ensembles(&own, &outcomes));
-        assert!(!statements.is_empty());
+        let statements = statements_by_reading(&own, &ensembles(&own, &outcomes));
+        assert!(!statements[0].1.is_empty());
         assert!(
-            statements
+            statements[0]
+                .1
                 .iter()
                 .all(|own| own.verdict() == Verdict::NotDecided)
         );
         let other = sweep(&["drum-speed=1rpm,2rpm"]);
-        assert!(drum_statements(&other, &ensembles(&other, &outcomes)).is_empty());
+        assert!(statements_by_reading(&other, &ensembles(&other, &outcomes)).is_empty());
+    }
+    #[test]
+    fn each_reading_has_its_own_verdicts_and_the_dry_drum_with_it() {
+        let mut outcomes = Vec::new();
+        for (seed, by) in [("1", -0.1), ("2", 0.0), ("3", 0.1)] {
+            let dry = scene(3.0, "");
+            outcomes.push(outcome(&["as-printed", "0", seed], dry, 30.0 + by, 0.6));
+            for (reading, angle) in [("as-printed", 28.0), ("as-coded", 32.0)] {
+                let wet = scene(3.0, WATER);
+                outcomes.push(outcome(&[reading, "1", seed], wet, angle - by, 0.6));
+            }
+        }
+        let sweep = sweep(&["bridge-law=as-printed,as-coded", "liquid=0,1", "seed=1..3"]);
+        let ensembles = ensembles(&sweep, &outcomes);
+        let found = statements_by_reading(&sweep, &ensembles);
+        let verdicts: Vec<_> = (found.iter())
+            .map(|(reading, statements)| (reading.as_deref(), statements[0].verdict()))
+            .collect();
+        let expected = [
+            (Some("as-printed"), Verdict::DoesNot),
+            (Some("as-coded"), Verdict::Holds),
+        ];
+        assert_eq!(verdicts, expected);
     }
 }

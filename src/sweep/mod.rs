@@ -31,14 +31,22 @@ mod statements_file;
 mod variation;
 mod velocity_plot;
 
+pub(crate) use case::{CaseResult, job};
+pub(crate) use drums::{Drum, Drums};
+pub(crate) use ensemble::{Ensemble, ensembles};
 pub use folder::SWEEP;
+pub(crate) use folder::SweepFolder;
+pub(crate) use kasper_statements::drum_statements;
+pub(crate) use plan::cases;
 pub use plan::{Case, Sweep, count};
+pub(crate) use results_table::TableColumn;
+pub(crate) use statements::table as statements_table;
 pub use variation::Variation;
 
 use crate::output::{Ending, OutputError};
+use crate::run::method;
 use crate::runner::{self, RunnerError, Standing, Watch, exit, spoken};
-use case::{CaseProgress, CaseResult};
-use folder::SweepFolder;
+use case::CaseProgress;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -102,11 +110,38 @@ pub fn run(
     watch: &mut dyn Watch,
 ) -> Result<Swept, RunnerError> {
     let cases = plan::cases(sweep)?;
+    case::check_method(sweep, &cases)?;
     let folder = SweepFolder::open(sweep, &cases)?;
-    let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
-    let outcomes = run_cases(sweep, &cases, &shares, interrupted, watch)?;
+    // The costliest first, so that no core idles at the end.
+    let mut order: Vec<usize> = (0..cases.len()).collect();
+    order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
+    let outcomes = run_cases(sweep, &cases, order, interrupted, watch)?;
     let ending = SweepEnding::of(&outcomes, cases.len());
-    set_beside(sweep, &folder, &outcomes, ending, Vec::new())
+    let files = set_beside(sweep, &outcomes)?;
+    folder.close(sweep, &outcomes, files)?;
+    Ok(Swept {
+        ending,
+        table: table(sweep, &outcomes),
+        missing: Vec::new(),
+    })
+}
+
+/// Runs these `cases` of `sweep` one after the other, as they stand, and sets nothing beside each
+/// other.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_in_order(
+    sweep: &Sweep,
+    cases: &[Case],
+    interrupted: &AtomicBool,
+    watch: &mut dyn Watch,
+) -> Result<SweepEnding, RunnerError> {
+    case::check_method(sweep, cases)?;
+    SweepFolder::open(sweep, cases)?;
+    let order = (0..cases.len()).collect();
+    let outcomes = run_cases(sweep, cases, order, interrupted, watch)?;
+    Ok(SweepEnding::of(&outcomes, cases.len()))
 }
 
 /// Runs case number `number` of `sweep`, from 1 on, and no other, until it is done or `interrupted`
@@ -129,6 +164,7 @@ pub fn run_case(
             cases.len()
         ))
     })?;
+    case::check_method(sweep, std::slice::from_ref(case))?;
     SweepFolder::open(sweep, std::slice::from_ref(case))?;
     let stop = || interrupted.load(Ordering::Relaxed);
     let outcome = case::run(sweep, case, watch, &stop)?;
@@ -151,64 +187,98 @@ pub fn merge(sweep: &Sweep) -> Result<Swept, RunnerError> {
         )));
     }
     let folder = SweepFolder::open(sweep, &cases)?;
+    let (outcomes, missing) = gather(sweep, &cases)?;
+    let ending = SweepEnding::of(&outcomes, cases.len());
+    let files = set_beside(sweep, &outcomes)?;
+    folder.close(sweep, &outcomes, files)?;
+    Ok(Swept {
+        ending,
+        table: table(sweep, &outcomes),
+        missing,
+    })
+}
+
+/// The finished ones of `cases`, all computed by one method, this build's where there are such; of
+/// the others number, name and how they stand.
+///
+/// # Errors
+/// When a case has other values, or a file cannot be read.
+pub(crate) fn gather(
+    sweep: &Sweep,
+    cases: &[Case],
+) -> Result<(Vec<CaseResult>, Vec<String>), RunnerError> {
     let (mut outcomes, mut missing) = (Vec::new(), Vec::new());
-    for (number, case) in (1..).zip(&cases) {
+    for (number, case) in (1..).zip(cases) {
         let standing = runner::standing(&case::job(sweep, case));
         match standing.map_err(|error| error.within(&case.name))? {
             Standing::Done => outcomes.extend(case::run(sweep, case, &mut (), &|| true)?),
             other => missing.push(format!("{number}, {}: {other}", case.name)),
         }
     }
-    let ending = SweepEnding::of(&outcomes, cases.len());
-    set_beside(sweep, &folder, &outcomes, ending, missing)
+    let is_own = |own: &&CaseResult| own.method.as_deref() == Some(method());
+    let chosen = outcomes.iter().find(is_own).or(outcomes.first());
+    let chosen = chosen.and_then(|own| own.method.clone());
+    let (kept, others): (Vec<_>, Vec<_>) =
+        (outcomes.into_iter()).partition(|outcome| outcome.method == chosen);
+    missing.extend(others.iter().map(|other| {
+        let stated = other
+            .method
+            .as_deref()
+            .unwrap_or("that its folder does not state");
+        format!("{}: computed by another method, {stated}", other.case.name)
+    }));
+    Ok((kept, missing))
 }
 
-/// Writes tables and plots of these `outcomes`.
-fn set_beside(
+/// Writes tables and plots of these `outcomes`; returns the files' names.
+pub(crate) fn set_beside(
     sweep: &Sweep,
-    folder: &SweepFolder,
     outcomes: &[CaseResult],
-    ending: SweepEnding,
-    missing: Vec<String>,
-) -> Result<Swept, RunnerError> {
-    let sound: Vec<CaseResult> = outcomes
-        .iter()
-        .filter(|own| own.is_sound())
-        .cloned()
-        .collect();
-    let ensembles = ensemble::ensembles(sweep, &sound);
-    let has_seeds = ensembles.iter().any(|ensemble| ensemble.members.len() > 1);
-    let means = if has_seeds { &ensembles[..] } else { &[] };
+) -> Result<Vec<String>, RunnerError> {
+    let sound = sound(outcomes);
+    let ensembles = ensembles(sweep, &sound);
+    let means = means(&ensembles);
     let mut files = results_csv::write_csv(sweep, outcomes, means)?;
     files.push(results_table::write_markdown(sweep, outcomes)?);
-    let table = if has_seeds {
+    if !means.is_empty() {
         files.push(ensemble_table::write_markdown(sweep, means)?);
-        ensemble_table::markdown(sweep, means)
-    } else {
-        results_table::markdown(sweep, outcomes)
-    };
+    }
     files.extend(statements_file::write_statements(sweep, &ensembles)?);
     files.extend(plot_files::write_plots(sweep, outcomes)?);
     files.extend(velocity_plot::write_velocity_plots(sweep, outcomes)?);
-    folder.close(sweep, outcomes, files)?;
-    Ok(Swept {
-        ending,
-        table,
-        missing,
-    })
+    Ok(files)
 }
 
-/// Runs the cases, the costliest first so that no core idles at the end; returns what became of
-/// them in their own order.
+/// The table that people read: means over the seeds where there are several, else the cases.
+fn table(sweep: &Sweep, outcomes: &[CaseResult]) -> String {
+    let sound = sound(outcomes);
+    let ensembles = ensembles(sweep, &sound);
+    match means(&ensembles) {
+        [] => results_table::markdown(sweep, outcomes),
+        means => ensemble_table::markdown(sweep, means),
+    }
+}
+
+fn sound(outcomes: &[CaseResult]) -> Vec<CaseResult> {
+    let sound = outcomes.iter().filter(|own| own.is_sound());
+    sound.cloned().collect()
+}
+
+/// The ensembles where one of them has several seeds; else none.
+fn means<'a, 'b>(ensembles: &'a [Ensemble<'b>]) -> &'a [Ensemble<'b>] {
+    let has_seeds = ensembles.iter().any(|ensemble| ensemble.members.len() > 1);
+    if has_seeds { ensembles } else { &[] }
+}
+
+/// Runs the cases in this `order`; returns what became of them in their own.
 fn run_cases(
     sweep: &Sweep,
     cases: &[Case],
-    shares: &[CaseProgress],
+    order: Vec<usize>,
     interrupted: &AtomicBool,
     watch: &mut dyn Watch,
 ) -> Result<Vec<CaseResult>, RunnerError> {
-    let mut order: Vec<usize> = (0..cases.len()).collect();
-    order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
+    let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let waiting = Mutex::new(VecDeque::from(order));
     let next = || {
         let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
@@ -243,7 +313,7 @@ fn run_cases(
             });
         }
         let done = || results.lock().map_or(0, |results| results.len());
-        follow(cases, shares, watch, &|| done() < cases.len() && !stop());
+        follow(cases, &shares, watch, &|| done() < cases.len() && !stop());
     });
     let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
     results.sort_by_key(|(index, _)| *index);

@@ -12,7 +12,7 @@ use crate::physics::{Unit, units};
 
 /// A column: the result it shows under a short head, in the unit and with the digits of the
 /// registry or others.
-pub(super) struct TableColumn {
+pub struct TableColumn {
     head: &'static str,
     key: ResultKey,
     unit: Unit,
@@ -20,7 +20,7 @@ pub(super) struct TableColumn {
 }
 
 impl TableColumn {
-    const fn new(head: &'static str, key: ResultKey) -> Self {
+    pub const fn new(head: &'static str, key: ResultKey) -> Self {
         let quantity = key.quantity();
         Self {
             head,
@@ -30,26 +30,27 @@ impl TableColumn {
         }
     }
 
-    const fn of_samples(head: &'static str, measure: Measure) -> Self {
+    pub const fn of_samples(head: &'static str, measure: Measure) -> Self {
         Self::new(head, ResultKey::OfSamples(measure))
     }
 
-    const fn of_run(head: &'static str, quantity: RunQuantity) -> Self {
+    pub const fn of_run(head: &'static str, quantity: RunQuantity) -> Self {
         Self::new(head, ResultKey::OfRun(quantity))
     }
 
-    const fn drop_from(head: &'static str, threshold: DropThreshold) -> Self {
+    pub const fn drop_from(head: &'static str, threshold: DropThreshold) -> Self {
         Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold))
     }
 
-    const fn with_digits(self, digits: usize) -> Self {
+    pub const fn with_digits(self, digits: usize) -> Self {
         Self {
             format: Format::Fixed(digits),
             ..self
         }
     }
 
-    pub(super) fn head(&self) -> String {
+    /// Its head with the unit.
+    pub fn head(&self) -> String {
         self.unit.beside(self.head)
     }
 
@@ -61,7 +62,7 @@ impl TableColumn {
     }
 
     /// Its cell for people, a mean with its error.
-    pub(super) fn cell_for_people(&self, results: &Summary) -> String {
+    pub fn cell_for_people(&self, results: &Summary) -> String {
         match results.estimate(self.key) {
             Some(mean) => (self.key.quantity()).number_with_error_as(mean, self.unit, self.format),
             None => self.cell(results),

@@ -35,18 +35,12 @@ impl Statement {
 }
 
 /// What stands over the list.
-const HEAD: &str = "# The paper's statements\n\n\
-                    Each verdict follows from its rule: *more than scatter* is Welch's test at 5 %, an \
+const HEAD: &str = "Each verdict follows from its rule: *more than scatter* is Welch's test at 5 %, an \
                     interval is that of 95 %. Errors are over the seeds; of one run, its own. *Not \
-                    decided* takes more seeds or longer runs.\n\n\
-                    | statement | verdict | rule |\n|---|---|---|\n";
+                    decided* takes more seeds or longer runs.";
 
-/// The page of these `statements`.
-pub fn markdown(statements: &[Statement]) -> String {
-    let row = |own: &Statement| {
-        let verdict = own.verdict().word();
-        format!("| {} | {verdict} | {} |\n", own.text, own.rule)
-    };
+/// The page of these `statements`, of which its title says more.
+pub fn markdown(title: &str, statements: &[Statement]) -> String {
     let line = |part: &Part| {
         let verdict = part.verdict.word();
         format!("- {}: {} – {verdict}\n", part.place, part.found)
@@ -55,11 +49,22 @@ pub fn markdown(statements: &[Statement]) -> String {
         let lines: String = own.parts.iter().map(line).collect();
         format!("\n## {}\n\n{lines}", own.text)
     };
-    let head = std::iter::once(HEAD.to_owned());
-    let rows = statements.iter().map(row);
-    head.chain(rows)
+    let head = format!("# The paper's statements{title}\n\n{HEAD}\n\n");
+    [head, table(statements)]
+        .into_iter()
         .chain(statements.iter().map(section))
         .collect()
+}
+
+/// The verdicts on these `statements` as a table in Markdown.
+pub fn table(statements: &[Statement]) -> String {
+    let row = |own: &Statement| {
+        let verdict = own.verdict().word();
+        format!("| {} | {verdict} | {} |\n", own.text, own.rule)
+    };
+    let head = "| statement | verdict | rule |\n|---|---|---|\n".to_owned();
+    let rows = statements.iter().map(row);
+    std::iter::once(head).chain(rows).collect()
 }
 
 #[cfg(test)]
@@ -81,7 +86,7 @@ mod tests {
                 part("there", Verdict::DoesNot),
             ],
         };
-        let page = markdown(&[statement]);
+        let page = markdown("", &[statement]);
         assert!(page.contains("| a is larger than b | in part | larger by more than scatter |"));
         assert!(page.contains("## a is larger than b\n\n- here: 1 against 2 – holds\n"));
         assert!(page.ends_with("- there: 1 against 2 – does not hold\n"));

@@ -4,7 +4,7 @@
 
 use super::Sweep;
 use super::ensemble::Ensemble;
-use super::kasper_statements::drum_statements;
+use super::kasper_statements::statements_by_reading;
 use super::statements::markdown;
 use crate::output::write_file;
 use crate::runner::RunnerError;
@@ -20,11 +20,17 @@ pub fn write_statements(
     sweep: &Sweep,
     ensembles: &[Ensemble],
 ) -> Result<Option<String>, RunnerError> {
-    let statements = drum_statements(sweep, ensembles);
-    if statements.is_empty() {
+    let readings = statements_by_reading(sweep, ensembles);
+    if readings.is_empty() {
         return Ok(None);
     }
-    let text = markdown(&statements);
+    let pages = readings.iter().map(|(reading, statements)| {
+        let title = reading
+            .as_ref()
+            .map_or_else(String::new, |own| format!(", {own}"));
+        markdown(&title, statements)
+    });
+    let text = pages.collect::<Vec<_>>().join("\n");
     write_file(&sweep.out.join(FILE), |file| {
         file.write_all(text.as_bytes())
     })?;

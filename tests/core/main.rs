@@ -13,6 +13,7 @@ mod engines;
 #[cfg(feature = "headless")]
 mod headless;
 mod measure;
+mod paper;
 mod parameters;
 #[cfg(feature = "headless")]
 mod reliability;

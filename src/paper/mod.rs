@@ -1,0 +1,28 @@
+//! One command a paper: its cases run or gone on with, and its tables and figures made from what is
+//! there.
+//!
+//! In: a [`Paper`], which is data: a scene, what is varied about it, the cases in the order in which
+//! they tell most. Out: the folder of a sweep with a folder for each case, tables and plots, and in
+//! it `tables.md`, whose tables also stand between the markers of a document. The cases are run by
+//! the loop of [`crate::sweep`]; only finished ones of one method count, and the others are named.
+//!
+//! Each row of the table uses only rows below it.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `job` | running a paper, or setting beside each other what is there |
+//! | `registry` | the papers by name |
+//! | `kasper2021` | Kasper et al. 2021: its cases and tables |
+//! | `document` | tables between the markers of a document |
+//! | `plan` | what a paper is: cases by parts and seeds |
+
+mod document;
+mod job;
+mod kasper2021;
+mod plan;
+mod registry;
+
+pub use document::{DocumentError, marked, replace};
+pub use job::{Listed, PaperJob, Papered, list, run, set_beside};
+pub use plan::{Batch, Paper, PaperTable, Selection};
+pub use registry::{PAPERS, paper};
