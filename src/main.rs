@@ -206,6 +206,9 @@ enum Task {
         /// The folder
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+        /// Leave it to the engine to settle the bed: for more grains than settle here
+        #[arg(long)]
+        unsettled: bool,
         #[command(flatten)]
         said: Said,
     },
@@ -259,8 +262,9 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
             what,
             to,
             out,
+            unsettled,
             said,
-        }) => return export_scene(&what, to, out, said.report()),
+        }) => return export_scene(&what, to, (out, !unsettled), said.report()),
         Some(Task::Paper(task)) => return run_paper(&task, &allowed),
         None => {}
     }
@@ -430,7 +434,7 @@ const NO_WINDOW: &str = "this grainfall was built without a window: add --no-ren
 fn export_scene(
     what: &What,
     engine: MpiEngine,
-    out: PathBuf,
+    (out, settles): (PathBuf, bool),
     report: Report,
 ) -> Result<u8, RunnerError> {
     let name = what.scene.clone().unwrap_or_else(first_scene);
@@ -440,7 +444,7 @@ fn export_scene(
         script,
         ..Job::new(short_name(&name), scene, out)
     };
-    let is_done = headless::hand_over(&job, engine, report, &*interruption()?)?;
+    let is_done = headless::hand_over(&job, engine, settles, report, &*interruption()?)?;
     Ok(if is_done {
         exit::DONE
     } else {

@@ -19,8 +19,8 @@ pub struct DomainBox {
     pub max: DVec3,
 }
 
-/// Writes the grains of `world` to `file`; `title` is its first line. Of `types`, so many are
-/// stated as there are coefficients for.
+/// Writes the grains of `world` to `file`; `title`, of one line, is its first. Of `types`, so many
+/// are stated as there are coefficients for.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -32,8 +32,7 @@ pub fn write_atoms(
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let (grains, (types, stated)) = (&world.grains, types);
-    // An end of line in a title would begin the header.
-    writeln!(file, "{}\n", title.replace(['\n', '\r'], " "))?;
+    writeln!(file, "{title}\n")?;
     writeln!(file, "{} atoms\n{} atom types\n", grains.len(), stated)?;
     for (axis, (low, high)) in ["x", "y", "z"]
         .iter()

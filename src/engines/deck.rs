@@ -24,6 +24,8 @@ pub struct Handed<'a> {
     pub scene: &'a Scene,
     /// Its world at time zero.
     pub world: &'a World,
+    /// Whether the grains of a filling have come to rest in it.
+    pub is_settled: bool,
 }
 
 /// What an engine takes.
@@ -99,6 +101,13 @@ pub fn refused(handed: Handed) -> Vec<String> {
 pub fn common_deviations(handed: Handed) -> Vec<String> {
     let (scene, world) = (handed.scene, handed.world);
     let mut found = Vec::new();
+    if !handed.is_settled {
+        found.push(
+            "The grains begin where the filling places them, apart from each other and at rest: they fall first, while \
+             walls move already. Here a bed settles before time zero."
+                .to_owned(),
+        );
+    }
     let touching = world.contacts.iter().filter(|c| c.touching).count();
     if touching > 0 {
         found.push(format!(

@@ -12,7 +12,7 @@ use super::liggghts_deck::{self, liggghts_deck};
 use super::mpi_engine::MpiEngine;
 use crate::files::{read_whole, write_whole};
 use crate::output::OutputError;
-use crate::run::{Provenance, ScriptedCommand, VERSION};
+use crate::run::{Provenance, ScriptedCommand, VERSION, printable};
 use crate::scene::Scene;
 use crate::world::World;
 use serde::{Deserialize, Serialize};
@@ -91,6 +91,8 @@ pub struct Export<'a> {
     pub commands: &'a [ScriptedCommand],
     /// Its world at time zero, with those changes.
     pub world: &'a World,
+    /// Whether the grains of a filling have come to rest in it.
+    pub is_settled: bool,
 }
 
 /// What was written.
@@ -110,14 +112,22 @@ pub struct Exported {
 /// When the engine does not have what the scene asks for, the folder holds something else, or a
 /// file cannot be written.
 pub fn export(export: Export, engine: MpiEngine, out: &Path) -> Result<Exported, ExportError> {
-    let from = Provenance::of(export.scene, export.world).to_string();
+    // Engines look for quotes even in comments, and go on reading until they are closed.
+    let from = Provenance::of(export.scene, export.world);
+    let from = from.to_string().replace('"', "'").replace('\n', " ");
     let handed = Handed {
         title: &from,
         scene: export.scene,
         world: export.world,
+        is_settled: export.is_settled,
     };
-    let refuse = |reasons| ExportError::Refused { engine, reasons };
-    let (types, deck) = deck(handed, engine).map_err(refuse)?;
+    let refuse = |reasons: Vec<String>| ExportError::Refused {
+        engine,
+        reasons: reasons.iter().map(|reason| printable(reason)).collect(),
+    };
+    let (types, mut deck) = deck(handed, engine).map_err(refuse)?;
+    // They name walls as the scene does.
+    (deck.deviations.iter_mut()).for_each(|deviation| *deviation = printable(deviation));
     open(out)?;
     let record = ExportRecord {
         program: PROGRAM.to_owned(),

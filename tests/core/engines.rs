@@ -76,6 +76,7 @@ fn export_text(text: &str, engine: MpiEngine, out: &Path) -> Result<Exported, Ex
         scene: &scene,
         commands: &[],
         world: &world,
+        is_settled: true,
     };
     export(handed, engine, out)
 }
@@ -217,6 +218,47 @@ fn deviations_are_said_in_the_folder_and_by_the_call() {
     }
     // Nothing touches in it yet, so there are no springs to tell of.
     assert!(!text.contains("Contacts begin"), "{text}");
+}
+
+#[test]
+fn names_from_a_scene_are_no_commands_of_an_engine() {
+    let scene = belt(HOOKE)
+        .replace("A grain on a belt", r#"A \"\"\" grain & on $x"#)
+        .replace("slope", "slöpe-1");
+    let folder = tempfile::tempdir().unwrap();
+    export_text(&scene, MpiEngine::Liggghts, folder.path()).unwrap();
+    let script = fs::read_to_string(folder.path().join("in.liggghts")).unwrap();
+    let first = script.lines().next().unwrap();
+    assert!(
+        first.starts_with("# ") && first.contains("''' grain & on $x”, seed"),
+        "{first}"
+    );
+    assert!(
+        script.contains("\nfix sl_pe_1_2 all mesh/surface "),
+        "{script}"
+    );
+    // The format of the dumps has two quotes.
+    assert_eq!(script.matches('"').count(), 2, "{script}");
+}
+
+#[test]
+fn what_has_not_settled_is_said_so() {
+    let (scene, world) = built(&dry_drum());
+    let folder = tempfile::tempdir().unwrap();
+    let handed = Export {
+        name: "test",
+        scene: &scene,
+        commands: &[],
+        world: &world,
+        is_settled: false,
+    };
+    let exported = export(handed, MpiEngine::Lammps, folder.path()).unwrap();
+    assert!(
+        exported
+            .deviations
+            .iter()
+            .any(|text| text.contains("they fall first"))
+    );
 }
 
 #[test]

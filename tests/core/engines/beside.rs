@@ -1,6 +1,6 @@
 //! An exported drum in LIGGGHTS and LAMMPS on two processes, beside the same drum here. They need
 //! the programs, and are asked for by name:
-//! `cargo test --test core engines::beside -- --ignored`.
+//! `cargo test --test core engines::beside -- --ignored`. `MPIRUN` is what starts them.
 
 use glam::DVec3;
 use grainfall::engines::{Export, MpiEngine, export, read_frames};
@@ -21,9 +21,11 @@ fn begun(job: &Job) -> DirectRun {
 
 /// Lets `engine` compute the export in `folder`.
 fn compute(engine: MpiEngine, folder: &Path) {
+    let mpirun = std::env::var("MPIRUN");
+    let mpirun = mpirun.unwrap_or("mpirun --allow-run-as-root --oversubscribe".to_owned());
     let output = Command::new("sh")
         .args([folder.join("run.sh").as_os_str(), "2".as_ref()])
-        .env("MPIRUN", "mpirun --allow-run-as-root --oversubscribe")
+        .env("MPIRUN", mpirun)
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
@@ -45,6 +47,7 @@ fn distances(scene: &str, settings: &[(&str, &str)], engine: MpiEngine) -> (Vec<
         scene: &job.scene,
         commands: &[],
         world: run.run().unwrap().world(),
+        is_settled: true,
     };
     export(handed, engine, &out).unwrap();
     compute(engine, &out);
