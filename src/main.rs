@@ -135,6 +135,10 @@ struct What {
     /// Simulated time between two written states: 0.1s, 20ms
     #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     output_interval: Option<String>,
+    /// Simulated time between two samples: 1ms, 10us [default: 20 ms, and less while a column falls or few grains
+    /// meet]
+    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
+    sample_interval: Option<String>,
     /// Length of a step: automatic, 10us
     #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     time_step: Option<String>,
@@ -338,6 +342,7 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
     let options = [
         ("duration", &what.duration),
         ("output-interval", &what.output_interval),
+        ("sample-interval", &what.sample_interval),
         ("time-step", &what.time_step),
         ("seed", &what.seed),
     ];

@@ -14,7 +14,7 @@ use super::mpi_engine::MpiEngine;
 use super::{AtomFrame, FrameError};
 use crate::measure::{FlowHistory, Series, Summary, sample_and_surface};
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
-use crate::run::{Run, Script, ScriptedCommand, StampedCommand};
+use crate::run::{Run, Sampling, Script, ScriptedCommand, StampedCommand};
 use crate::scene::{Scene, SceneGrain, SceneGrains, SceneShape};
 use crate::solver::advise;
 use crate::world::{SpeciesId, World, build};
@@ -296,6 +296,7 @@ impl Recording {
             series: &self.series,
             flow: &self.flow,
             commands: &self.commands,
+            sampling: Sampling::default(),
         })?;
         Ok(())
     }
@@ -313,6 +314,7 @@ impl Recording {
             series: &self.series,
             flow: &self.flow,
             commands: &self.commands,
+            sampling: Sampling::default(),
         };
         let results = self.recorder.finish(Some(run), &Ending::Done, &[])?;
         Ok(Imported {

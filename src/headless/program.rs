@@ -128,6 +128,7 @@ impl Advance for RunInApp {
                 series: simulation.series(),
                 flow: simulation.flow(),
                 commands: simulation.commands(),
+                sampling: simulation.sampling(),
             }),
         }
     }

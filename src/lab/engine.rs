@@ -34,10 +34,6 @@ const PROFILE_TIME: Duration = Duration::from_millis(500);
 /// Wall-clock time a piece of work should take: commands wait for it.
 const PIECE_TIME: Duration = Duration::from_millis(10);
 
-/// Values that are set sooner after each other belong to one change: a drag, or a button that sets
-/// several parameters.
-const ONE_CHANGE: Duration = Duration::from_millis(400);
-
 /// Why branches are not taken up while two runs are compared.
 const OF_ONE_RUN: &str =
     "A branch would take the place of one of the two runs: end the comparison first.";
@@ -55,8 +51,8 @@ pub struct Engine {
     script: Vec<ScriptedCommand>,
     /// Commands that come before there is a run, or while one is on the way to another moment.
     waiting: Vec<LabCommand>,
-    /// When a value was last set.
-    last_set: Option<Instant>,
+    /// Whether values that are set belong to one change now, and whether one was set in it.
+    open_change: Option<bool>,
     answered: u64,
     news: Update,
     profiled: Instant,
@@ -99,7 +95,7 @@ impl Engine {
             pieces: Pieces::of(PIECE_TIME),
             script: options.script,
             waiting: Vec::new(),
-            last_set: None,
+            open_change: None,
             answered: 0,
             news: Update::default(),
             profiled: Instant::now(),
@@ -226,13 +222,15 @@ impl Engine {
             return;
         }
         self.answered += 1;
-        if ends_a_change(&command) {
-            self.last_set = None;
+        if parts_changes(&command) {
+            self.open_change = self.open_change.map(|_| false);
         }
         match command {
+            LabCommand::OpenChange => self.open_change = Some(false),
+            LabCommand::CloseChange => self.open_change = None,
             LabCommand::Hold(step) => self.clock.hold_at(step),
             LabCommand::Threads(threads) => self.use_threads(threads),
-            LabCommand::Save(path) => self.save(path),
+            LabCommand::Save { path, look } => self.save(path, look),
             LabCommand::Compare { parameter, value } => self.compare(parameter, value),
             LabCommand::EndComparison { keep } => self.end_comparison(keep),
             LabCommand::SetIn {
@@ -352,10 +350,10 @@ impl Engine {
     }
 
     /// Writes the whole session, on the way from one piece of work to the next.
-    fn save(&mut self, path: PathBuf) {
+    fn save(&mut self, path: PathBuf, look: String) {
         let outcome = match &mut self.stage {
             LabStage::Ready(runs) => runs
-                .save(&path, &self.original)
+                .save(&path, &self.original, look)
                 .map_err(|error| error.to_string()),
             LabStage::Preparing(_) | LabStage::Failed(_) => Err("there is no run".into()),
         };
@@ -372,8 +370,8 @@ impl Engine {
     /// Changes all runs, or one of them; says why where that is refused.
     fn change(&mut self, change: &Command, half: Option<Half>) {
         if let LabStage::Ready(runs) = &mut self.stage {
-            let last = self.last_set.replace(Instant::now());
-            let joins = last.is_some_and(|last| last.elapsed() < ONE_CHANGE);
+            let joins = self.open_change == Some(true);
+            self.open_change = self.open_change.map(|_| true);
             let refused: Option<CommandError> = runs.change(change, half, joins).err();
             let refused = refused.map(|refusal| refusal.to_string());
             self.news.warnings.extend(refused);
@@ -397,11 +395,18 @@ impl Engine {
     }
 }
 
-/// Whether what is set after `command` is another change than what was set before it.
-fn ends_a_change(command: &LabCommand) -> bool {
+/// Whether what is set after `command` is another change than what was set before it, even within
+/// one drag.
+fn parts_changes(command: &LabCommand) -> bool {
     match command {
         LabCommand::All(command) => !matches!(command, Command::Set { .. }),
-        LabCommand::SetIn { .. } | LabCommand::Hold(_) | LabCommand::Threads(_) => false,
-        LabCommand::Compare { .. } | LabCommand::EndComparison { .. } | LabCommand::Save(_) => true,
+        LabCommand::SetIn { .. }
+        | LabCommand::OpenChange
+        | LabCommand::CloseChange
+        | LabCommand::Hold(_)
+        | LabCommand::Threads(_) => false,
+        LabCommand::Compare { .. } | LabCommand::EndComparison { .. } | LabCommand::Save { .. } => {
+            true
+        }
     }
 }

@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 const RATE_TIME: Duration = Duration::from_millis(400);
 
 /// Wall-clock time of running after which a run is worth keeping even if nothing was changed in it.
-const LONG_RUN: Duration = Duration::from_mins(5);
+const LONG_RUN: Duration = Duration::from_mins(1);
 
 /// One run or two equal ones. What is read of a lab without naming a [`Half`] is the left run,
 /// which is all there is of a lone one.
@@ -229,8 +229,10 @@ impl Lab {
                     run.expect(&Command::Set { parameter, value });
                 }
             }
-            LabCommand::Save(_) => self.saved.pending.push(self.sent),
+            LabCommand::Save { .. } => self.saved.pending.push(self.sent),
             LabCommand::Compare { .. }
+            | LabCommand::OpenChange
+            | LabCommand::CloseChange
             | LabCommand::EndComparison { .. }
             | LabCommand::Hold(_)
             | LabCommand::Threads(_) => {}

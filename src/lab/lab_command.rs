@@ -23,6 +23,11 @@ pub enum LabCommand {
         /// Its new value.
         value: Value,
     },
+    /// What is set from here on is one change: of one drag, or of one button that sets several
+    /// parameters.
+    OpenChange,
+    /// What is set from here on is another change.
+    CloseChange,
     /// Start two runs side by side at time zero, with the present values of all parameters but one.
     Compare {
         /// What the two differ in: it keeps its present value in the left run.
@@ -35,8 +40,13 @@ pub enum LabCommand {
         /// The run to go on with.
         keep: Half,
     },
-    /// Write the session to this file: every run with its branches.
-    Save(PathBuf),
+    /// Write the session to a file: every run with its branches.
+    Save {
+        /// The file.
+        path: PathBuf,
+        /// How the window looks, in its own words.
+        look: String,
+    },
     /// Go no further than this step for now, or as far as the clock allows.
     Hold(Option<u64>),
     /// Work on so many threads in all.

@@ -7,7 +7,8 @@
 use super::update::RunNews;
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
 use crate::run::{
-    Branch, Command, Parameter, ParameterInfo, Past, StampedCommand, StepTimes, Value, time_step,
+    Branch, Command, Parameter, ParameterInfo, Past, Sampling, StampedCommand, StepTimes, Value,
+    time_step,
 };
 use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
@@ -90,8 +91,12 @@ impl RunView {
         self.generation
     }
 
-    /// The samples of the present branch so far, one every [`crate::run::SAMPLE_INTERVAL`]; those
-    /// after the state shown too.
+    /// Which samples were taken until the state shown, and what the next one depends on.
+    pub fn sampling(&self) -> Sampling {
+        (self.news.as_ref()).map_or_else(Sampling::default, |news| news.sampling)
+    }
+
+    /// The samples of the present branch so far; those after the state shown too.
     pub fn series(&self) -> &Series {
         &self.branch.series
     }

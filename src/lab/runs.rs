@@ -89,6 +89,7 @@ impl LabRun {
             parameters: self.timeline.run().parameters().clone(),
             branch: self.branch.clone(),
             latest: self.timeline.branch().series.last(),
+            sampling: self.timeline.run().sampling(),
             past: self.timeline.past(),
             fault: self.fault.clone(),
             profile: self.profile.clone(),
@@ -371,12 +372,12 @@ impl Runs {
         self.is_news = true;
     }
 
-    /// Writes the session of a scene that was opened as `original` to `path`; of two runs, the
-    /// right one and its branches as branches.
+    /// Writes the session of a scene that was opened as `original`, in a window of this `look`, to
+    /// `path`; of two runs, the right one and its branches as branches.
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn save(&mut self, path: &Path, original: &Scene) -> io::Result<()> {
+    pub fn save(&mut self, path: &Path, original: &Scene, look: String) -> io::Result<()> {
         let (first, others) = self.list.split_at_mut(1);
         let timeline = &mut first[0].timeline;
         let kept = timeline.kept().to_vec();
@@ -384,7 +385,9 @@ impl Runs {
             timeline.adopt_all(&other.timeline);
         }
         let title = &timeline.run().scene().title;
-        let session = Session::of(title, timeline).of_original(original);
+        let session = Session::of(title, timeline)
+            .of_original(original)
+            .looking(look);
         timeline.keep_only(kept);
         session.write(path)
     }

@@ -6,7 +6,7 @@
 
 use super::Status;
 use crate::measure::Sample;
-use crate::run::{Branch, Parameter, ParameterInfo, Past};
+use crate::run::{Branch, Parameter, ParameterInfo, Past, Sampling};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
 use std::path::PathBuf;
@@ -47,6 +47,8 @@ pub struct RunNews {
     pub branch: Arc<Branch>,
     /// The newest sample, which the branch shared here may not have yet.
     pub latest: Option<Sample>,
+    /// Which samples were taken until the state, and what the next one depends on.
+    pub sampling: Sampling,
     /// What lies behind and ahead of the state.
     pub past: Past,
     /// What stopped it, if something did.

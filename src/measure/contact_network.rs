@@ -3,15 +3,35 @@
 
 use crate::world::{Contact, FeatureContact, Partner, Polyhedra, World};
 
-/// Mean number of other grains that a grain touches, `2 N_c / N` over all grains (rattlers and
-/// flying grains too); walls do not count. NaN without grains.
+/// How many other grains each grain touches; walls do not count, and a pair counts once however
+/// many of its features touch.
+pub fn coordinations(world: &World) -> Vec<u32> {
+    let mut counts = vec![0; world.grains.len()];
+    for contact in &world.contacts {
+        if let Partner::Grain(other) = contact.partner
+            && contact.touching
+        {
+            counts[contact.grain as usize] += 1;
+            counts[other as usize] += 1;
+        }
+    }
+    counts
+}
+
+/// Mean of the [`coordinations`], `2 N_c / N` over all grains, rattlers and flying grains too. NaN
+/// without grains.
 pub fn coordination_number(world: &World) -> f64 {
-    let between_grains = world
-        .contacts
-        .iter()
-        .filter(|contact| contact.touching && matches!(contact.partner, Partner::Grain(_)))
-        .count();
-    2.0 * between_grains as f64 / world.grains.len() as f64
+    let all: u32 = coordinations(world).into_iter().sum();
+    f64::from(all) / world.grains.len() as f64
+}
+
+/// How many walls `grain` touches.
+pub fn walls_touched(world: &World, grain: usize) -> usize {
+    let own = world.contacts.iter().filter(|contact| {
+        let is_wall = matches!(contact.partner, Partner::Wall(_));
+        contact.touching && is_wall && contact.grain as usize == grain
+    });
+    own.count()
 }
 
 /// Shares of the touching pairs of grains in which both are of the first species, one of either,

@@ -2,6 +2,7 @@
 //!
 //! In: a world. Out: one value per grain, in the unit that people read.
 
+use super::contact_network::coordinations;
 use super::quantity::{Format, Scope, quantities};
 use crate::geometry::sphere_volume;
 use crate::physics::{Unit, units};
@@ -26,7 +27,7 @@ quantities! {
         }
         Coordination {
             key: "coordination number",
-            description: "Touching partners, walls too.",
+            description: "Other grains that it touches; walls do not count.",
             short_label: "Coordination number",
             format: Format::Count,
         }
@@ -89,7 +90,7 @@ impl GrainQuantity {
             Self::Speed => values.extend(grains.velocity.iter().map(|v| v.length())),
             Self::Spin => values.extend(grains.spin.iter().map(|spin| spin.length())),
             Self::Coordination => {
-                values.extend(grains.contact_count.iter().map(|&count| f64::from(count)));
+                values.extend(coordinations(world).into_iter().map(f64::from));
             }
             Self::KineticEnergy => {
                 let energy = |i: usize| {

@@ -67,6 +67,7 @@ mod rigid_rotation;
 mod run_quantity;
 mod run_summary;
 mod sample;
+mod sample_column;
 mod sampled_quantity;
 mod series;
 mod summary;
@@ -85,11 +86,13 @@ pub use column::{
     CRITICAL_ASPECT_RATIO, InitialColumn, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
     TALL_REST_TIME_LAW, cone_volume, cone_volume_law, contact_shares_law, run_out_law,
 };
-pub use contact_network::{contact_shares, coordination_number, largest_overlap};
+pub use contact_network::{
+    contact_shares, coordination_number, coordinations, largest_overlap, walls_touched,
+};
 pub use deposit::{Deposit, DepositShape, HeightProfile};
 pub use difference::{Difference, difference_in_words};
 pub use drum_torque::drum_torque;
-pub use dry_drum::{DryDrum, dry_drum};
+pub use dry_drum::{DryDrum, beyond_kasper, dry_drum};
 pub use energy_ledger::{EnergyLedger, elastic_energy};
 pub use estimate::Estimate;
 pub use flow::{FlowHistory, FlowProfile, NON_RIGID_TEMPERATURE};

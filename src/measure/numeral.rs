@@ -54,6 +54,36 @@ pub fn with_prefix(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", short(value * factor))
 }
 
+/// A moment or a time of a run [s]: `12.34 s`, below a second with a prefix, `2.000 ms`.
+pub fn moment(seconds: f64) -> String {
+    // What would be rounded to a second is one.
+    if seconds == 0.0 || !seconds.is_finite() || seconds.abs() >= 0.9995 {
+        format!("{} s", fixed(seconds, 2))
+    } else {
+        with_prefix(seconds, "s")
+    }
+}
+
+/// How often a process goes as fast as its own time, `1.25×`, with two digits where it is slower.
+pub fn times(factor: f64) -> String {
+    if factor >= 0.995 || !factor.is_finite() {
+        format!("{}×", fixed(factor, 2))
+    } else {
+        format!("{}×", small_share(factor))
+    }
+}
+
+/// Two digits of a number below one, however small it is.
+fn small_share(value: f64) -> String {
+    if value == 0.0 || value >= 1e-4 {
+        rounded(value, 2)
+    } else {
+        let exponent = value.log10().floor();
+        let digits = fixed(value * 10_f64.powf(-exponent), 1);
+        format!("{digits}·{}", power_of_ten(exponent as i32))
+    }
+}
+
 /// `value ± error` with as many digits as the error allows: two of the error where it begins with a
 /// one, one otherwise. Small and large ones stand as `(3.2 ± 0.4)·10⁻⁵`; the `unit` stands behind
 /// the whole, a degree behind each: `28.3° ± 0.4°`, `(12.3 ± 0.4) mJ`.
@@ -195,6 +225,30 @@ fn raised(exponent: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn short_moments_and_slow_paces_say_something() {
+        let moments = [
+            (0.0, "0.00 s"),
+            (12.345, "12.35 s"),
+            (0.9999, "1.00 s"),
+            (0.35, "350.0 ms"),
+            (2e-3, "2.000 ms"),
+            (2e-5, "20.00 µs"),
+        ];
+        for (time, text) in moments {
+            assert_eq!(moment(time), text);
+        }
+        let paces = [
+            (2.0, "2.00×"),
+            (0.25, "0.25×"),
+            (0.0042, "0.0042×"),
+            (2e-5, "2.0·10⁻⁵×"),
+        ];
+        for (factor, text) in paces {
+            assert_eq!(times(factor), text);
+        }
+    }
 
     #[test]
     fn numbers_keep_about_four_digits_and_powers_of_ten_stand_high() {

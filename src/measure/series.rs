@@ -1,17 +1,19 @@
 //! Samples of a run, kept in columns so that a plot or an average can borrow one.
 
 use super::sample::Sample;
+use super::sample_column::Column;
 use super::sampled_quantity::Measure;
 use serde::{Deserialize, Serialize};
 
 /// Samples in order of time, column by column. All of a run are kept, so that any part of it can
-/// be plotted and averaged: some 20 kB for a simulated second.
+/// be plotted and averaged: at most 20 kB for a simulated second of a bed, as a column that never
+/// changes takes no room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     steps: Vec<u64>,
     time: Vec<f64>,
     #[serde(with = "columns")]
-    columns: [Vec<f64>; Measure::COUNT],
+    columns: [Column; Measure::COUNT],
 }
 
 impl Default for Series {
@@ -19,7 +21,7 @@ impl Default for Series {
         Self {
             steps: Vec::new(),
             time: Vec::new(),
-            columns: std::array::from_fn(|_| Vec::new()),
+            columns: std::array::from_fn(|_| Column::default()),
         }
     }
 }
@@ -32,6 +34,12 @@ impl Series {
         for (column, value) in self.columns.iter_mut().zip(sample.values) {
             column.push(value);
         }
+    }
+
+    /// Memory that it takes [bytes].
+    pub fn memory(&self) -> usize {
+        let columns = self.columns.iter().map(Column::memory);
+        8 * (self.steps.capacity() + self.time.capacity()) + columns.sum::<usize>()
     }
 
     /// Whether its columns are of one length and its samples in order, as a file may not say.
@@ -66,7 +74,7 @@ impl Series {
 
     /// One measure at each sample, in SI units.
     pub fn column(&self, measure: Measure) -> &[f64] {
-        &self.columns[measure as usize]
+        self.columns[measure as usize].values()
     }
 
     /// The sample at `index`, if there is one.
@@ -74,7 +82,7 @@ impl Series {
         (index < self.len()).then(|| Sample {
             step: self.steps[index],
             time: self.time[index],
-            values: std::array::from_fn(|column| self.columns[column][index]),
+            values: std::array::from_fn(|column| self.columns[column].at(index)),
         })
     }
 
@@ -91,15 +99,12 @@ impl Series {
     /// Becomes the first `len` samples of `other`.
     pub fn copy_first(&mut self, other: &Self, len: usize) {
         let len = len.min(other.len());
-        let copy = |own: &mut Vec<f64>, other: &[f64]| {
-            own.clear();
-            own.extend_from_slice(&other[..len]);
-        };
         self.steps.clear();
         self.steps.extend_from_slice(&other.steps[..len]);
-        copy(&mut self.time, &other.time);
+        self.time.clear();
+        self.time.extend_from_slice(&other.time[..len]);
         for (own, other) in self.columns.iter_mut().zip(&other.columns) {
-            copy(own, other);
+            own.copy_first(other, len);
         }
     }
 
@@ -115,17 +120,18 @@ impl Series {
 
 /// The columns in a file: a list that has one entry per measure.
 mod columns {
-    use super::Measure;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+    use super::{Column, Measure};
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
-    type Columns = [Vec<f64>; Measure::COUNT];
+    type Columns = [Column; Measure::COUNT];
 
     pub fn serialize<S: Serializer>(columns: &Columns, serializer: S) -> Result<S::Ok, S::Error> {
-        columns.as_slice().serialize(serializer)
+        serializer.collect_seq(columns.iter().map(Column::values))
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Columns, D::Error> {
         let columns: Vec<Vec<f64>> = Vec::deserialize(deserializer)?;
+        let columns: Vec<Column> = columns.into_iter().map(Column::from).collect();
         let count = columns.len();
         let expected = format!("{} columns", Measure::COUNT);
         (columns.try_into()).map_err(|_| D::Error::invalid_length(count, &expected.as_str()))

@@ -17,16 +17,20 @@ pub struct Window<'a> {
     series: &'a Series,
     first: usize,
     time: &'a [f64],
+    /// Of unevenly spaced samples, those that are about as far apart as the farthest.
+    even: Option<Vec<usize>>,
 }
 
 impl<'a> Window<'a> {
     /// Those from `from_time` [s] on.
     pub fn of(series: &'a Series, from_time: f64) -> Self {
         let first = series.first_at(from_time);
+        let time = &series.time()[first..];
         Self {
             series,
             first,
-            time: &series.time()[first..],
+            time,
+            even: evenly_spaced(time),
         }
     }
 
@@ -52,7 +56,12 @@ impl<'a> Window<'a> {
 
     /// Mean of a measure over the window; NaN where no sample has a value.
     pub fn mean(&self, measure: Measure) -> Estimate {
-        time_average(self.column(measure))
+        let values = self.column(measure);
+        let Some(even) = &self.even else {
+            return time_average(values);
+        };
+        let values: Vec<f64> = even.iter().map(|index| values[*index]).collect();
+        time_average(&values)
     }
 
     /// Change of a measure over the window per second: the mean of its changes from sample to
@@ -147,4 +156,21 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 /// Largest of the finite values; NaN without any.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NAN, f64::max)
+}
+
+/// Of samples at such `time`s [s], those by which an average counts all times alike; none where all
+/// of them do. Samples that follow what happens are far closer at some times than at others.
+fn evenly_spaced(time: &[f64]) -> Option<Vec<usize>> {
+    let apart = || time.windows(2).map(|pair| pair[1] - pair[0]);
+    let (least, most) = (
+        apart().fold(f64::INFINITY, f64::min),
+        apart().fold(0.0, f64::max),
+    );
+    if least > 0.5 * most || most <= 0.0 {
+        return None;
+    }
+    let begin = time[0];
+    let cell = |time: f64| ((time - begin) / most) as u64;
+    let is_next = |index: &usize| *index == 0 || cell(time[*index]) > cell(time[*index - 1]);
+    Some((0..time.len()).filter(is_next).collect())
 }

@@ -20,6 +20,7 @@
 //! What a polyhedron looks like stands once, in `shapes_file`.
 
 use super::vtk::{Array, DataSet};
+use crate::measure::coordinations;
 use crate::run::Provenance;
 use crate::world::{Polyhedra, World};
 use glam::DMat3;
@@ -67,7 +68,8 @@ fn data(world: &World, last: i32) -> Vec<Array<'_>> {
     let grains = &world.grains;
     let count = grains.len();
     let species = || grains.species.iter().map(|species| i32::from(species.0));
-    let touching = || (grains.contact_count.iter()).map(|count| count.cast_signed());
+    let counts = coordinations(world);
+    let touching = move || counts.clone().into_iter().map(u32::cast_signed);
     let mut data = vec![
         Array::integers("id", count, move || 0..last),
         Array::small_integers("shapetype", count, species),

@@ -1,7 +1,7 @@
 //! What files and results show of a run.
 
 use crate::measure::{FlowHistory, LEFT_OUT, SMALLEST_DROP, Series, Summary, results, summarise};
-use crate::run::{Run, StampedCommand};
+use crate::run::{Run, Sampling, StampedCommand};
 use crate::world::World;
 
 /// A run so far, as files and results show it: its present state and what was kept of it until
@@ -16,6 +16,8 @@ pub struct RunSoFar<'a> {
     pub flow: &'a FlowHistory,
     /// The commands carried out since time zero.
     pub commands: &'a [StampedCommand],
+    /// Which samples were taken, and what the next one depends on.
+    pub sampling: Sampling,
 }
 
 impl<'a> RunSoFar<'a> {
@@ -26,6 +28,7 @@ impl<'a> RunSoFar<'a> {
             series: run.series(),
             flow: run.flow(),
             commands: run.commands(),
+            sampling: run.sampling(),
         }
     }
 

@@ -4,12 +4,15 @@
 //! the order of the registry.
 
 use super::parameter::{Entry, NameKind, Parameter, entries};
-use super::parameter_row::{Names, PanelSection, ParameterRow};
+use super::parameter_row::{Names, PanelSection, ParameterRow, Preset};
 use super::value::{Choice, Value};
 use crate::physics::limits;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneMaterial};
 use crate::world::World;
 use std::ops::RangeInclusive;
+
+/// The material that several named values are called after.
+const GLASS: &str = "glass";
 
 /// A parameter of a scene, and all that a field or a slider needs to know of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +43,33 @@ impl ParameterInfo {
     /// What is known of it in all scenes.
     pub fn row(&self) -> &'static ParameterRow {
         self.parameter.row()
+    }
+
+    /// Its named values in `scene`: for the friction of grains of several materials that of each of
+    /// these, and nothing that is called after glass where there is none.
+    pub fn presets<'a>(&self, scene: &'a Scene) -> Vec<Preset<'a>> {
+        let common = self.row().presets.iter().copied();
+        let Some((a, b)) = self.parameter.pair() else {
+            return common.collect();
+        };
+        let of_grains: Vec<&SceneMaterial> = (scene.materials.iter())
+            .filter(|material| scene.has_grains_of(&material.name))
+            .collect();
+        let is_friction = matches!(self.parameter, Parameter::Friction(..));
+        if is_friction && of_grains.len() > 1 {
+            let own = of_grains.iter().map(|material| Preset {
+                name: &material.name,
+                value: material.friction,
+            });
+            return common
+                .filter(|preset| preset.value == 0.0)
+                .chain(own)
+                .collect();
+        }
+        let is_glass = [a, b].iter().any(|name| name.contains(GLASS));
+        common
+            .filter(|preset| is_glass || !preset.name.contains(GLASS))
+            .collect()
     }
 
     /// The range of its numbers; of choices that of the numbers that stand for them.

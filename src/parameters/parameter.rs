@@ -172,6 +172,8 @@ parameters! {
     Duration => run::DURATION,
     /// Simulated time between two written states [s].
     OutputInterval => run::OUTPUT_INTERVAL,
+    /// Simulated time between two samples [s].
+    SampleInterval => run::SAMPLE_INTERVAL,
 }
 
 /// Every row of the registry, in the order of [`Parameter`].

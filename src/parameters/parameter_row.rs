@@ -36,7 +36,7 @@ pub struct ParameterRow {
     /// How a slider goes through that range.
     pub scale: Scale,
     /// Values that have a name.
-    pub presets: &'static [Preset],
+    pub presets: &'static [Preset<'static>],
     /// One sentence: what it does.
     pub description: &'static str,
     /// Where it stands in the equations of the papers, in the contact law of a scene; empty where
@@ -129,15 +129,15 @@ pub enum PanelSection {
 
 /// A value with a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Preset {
+pub struct Preset<'a> {
     /// What people call it.
-    pub name: &'static str,
+    pub name: &'a str,
     /// The value in SI units.
     pub value: f64,
 }
 
 /// A preset.
-pub(super) const fn preset(name: &'static str, value: f64) -> Preset {
+pub(super) const fn preset(name: &'static str, value: f64) -> Preset<'static> {
     Preset { name, value }
 }
 

@@ -8,6 +8,7 @@
 use super::Snapshot;
 use super::branch::Branch;
 use super::history::Moment;
+use super::sampling::Sampling;
 use super::undo::{Changed, Destination, UndoEntry};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
@@ -128,6 +129,18 @@ impl Archive {
     pub fn shown(&self) -> Option<World> {
         let shown = self.states.first()?.snapshot.clone();
         Some(shown.sharing(Some(&self.bed)).world().clone())
+    }
+
+    /// How samples are taken from each state on, as far as the state's grid does not say it.
+    pub fn samplings(&self) -> impl Iterator<Item = Sampling> {
+        self.states.iter().map(|state| state.snapshot.sampling)
+    }
+
+    /// Takes samples from each state on as the `samplings` say, as many as there are.
+    pub fn set_samplings(&mut self, samplings: &[Sampling]) {
+        for (state, sampling) in self.states.iter_mut().zip(samplings) {
+            state.snapshot.sampling = *sampling;
+        }
     }
 
     /// Whether all that it refers to is there.

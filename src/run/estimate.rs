@@ -6,7 +6,7 @@
 
 use crate::files::read_whole;
 use crate::measure::Measure;
-use crate::run::SAMPLE_INTERVAL;
+use crate::scene::SAMPLE_INTERVAL;
 use crate::scene::{Scene, SceneGrains};
 use crate::solver::advise;
 use std::fmt;
@@ -96,7 +96,8 @@ impl Estimate {
         };
         let time_step = advise(scene).time_step;
         let steps = (scene.duration / time_step).ceil();
-        let samples = scene.duration / SAMPLE_INTERVAL + 1.0;
+        let apart = scene.sample_interval.unwrap_or(SAMPLE_INTERVAL);
+        let samples = scene.duration / apart + 1.0;
         let columns = Measure::COUNT as f64 + 2.0;
         let outputs = scene.duration / scene.output_interval + 1.0;
         let settling = settling_time(scene) / time_step;

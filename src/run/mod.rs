@@ -58,6 +58,7 @@ pub use crate::parameters::{
     Parameter, ParameterInfo, Value, Values, live_parameters, start_parameters, time_step,
 };
 pub use crate::physics::DisplayUnit;
+pub use crate::scene::SAMPLE_INTERVAL;
 pub use bed::BedStore;
 pub use branch::Branch;
 pub use check::CommandError;
@@ -71,7 +72,7 @@ pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};
 pub use provenance::{Provenance, printable};
 pub use record::{RunRecord, VERSION, fingerprint};
-pub use sampling::SAMPLE_INTERVAL;
+pub use sampling::Sampling;
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use snapshot::{Checkpoint, CheckpointParts, Snapshot};

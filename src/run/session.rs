@@ -3,12 +3,13 @@
 //!
 //! In: a timeline. Out: a file, and from it the same timeline. Its first line names program,
 //! layout, version and the checksum of the rest; its second line is the [`RunRecord`] of the moment
-//! shown, as JSON that people and `grainfall verify` read; then come states and samples, and the
-//! grains that the scene takes from a file. A file of another version is refused: another version
-//! may compute other bits.
+//! shown, as JSON that people and `grainfall verify` read; then come states and samples, the grains
+//! that the scene takes from a file, and how the window looked. A file of another version is refused:
+//! another version may compute other bits.
 
 use super::archive::Archive;
 use super::record::{RunRecord, VERSION};
+use super::sampling::Sampling;
 use super::script::ScriptedCommand;
 use super::timeline::Timeline;
 use crate::files::{open_regular, read_whole, write_whole};
@@ -22,7 +23,9 @@ use std::path::{Path, PathBuf};
 /// What the first line begins with.
 const MARK: &str = "grainfall session";
 /// Raised whenever what follows the second line is laid out otherwise.
-const LAYOUT: &str = "3";
+const LAYOUT: &str = "4";
+/// The layout that ends where [`Tail`] begins; it is read, too.
+const WITHOUT_TAIL: &str = "3";
 
 /// Largest file that is read [bytes]: a day of a drum with all its branches has less.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -37,6 +40,8 @@ pub struct Session {
     archive: Archive,
     /// The scene as it was opened, where what acts from the next start on was changed since.
     original: Option<Scene>,
+    /// How the window looked, in its own words; empty where that is not known.
+    look: String,
 }
 
 /// What follows the second line of a file.
@@ -47,6 +52,14 @@ struct Rest<A, C> {
     cells: Option<C>,
     /// The scene as it was opened, as JSON, where it is another.
     original: Option<String>,
+}
+
+/// What follows that.
+#[derive(Default, Serialize, Deserialize)]
+struct Tail {
+    /// How samples are taken from each state of the archive on.
+    samplings: Vec<Sampling>,
+    look: String,
 }
 
 /// Why a file cannot be opened as a session, and what to do.
@@ -94,6 +107,7 @@ impl Session {
             record: RunRecord::of(name, run.scene(), commands, run.world()),
             archive: timeline.archive(),
             original: None,
+            look: String::new(),
         }
     }
 
@@ -105,6 +119,17 @@ impl Session {
             original: is_other.then(|| original.clone()),
             ..self
         }
+    }
+
+    /// The same with how the window looks, in its own words.
+    #[must_use]
+    pub fn looking(self, look: String) -> Self {
+        Self { look, ..self }
+    }
+
+    /// How the window looked, in its own words; empty where that is not known.
+    pub fn look(&self) -> &str {
+        &self.look
     }
 
     /// Whether the file at `path` says that it is one.
@@ -145,7 +170,12 @@ impl Session {
                 .map(serde_json::to_string)
                 .transpose()?,
         };
+        let tail = Tail {
+            samplings: self.archive.samplings().collect(),
+            look: self.look.clone(),
+        };
         let body = postcard::to_extend(&rest, body).map_err(io::Error::other)?;
+        let body = postcard::to_extend(&tail, body).map_err(io::Error::other)?;
         write_whole(path, |file| {
             let checksum = blake3::hash(&body).to_hex();
             writeln!(file, "{MARK} {LAYOUT} {VERSION} {checksum}")?;
@@ -180,7 +210,7 @@ impl Session {
         else {
             return Err(Reason::Damaged("its first line is not whole"));
         };
-        if (layout, version) != (LAYOUT, VERSION) {
+        if ![LAYOUT, WITHOUT_TAIL].contains(&layout) || version != VERSION {
             let build = if version == VERSION {
                 " of another build"
             } else {
@@ -196,8 +226,13 @@ impl Session {
         let foreign = "its contents are those of another build of this version";
         let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
         // A value that no parameter takes stands in the list of changes too, where it has a name.
-        let rest: Rest<Archive, Vec<Rounded>> = postcard::from_bytes(rest)
+        let (rest, tail): (Rest<Archive, Vec<Rounded>>, &[u8]) = postcard::take_from_bytes(rest)
             .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
+        let tail = if layout == WITHOUT_TAIL {
+            Tail::default()
+        } else {
+            postcard::from_bytes(tail).map_err(|_| Reason::Damaged(foreign))?
+        };
         let _held = rest.cells.and_then(HeldCells::hold);
         // The grains of its scene are in it: no other file is opened.
         let record: RunRecord = within_folders(&[], || of_json(second))?;
@@ -209,7 +244,8 @@ impl Session {
         {
             scene.check().map_err(|e| Reason::Scene(e.to_string()))?;
         }
-        let archive = rest.archive;
+        let mut archive = rest.archive;
+        archive.set_samplings(&tail.samplings);
         archive.check(&record.scene).map_err(Reason::Unsound)?;
         let hash = archive.shown().map(|world| world.hash().to_string());
         if !record.is_genuine() || hash != record.state_hash {
@@ -221,6 +257,7 @@ impl Session {
             record,
             archive,
             original,
+            look: tail.look,
         })
     }
 }
@@ -324,6 +361,7 @@ mod tests {
             record: record.sealed(),
             archive,
             original: None,
+            look: String::new(),
         })
     }
 
@@ -350,6 +388,30 @@ mod tests {
         few_steps(&mut timeline);
         timeline.reset();
         few_steps(&mut timeline);
+    }
+
+    #[test]
+    fn sessions_of_the_layout_without_a_tail_open_still() {
+        let folder = tempfile::tempdir().unwrap();
+        let [new, old] = ["new.grainfall", "old.grainfall"].map(|name| folder.path().join(name));
+        let written = session(&Scene::open("two-grains").unwrap()).looking("a look".into());
+        written.write(&new).unwrap();
+        let samplings = |session: &Session| session.archive.samplings().collect::<Vec<_>>();
+        let read = Session::read(&new).unwrap();
+        assert_eq!(read.look(), "a look");
+        assert_eq!(samplings(&read), samplings(&written));
+        let bytes = std::fs::read(&new).unwrap();
+        let (_, body) = first_line(&bytes).unwrap();
+        let (_, rest) = first_line(body).unwrap();
+        let (_, tail): (Rest<Archive, Vec<Rounded>>, &[u8]) =
+            postcard::take_from_bytes(rest).unwrap();
+        let body = &body[..body.len() - tail.len()];
+        let checksum = blake3::hash(body).to_hex();
+        let first = format!("{MARK} {WITHOUT_TAIL} {VERSION} {checksum}\n");
+        std::fs::write(&old, [first.as_bytes(), body].concat()).unwrap();
+        let read = Session::read(&old).unwrap();
+        assert_eq!(read.look(), "");
+        use_up(read);
     }
 
     #[test]

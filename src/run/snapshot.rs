@@ -5,7 +5,7 @@
 //! the run's work.
 
 use super::StampedCommand;
-use super::sampling::next_sample;
+use super::sampling::Sampling;
 use crate::measure::{FlowHistory, Series};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,9 @@ pub struct Snapshot {
     pub(super) samples: usize,
     #[serde(with = "super::shared")]
     pub(super) flow: Arc<FlowHistory>,
-    pub(super) next_sample: u64,
+    /// In a file as it was before samples followed what happens; the rest stands apart there.
+    #[serde(with = "on_grid")]
+    pub(super) sampling: Sampling,
 }
 
 impl Snapshot {
@@ -64,7 +66,7 @@ pub struct Checkpoint {
     pub(super) series: Arc<Series>,
     #[serde(with = "super::shared")]
     pub(super) flow: Arc<FlowHistory>,
-    pub(super) next_sample: u64,
+    pub(super) sampling: Sampling,
 }
 
 /// What a [`Checkpoint`] without its samples is read from.
@@ -73,23 +75,23 @@ pub struct CheckpointParts<'a> {
     world: &'a World,
     commands: &'a [StampedCommand],
     flow: &'a FlowHistory,
-    next_sample: u64,
+    sampling: Sampling,
 }
 
 impl<'a> CheckpointParts<'a> {
-    /// Those of the state `world` at the end of a run that had these `commands`, so many `samples`
-    /// and this `flow`.
+    /// Those of the state `world` at the end of a run that had these `commands` and this `flow` and
+    /// took its samples by `sampling`.
     pub fn of(
         world: &'a World,
         commands: &'a [StampedCommand],
-        samples: usize,
+        sampling: Sampling,
         flow: &'a FlowHistory,
     ) -> Self {
         Self {
             world,
             commands,
             flow,
-            next_sample: next_sample(world, samples as u64),
+            sampling,
         }
     }
 }
@@ -107,5 +109,19 @@ impl Checkpoint {
             series: Arc::new(series),
             ..self
         }
+    }
+}
+
+/// The sampling of a state in a file: the index of the grid's next sample.
+mod on_grid {
+    use super::Sampling;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(sampling: &Sampling, to: S) -> Result<S::Ok, S::Error> {
+        sampling.grid().serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Sampling, D::Error> {
+        u64::deserialize(from).map(Sampling::on_grid)
     }
 }

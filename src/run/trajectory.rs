@@ -1,18 +1,18 @@
 //! The trajectory of a scene: its world, the commands carried out and the samples taken.
 //!
 //! In: a scene and its settled bed, then commands and step numbers to advance to. Out: the world at
-//! that step and a [`Sample`] every [`SAMPLE_INTERVAL`] of simulated time. Nothing here knows of
+//! that step and its samples (see [`super::sampling`]). Nothing here knows of
 //! wall-clock time, ticks or threads: however a run is sliced, the same scene, seed and commands
 //! give the same bits.
 
 use super::branch::Branch;
 use super::check::accept;
 use super::history::Moment;
-use super::sampling::{next_sample, sample_step};
+use super::sampling::{Pace, Sampling};
 use super::script::Script;
 use super::snapshot::{Checkpoint, Snapshot};
 use super::{Command, CommandError, StampedCommand};
-use crate::measure::{FlowHistory, Series, sample_and_surface};
+use crate::measure::{FlowHistory, Sample, Series, sample, sample_and_surface};
 use crate::parameters::{Parameter, ParameterInfo, Value, live_parameters};
 use crate::scene::{Scene, TimeStep};
 use crate::solver::{Extremes, Fault, Profile, Solver, TimeStepAdvice};
@@ -53,7 +53,10 @@ pub struct Run {
     samples: usize,
     /// The flowing layer up to the state, where that is not the branch's end.
     flow: Option<Arc<FlowHistory>>,
-    next_sample: u64,
+    pace: Pace,
+    sampling: Sampling,
+    /// The state a step ago, where single contacts are followed.
+    before: Option<World>,
     script: Script,
     /// How many of the script's commands are recorded already, with what the time step became.
     recorded: usize,
@@ -66,9 +69,12 @@ impl Run {
     /// A run of `scene` that starts from `bed`, its world at time zero, on `threads` threads.
     pub fn new(scene: Arc<Scene>, bed: impl Into<Arc<World>>, threads: usize) -> Self {
         let bed = bed.into();
+        let pace = Pace::of(&scene, &bed);
         let mut run = Self {
             parameters: live_parameters(&scene, &bed).into(),
             extremes: Extremes::of(&scene),
+            pace,
+            before: pace.follows_contacts().then(|| (*bed).clone()),
             scene,
             world: (*bed).clone(),
             bed,
@@ -77,7 +83,7 @@ impl Run {
             commands: 0,
             samples: 0,
             flow: None,
-            next_sample: 0,
+            sampling: Sampling::default(),
             script: Script::default(),
             recorded: 0,
             keeps_step: false,
@@ -102,8 +108,7 @@ impl Run {
         &self.bed
     }
 
-    /// The samples of the run, one every [`SAMPLE_INTERVAL`]; where the state is an earlier one,
-    /// those after it too.
+    /// The samples of the run; where the state is an earlier one, those after it too.
     pub fn series(&self) -> &Series {
         &self.branch.series
     }
@@ -116,6 +121,11 @@ impl Run {
     /// The commands carried out from time zero up to the state.
     pub fn commands(&self) -> &[StampedCommand] {
         &self.branch.history.commands()[..self.commands]
+    }
+
+    /// Which samples were taken until the state, and what the next one depends on.
+    pub fn sampling(&self) -> Sampling {
+        self.sampling
     }
 
     /// What was changed and measured up to the end, wherever the state is.
@@ -226,15 +236,36 @@ impl Run {
 
     fn advance_and_sample(&mut self, step: u64) -> Result<(), Fault> {
         while self.world.clock.step < step {
-            let sample_step = sample_step(&self.world, self.next_sample);
+            let sample_step = self.sampling.due(&self.pace, &self.world.clock);
             let script_step = self.script.next_step().unwrap_or(u64::MAX);
-            let stop = step.min(sample_step).min(script_step);
-            let steps = stop - self.world.clock.step;
-            self.solver.advance(&mut self.world, steps)?;
+            let now = self.world.clock.step;
+            let stop = step.min(sample_step.max(now + 1)).min(script_step);
+            if self.before.is_some() {
+                self.step_and_look()?;
+            } else {
+                self.solver.advance(&mut self.world, stop - now)?;
+            }
             self.take_due_sample();
             self.apply_due(false);
         }
         Ok(())
+    }
+
+    /// Takes one step; where grains meet or part in it, samples the state before it, too.
+    fn step_and_look(&mut self) -> Result<(), Fault> {
+        let Some(mut before) = self.before.take() else {
+            return Ok(());
+        };
+        before.clone_from(&self.world);
+        let outcome = self.solver.advance(&mut self.world, 1);
+        if outcome.is_ok() && self.sampling.heed(&before, &self.world) {
+            if self.sampling.note_before(&before.clock) {
+                self.keep_sample(&sample(&before));
+            }
+            self.take_sample();
+        }
+        self.before = Some(before);
+        outcome
     }
 
     /// All it takes to go on from here in another process.
@@ -244,7 +275,7 @@ impl Run {
             commands: self.commands().to_vec(),
             series: self.branch.series.clone(),
             flow: self.flow().clone(),
-            next_sample: self.next_sample,
+            sampling: self.sampling,
         }
     }
 
@@ -264,7 +295,7 @@ impl Run {
             number: self.branch.number,
         };
         self.flow = None;
-        self.next_sample = checkpoint.next_sample;
+        self.sampling = checkpoint.sampling;
     }
 
     /// All it takes to come back to this moment.
@@ -274,7 +305,7 @@ impl Run {
             commands: self.commands,
             samples: self.samples,
             flow: self.flow().clone(),
-            next_sample: self.next_sample,
+            sampling: self.sampling,
         }
     }
 
@@ -291,7 +322,7 @@ impl Run {
         self.commands = snapshot.commands.min(self.branch.history.commands().len());
         self.samples = snapshot.samples.min(self.branch.series.len());
         self.flow = Some(snapshot.flow.clone());
-        self.next_sample = snapshot.next_sample;
+        self.sampling = snapshot.sampling;
         self.forget_script();
         self.note_end();
     }
@@ -300,7 +331,8 @@ impl Run {
     /// known.
     pub(crate) fn rewind(&mut self) {
         self.world.clone_from(&self.bed);
-        (self.commands, self.samples, self.next_sample) = (0, 0, 0);
+        (self.commands, self.samples) = (0, 0);
+        self.sampling = Sampling::default();
         self.flow = Some(Arc::default());
         self.forget_script();
         self.take_due_sample();
@@ -415,20 +447,29 @@ impl Run {
     }
 
     fn take_due_sample(&mut self) {
-        if sample_step(&self.world, self.next_sample) > self.world.clock.step {
-            return;
+        if self.sampling.due(&self.pace, &self.world.clock) <= self.world.clock.step {
+            self.take_sample();
         }
+    }
+
+    fn take_sample(&mut self) {
         let (sample, surface) = sample_and_surface(&self.world);
         if let Some(line) = surface {
             let flow = self.flow.as_mut().unwrap_or(&mut self.branch.flow);
             Arc::make_mut(flow).add(&self.world, &sample, &line);
         }
+        self.keep_sample(&sample);
+        self.sampling.note(&self.pace, &self.world.clock);
+    }
+
+    fn keep_sample(&mut self, sample: &Sample) {
         // On the way to a later moment of the branch the sample is in it already.
-        if self.samples == self.branch.series.len() {
-            Arc::make_mut(&mut self.branch.series).push(sample);
+        let known = self.branch.series.steps().last();
+        if known.is_none_or(|last| *last < sample.step) {
+            Arc::make_mut(&mut self.branch.series).push(*sample);
         }
-        self.samples += 1;
-        self.next_sample = next_sample(&self.world, self.next_sample);
+        let steps = self.branch.series.steps();
+        self.samples = steps.partition_point(|step| *step <= sample.step);
     }
 
     /// Notes the state as the branch's end, where it is at or beyond it.

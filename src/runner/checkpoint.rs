@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 /// What the file begins with.
 const MARK: &str = "grainfall checkpoint";
 /// Raised whenever the file is laid out otherwise.
-const LAYOUT: &str = "5";
+const LAYOUT: &str = "6";
 /// Largest file of a checkpoint that is read [bytes].
 const LARGEST: u64 = 16 << 30;
 /// Most of the file in which its first line ends.
@@ -209,7 +209,7 @@ impl CheckpointFile {
         self.log
             .add(run.series)
             .map_err(|source| OutputError::write(&self.log.path, source))?;
-        let parts = CheckpointParts::of(run.world, run.commands, run.series.len(), run.flow);
+        let parts = CheckpointParts::of(run.world, run.commands, run.sampling, run.flow);
         let contents = Contents {
             run: parts,
             written,

@@ -8,6 +8,10 @@ use crate::physics::{ContactLaw, Integrator, Liquid};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+/// Simulated time between two samples of a bed, and the longest between those of another scene that
+/// does not state one [s].
+pub const SAMPLE_INTERVAL: f64 = 0.02;
+
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
@@ -40,6 +44,9 @@ pub struct Scene {
     pub duration: f64,
     /// Simulated time between two written states [s].
     pub output_interval: f64,
+    /// Simulated time between two samples [s]; none where samples follow what happens.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample_interval: Option<f64>,
     /// Seed of everything random.
     pub seed: u64,
 }

@@ -25,7 +25,7 @@ mod text;
 
 pub use built_in::{BuiltIn, built_in};
 pub use container::{SceneContainer, ScenePlane, SceneTube};
-pub use description::{Scene, TimeStep};
+pub use description::{SAMPLE_INTERVAL, Scene, TimeStep};
 pub use error::SceneError;
 pub(crate) use error::{Problem, one_of, suggestion};
 pub(crate) use file::count_of;

@@ -239,7 +239,7 @@ fn meaning(key: &str) -> &'static str {
         "law" => ContactLaw::FORMS,
         "integrator" => "`Explicit` or `Imex`",
         "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
-        "duration" | "output_interval" => "a time in s",
+        "duration" | "output_interval" | "sample_interval" => "a time in s",
         _ => "",
     }
 }

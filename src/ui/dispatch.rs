@@ -14,8 +14,9 @@ use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
 use crate::ui::playback::first_speed;
 use crate::ui::request::{Request, Requests};
-use crate::ui::screenshot_orders::ScreenshotOrders;
-use crate::view::{CameraRequest, ViewSettings};
+use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
+use crate::ui::session_look::SessionLook;
+use crate::view::{CameraRequest, OrbitCamera, ViewSettings};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::tasks::futures::check_ready;
@@ -39,6 +40,7 @@ pub struct Opener<'w, 's> {
     opening: ResMut<'w, Opening>,
     options: Res<'w, OpenWith>,
     view: ResMut<'w, ViewSettings>,
+    camera: Option<ResMut<'w, OrbitCamera>>,
     screenshots: ResMut<'w, ScreenshotOrders>,
     commands: Commands<'w, 's>,
 }
@@ -55,11 +57,22 @@ pub fn fulfil_requests(
     if let Some(simulation) = &mut simulation {
         asked.extend(tell_saved(simulation, &mut dock));
     }
+    let sets = asked.iter().any(Request::sets_a_value);
+    if let Some(simulation) = simulation.as_mut().filter(|_| sets && !dock.is_changing) {
+        simulation.send(LabCommand::OpenChange);
+        dock.is_changing = true;
+    }
     for request in asked {
         let simulation = simulation.as_deref_mut();
         let unsaved = (simulation.as_ref()).is_some_and(|simulation| simulation.is_unsaved());
         if let Some(request) = without_loss(request, unsaved, &mut dock) {
             fulfil(request, simulation, &mut dock, &mut opener, &mut exit);
+        }
+    }
+    if dock.is_changing && !dock.is_holding {
+        dock.is_changing = false;
+        if let Some(simulation) = &mut simulation {
+            simulation.send(LabCommand::CloseChange);
         }
     }
     let saving = simulation.is_some_and(|simulation| simulation.is_saving());
@@ -92,15 +105,22 @@ fn fulfil(
         (Request::EndComparison(half), Some(simulation)) => {
             end_comparison(simulation, half, dock, &mut opener.view);
         }
-        (Request::SaveSession(path), Some(run)) => run.send(LabCommand::Save(path)),
+        (Request::SaveSession(path), Some(run)) => {
+            let look = opener.look(dock);
+            run.send(LabCommand::Save { path, look });
+        }
         (Request::SaveChanges(path), Some(run)) => {
             dock.notify(said("The list of changes", &path, save_changes(run, &path)));
         }
-        (Request::Save, simulation) => save(simulation, dock),
+        (Request::Save, simulation) => save(simulation, dock, opener),
         (Request::Start(scene), run) => opener.start_again(*scene, run.as_deref(), dock),
         (Request::Trail, _) => opener.trace_selected(),
         (Request::NoTrails, _) => opener.view.traced.clear(),
-        (Request::Camera(request), _) => opener.view.camera_request = Some(request),
+        (Request::Camera(request), _) => {
+            let keeps = matches!(request, CameraRequest::Save(_));
+            opener.view.follows_selected &= keeps;
+            opener.view.camera_request = Some(request);
+        }
         (Request::Compare(parameter), _) => dock.compare(parameter.as_ref()),
         (Request::ShowScenes, _) => dock.show_scenes(),
         (Request::Show(sheet), _) => dock.show_sheet(sheet),
@@ -109,6 +129,9 @@ fn fulfil(
         (Request::ChoosePicture, _) => dock.path_dialog.ask(Purpose::Picture),
         (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
         (Request::ChooseChanges, _) => dock.path_dialog.ask(Purpose::Changes),
+        (Request::ChooseFilm, _) if opener.screenshots.film != FilmState::Idle => {
+            dock.notify("A film is being recorded already: stop it first");
+        }
         (Request::ChooseFilm, _) => dock.path_dialog.ask(Purpose::Film),
         (Request::ExportPlot(export), _) => dock.export_plot(export),
         (Request::SavePlot(path), _) => save_plot(&path, dock),
@@ -131,9 +154,12 @@ fn fulfil(
 }
 
 /// Saves the session to the file it has, or lets the person choose one.
-fn save(simulation: Option<&mut Simulation>, dock: &mut Dock) {
+fn save(simulation: Option<&mut Simulation>, dock: &mut Dock, opener: &Opener) {
     match (simulation, dock.session.clone()) {
-        (Some(simulation), Some(path)) => simulation.send(LabCommand::Save(path)),
+        (Some(simulation), Some(path)) => {
+            let look = opener.look(dock);
+            simulation.send(LabCommand::Save { path, look });
+        }
         _ => dock.path_dialog.ask(Purpose::Session),
     }
 }
@@ -240,14 +266,28 @@ pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
                 speed: first_speed(session.record().scene.duration),
                 ..opener.options.0.clone()
             };
+            let look = session.look().to_owned();
             opener.show(Simulation::resume(session, options));
             dock.session_opened(&name);
+            opener.take_up(&look, &mut dock);
         }
         Err(error) => dock.show_open_error(error.to_string()),
     }
 }
 
 impl Opener<'_, '_> {
+    /// How the window looks, in its own words.
+    fn look(&self, dock: &Dock) -> String {
+        SessionLook::of(&self.view, self.camera.as_deref(), dock).in_words()
+    }
+
+    /// Looks as the session did whose `look` this is; one that is not known changes nothing.
+    fn take_up(&mut self, look: &str, dock: &mut Dock) {
+        if let Some(look) = SessionLook::read(look) {
+            look.restore(&mut self.view, self.camera.as_deref_mut(), dock);
+        }
+    }
+
     /// Draws the trail of the selected grain, or no longer.
     fn trace_selected(&mut self) {
         if let Some(grain) = self.view.selected {
@@ -312,6 +352,7 @@ impl Opener<'_, '_> {
         self.commands.insert_resource(simulation);
         self.view.cut = None;
         (self.view.selected, self.view.beside) = (None, None);
+        self.view.follows_selected = false;
         self.view.traced.clear();
         self.view.focus = Half::Left;
         self.view.camera_request = Some(CameraRequest::Home);

@@ -43,11 +43,14 @@ use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText, WidgetInfo, Wi
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+/// Computing time over which the speed of a scene is worth knowing.
+const WORTH_MEASURING: Duration = Duration::from_millis(200);
 /// How long a notice stays.
 const NOTICE_TIME: Duration = Duration::from_secs(6);
 
 /// All that surrounds the picture.
 #[derive(Resource)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Dock {
     left: Vec<Section>,
     right: Vec<Section>,
@@ -72,6 +75,14 @@ pub struct Dock {
     /// What to do when the session has been saved.
     pub after_saving: Option<Request>,
     notice: Option<(String, Instant)>,
+    /// Whether a button of the pointer or a key is held: what is changed meanwhile is one change.
+    pub is_holding: bool,
+    /// Whether such a change is under way.
+    pub is_changing: bool,
+    /// Whether a picture of the window is being taken, in which no tooltip belongs.
+    pub is_photographed: bool,
+    /// For how many frames a dialog has lain over the panels.
+    dialog_frames: u8,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
     /// Whether the dock is hidden and the picture fills the window.
@@ -128,6 +139,10 @@ impl Default for Dock {
             leaving: None,
             after_saving: None,
             notice: None,
+            is_holding: false,
+            is_changing: false,
+            is_photographed: false,
+            dialog_frames: 0,
             file_hovers: false,
             is_hidden: false,
         }
@@ -147,6 +162,9 @@ impl Dock {
         self.remember_look(root.ctx(), view);
         theme::show(root.ctx(), view.background);
         self.remember_ui(root.ctx(), simulation);
+        self.is_holding =
+            (root.ctx()).input(|input| input.pointer.any_down() || !input.keys_down.is_empty());
+        self.close_tooltips(root.ctx());
         out.extend(shortcuts::pressed(root.ctx(), simulation));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
@@ -159,6 +177,39 @@ impl Dock {
         }
         self.windows_ui(root.ctx(), out);
         focus_ui(root.ctx(), Palette::of(root.visuals()));
+        if self.is_photographed {
+            hide_tooltips(root.ctx());
+        }
+    }
+
+    /// Closes what tells of a place under the pointer where a dialog has come over it: egui lets it
+    /// stand until the pointer leaves that place.
+    fn close_tooltips(&mut self, ctx: &egui::Context) {
+        let has_dialog = self.shows_scenes
+            || self.path_dialog.is_open()
+            || self.sheet.is_some()
+            || self.open_error.is_some()
+            || self.leaving.is_some();
+        // In its first frame the place below it still is under the pointer.
+        if has_dialog && self.dialog_frames == 1 {
+            ctx.memory_mut(egui::Memory::reset_areas);
+            ctx.request_repaint();
+        }
+        self.dialog_frames = if has_dialog {
+            self.dialog_frames.saturating_add(1)
+        } else {
+            0
+        };
+    }
+
+    /// The sections of both sides, by the titles of their panels.
+    pub(super) fn sections(&mut self) -> impl Iterator<Item = &mut Section> {
+        self.left.iter_mut().chain(&mut self.right)
+    }
+
+    /// The sections of both sides.
+    pub(super) fn shown_sections(&self) -> impl Iterator<Item = &Section> {
+        self.left.iter().chain(&self.right)
     }
 
     /// Remembers in `memory` from now on.
@@ -237,7 +288,7 @@ impl Dock {
         {
             let profile = simulation.profile();
             let computed = profile.steps as f64 * world.clock.time_step;
-            if profile.steps > 0 {
+            if profile.total > WORTH_MEASURING {
                 self.memory
                     .ran(name, computed / profile.total.as_secs_f64());
             }
@@ -396,6 +447,17 @@ impl Dock {
             });
         ctx.request_repaint_after(NOTICE_TIME);
     }
+}
+
+/// Leaves all tooltips out of this frame.
+fn hide_tooltips(ctx: &egui::Context) {
+    let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
+    let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
+    ctx.graphics_mut(|graphics| {
+        for layer in layers {
+            *graphics.entry(layer) = egui::layers::PaintList::default();
+        }
+    });
 }
 
 /// Whether the run is at its start and has not been played.

@@ -11,6 +11,7 @@
 //! |---|---|
 //! | `plugin` | when panels are drawn, as systems of Bevy |
 //! | `dispatch` | what each request does |
+//! | `session_look` | how a window looked, as a session keeps it |
 //! | `dock`, `sections` | the register of panels, where they stand, what lies over them; one side of them |
 //! | `dialogs` | windows over the rest: scenes with their pictures, a path to choose, sheets of text |
 //! | `bars` | menu bar, the bar under the picture with its time slider, the film's bar, the badge of trust |
@@ -42,6 +43,7 @@ mod plugin;
 mod request;
 mod screenshot_orders;
 mod sections;
+mod session_look;
 mod shortcuts;
 pub mod theme;
 mod user_memory;
@@ -75,5 +77,6 @@ pub use plots::run_curves::{Curves, KeptRun};
 pub use plugin::{DockPlugin, UiPlugin};
 pub use request::{Request, Requests, Sheet};
 pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
+pub use session_look::SessionLook;
 pub use user_memory::{Look, UserMemory};
 pub(crate) use words::run_names::title_in_words;

@@ -39,6 +39,15 @@ pub trait Panel: Send + Sync + 'static {
     /// Makes it show `parameter`, where the panel shows one parameter.
     fn take_up(&mut self, _parameter: &Parameter) {}
 
+    /// What a person chose in it, for a session to keep, in its own words; empty where there is
+    /// nothing to choose.
+    fn choices(&self) -> String {
+        String::new()
+    }
+
+    /// Takes up `choices` as it stated them; what it does not know changes nothing.
+    fn take_choices(&mut self, _choices: &str) {}
+
     /// Draws it; what is asked for goes into `out`.
     fn ui(
         &mut self,

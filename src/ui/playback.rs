@@ -65,12 +65,28 @@ pub fn step_back(simulation: &Simulation) -> Option<Command> {
 pub fn leap(simulation: &Simulation, way: Way) -> Option<Command> {
     let clock = simulation.world()?.clock;
     let steps = (SAMPLE_INTERVAL / clock.time_step).ceil().max(1.0) as u64;
+    go(simulation, way, steps)
+}
+
+/// The command that goes so many `steps` from the moment shown; beyond the newest one the run goes
+/// on.
+pub fn go(simulation: &Simulation, way: Way, steps: u64) -> Option<Command> {
     let (step, end) = (simulation.step(), simulation.past().end.step);
     match way {
         Way::Back => (step > 0).then(|| Command::Seek(step.saturating_sub(steps))),
         Way::On if step < end => Some(Command::Seek(step.saturating_add(steps).min(end))),
         Way::On => Some(Command::Step(steps)),
     }
+}
+
+/// The command that shows the moment at `time` [s]; beyond the newest one the run goes on to it.
+pub fn go_to(simulation: &Simulation, time: f64) -> Option<Command> {
+    let step = simulation.step_times()?.step_at(time.max(0.0));
+    let end = simulation.past().end.step;
+    if step <= end || simulation.looks_back() {
+        return Some(Command::Seek(step.min(end)));
+    }
+    Some(Command::Step(step - end))
 }
 
 /// A direction in time.

@@ -3,7 +3,7 @@
 //! In: Bevy's app. Out: its systems. What is drawn is the dock's business, what a request does is
 //! `dispatch`'s.
 
-use crate::simulation::{Half, Options, RunView, Simulation};
+use crate::simulation::{Half, Options, RunView, Simulation, Status};
 use crate::ui::bars::film_bar::film_bar_ui;
 use crate::ui::dispatch::{OpenWith, Opening, finish_opening, fulfil_requests};
 use crate::ui::dock::Dock;
@@ -102,8 +102,10 @@ fn draw_panels(
     let mut root = egui::Ui::new(ctx, "root".into(), builder);
     let simulation = simulation.as_deref();
     if !dock.is_hidden {
+        dock.is_photographed = orders.is_taking || !orders.asked.is_empty();
         dock.ui(&mut root, simulation, &mut view, &mut requests.0);
-        film_bar_ui(&mut root, orders.film, &mut requests.0);
+        let stands_still = simulation.is_some_and(|run| *run.status() == Status::Paused);
+        film_bar_ui(&mut root, orders.film, stands_still, &mut requests.0);
     }
     // A film runs at its own speed, however long its pictures take.
     let is_filmed = orders.film != FilmState::Idle;

@@ -68,6 +68,13 @@ pub enum Request {
     Quit,
 }
 
+impl Request {
+    /// Whether it gives a parameter a value: what is set while one drag lasts is one change.
+    pub(super) fn sets_a_value(&self) -> bool {
+        matches!(self, Self::Command(Command::Set { .. }) | Self::SetIn(..))
+    }
+}
+
 /// A sheet of text over the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sheet {

@@ -11,6 +11,9 @@ use std::path::PathBuf;
 pub struct ScreenshotOrders {
     /// What was asked for, in order.
     pub asked: Vec<ScreenshotOrder>,
+    /// Whether a single picture is being taken: nothing lies over the window then that would not
+    /// stay.
+    pub is_taking: bool,
     /// What becomes of the film.
     pub film: FilmState,
 }

@@ -17,8 +17,17 @@ pub struct Section {
     open_at_first: bool,
     /// Whether it should open and take the focus in the next frame.
     pub is_wanted: bool,
+    /// Whether it is to be open or closed from the next frame on, whatever it was.
+    pub is_to_be_open: Option<bool>,
     /// How far it was open in the last frame, 0 … 1.
     openness: f32,
+}
+
+impl Section {
+    /// Whether it was open in the last frame.
+    pub fn is_open(&self) -> bool {
+        self.openness > 0.5
+    }
 }
 
 /// The section of `panel`, open at first or not.
@@ -27,6 +36,7 @@ pub fn section(panel: impl Panel, open_at_first: bool) -> Section {
         panel: Box::new(panel),
         open_at_first,
         is_wanted: false,
+        is_to_be_open: None,
         openness: 1.0,
     }
 }
@@ -63,7 +73,7 @@ pub fn sections_ui(
             let shown = CollapsingHeader::new(title)
                 .id_salt((name, comes_first))
                 .default_open(section.open_at_first || comes_first)
-                .open(summoned.then_some(true))
+                .open(summoned.then_some(true).or(section.is_to_be_open.take()))
                 .show_unindented(ui, |ui| section.panel.ui(ui, simulation, view, out));
             if is_wanted {
                 shown.header_response.request_focus();

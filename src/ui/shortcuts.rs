@@ -5,7 +5,7 @@
 //! text is typed or a dialog is open, no key counts.
 
 use crate::simulation::{Command, Simulation};
-use crate::ui::playback::{Way, allows, leap, play_or_pause, step_back, to_avalanche};
+use crate::ui::playback::{Way, allows, go, leap, play_or_pause, step_back, to_avalanche};
 use crate::ui::request::{Request, Sheet};
 use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
@@ -22,6 +22,7 @@ pub struct Shortcut {
 enum KeyAction {
     PlayOrPause,
     StepBack,
+    Steps(Way, u64),
     Leap(Way),
     ToTheNewest,
     Avalanche(Way),
@@ -55,7 +56,27 @@ pub const SHORTCUTS: &[Shortcut] = &[
         name: "Play or pause",
         action: KeyAction::PlayOrPause,
     },
-    // Before the plain keys, which would take them.
+    // Before the keys with fewer others held, which would take them.
+    Shortcut {
+        keys: &[ctrl_shift(Key::ArrowRight)],
+        name: "A hundred time steps on",
+        action: KeyAction::Steps(Way::On, 100),
+    },
+    Shortcut {
+        keys: &[ctrl_shift(Key::ArrowLeft)],
+        name: "A hundred time steps back",
+        action: KeyAction::Steps(Way::Back, 100),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::ArrowRight)],
+        name: "Ten time steps on",
+        action: KeyAction::Steps(Way::On, 10),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::ArrowLeft)],
+        name: "Ten time steps back",
+        action: KeyAction::Steps(Way::Back, 10),
+    },
     Shortcut {
         keys: &[shift(Key::ArrowRight)],
         name: "A fiftieth of a second on",
@@ -261,8 +282,9 @@ impl Shortcut {
                 Key::ArrowRight => "→",
                 _ => return ctx.format_shortcut(key),
             };
+            let ctrl = if key.modifiers.command { "Ctrl+" } else { "" };
             let shift = if key.modifiers.shift { "Shift+" } else { "" };
-            format!("{shift}{symbol}")
+            format!("{ctrl}{shift}{symbol}")
         };
         let names: Vec<String> = self.keys.iter().map(name).collect();
         names.join(" or ")
@@ -298,6 +320,7 @@ impl Shortcut {
             KeyAction::PlayOrPause => play_or_pause(simulation?.status())?,
             KeyAction::StepBack => step_back(simulation?)?,
             KeyAction::Leap(way) => leap(simulation?, *way)?,
+            KeyAction::Steps(way, steps) => go(simulation?, *way, *steps)?,
             KeyAction::Avalanche(way) => return to_avalanche(simulation?, *way),
             KeyAction::ToTheNewest => Command::Seek(simulation?.past().end.step),
         };

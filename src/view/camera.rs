@@ -9,6 +9,7 @@ use crate::view::view_settings::{CameraRequest, ProjectionKind, SAVED_VIEWS, Sta
 use bevy::math::{EulerRot, Quat, Rect, Vec2, Vec3};
 use bevy::prelude::Resource;
 use bevy_egui::egui;
+use serde::{Deserialize, Serialize};
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Vertical field of view of the perspective [rad].
@@ -41,6 +42,16 @@ pub struct OrbitCamera {
     /// How often a view was asked for.
     requests: u32,
     saved: [Option<Pose>; SAVED_VIEWS],
+}
+
+/// Where a camera looks from, as a session keeps it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CameraPose {
+    focus: [f32; 3],
+    yaw: f32,
+    pitch: f32,
+    height: f32,
+    fits: bool,
 }
 
 /// Where a camera looks from.
@@ -93,6 +104,32 @@ impl OrbitCamera {
         let moved = at * (before - self.metres_per_point());
         self.focus += self.rotation() * Vec3::new(moved.x, -moved.y, 0.0);
         self.fits = false;
+    }
+
+    /// Where it looks from.
+    pub fn pose(&self) -> CameraPose {
+        CameraPose {
+            focus: self.focus.to_array(),
+            yaw: self.yaw,
+            pitch: self.pitch,
+            height: self.height,
+            fits: self.fits,
+        }
+    }
+
+    /// Looks from there; whether there is such a place.
+    pub fn take_pose(&mut self, pose: &CameraPose) -> bool {
+        let numbers = [pose.yaw, pose.pitch, pose.height];
+        let is_place = numbers.iter().chain(&pose.focus).all(|x| x.is_finite());
+        if is_place {
+            self.focus = Vec3::from_array(pose.focus);
+            self.yaw = pose.yaw.rem_euclid(2.0 * PI);
+            self.pitch = pose.pitch.clamp(-FRAC_PI_2, FRAC_PI_2);
+            self.height = pose.height.clamp(1e-5, 1e4);
+            self.fits = pose.fits;
+            self.requests = self.requests.wrapping_add(1);
+        }
+        is_place
     }
 
     /// Looks from one side, straight along an axis.
@@ -232,6 +269,13 @@ impl OrbitCamera {
         Some((place, points_per_metre))
     }
 
+    /// Whether the point `x` [m] is in the picture.
+    pub fn sees(&self, x: Vec3) -> bool {
+        let picture = Rect::from_corners(Vec2::ZERO, self.viewport);
+        let place = self.project(x);
+        place.is_some_and(|(place, _)| picture.contains(place))
+    }
+
     fn aspect(&self) -> f32 {
         self.viewport.x.max(1.0) / self.viewport.y.max(1.0)
     }
@@ -357,6 +401,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_is_in_the_picture_is_seen_and_what_is_beside_it_is_not() {
+        let mut camera = OrbitCamera::default();
+        camera.fit(&corners());
+        assert!(corners().iter().all(|corner| camera.sees(*corner)));
+        assert!(!camera.sees(Vec3::new(0.5, 0.0, 0.0)));
+        assert!(!camera.sees(camera.eye() + camera.rotation() * Vec3::Z));
     }
 
     #[test]

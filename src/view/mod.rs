@@ -62,7 +62,7 @@ mod viewport;
 mod wall_material;
 mod wall_meshes;
 
-pub use camera::{OrbitCamera, apply_response};
+pub use camera::{CameraPose, OrbitCamera, apply_response};
 pub(crate) use colour::round_up;
 pub use colour::{species_colour, trail_colour};
 pub use film::{FILM_RATE, FilmKind, FilmWriter};

@@ -4,6 +4,7 @@
 //! In: the free part of the window, camera, settings and what is shown. Out: egui shapes. Nothing
 //! here reacts to the pointer.
 
+use crate::measure::numeral;
 use crate::simulation::Half;
 use crate::view::camera::OrbitCamera;
 use crate::view::colour::{SELECTED, Scheme, species_colour, stride, trail_colour};
@@ -79,6 +80,10 @@ pub(super) fn overlay(
         }
     }
     if let Some(world) = caption.world {
+        if shows_nothing(world, camera) {
+            let at = rect.center();
+            ink.write(at, Align2::CENTER_CENTER, NOTHING_SHOWN, 16.0, ink.text);
+        }
         if let world::Shape::Column { radius, .. } = world.container.shape
             && settings.show_container
         {
@@ -105,6 +110,27 @@ pub(super) fn overlay(
     if let Some(legend) = settings.legend.as_ref().filter(|_| part.is_last) {
         colour_bar(&ink, inner.right_bottom(), legend, settings.colour_map);
     }
+}
+
+/// What a picture without grains says.
+const NOTHING_SHOWN: &str = "All grains are outside the picture. F or a double click shows them.";
+
+/// Whether there are grains and the picture shows none of them.
+fn shows_nothing(world: &World, camera: &OrbitCamera) -> bool {
+    let grains = &world.grains;
+    let mut all = grains.position.iter().zip(&grains.radius);
+    // A grain whose centre is outside may still be seen; one that fills the picture is not far.
+    let is_seen = |x: &glam::DVec3, radius: f64| {
+        let near = [
+            glam::DVec3::ZERO,
+            glam::DVec3::X,
+            glam::DVec3::Y,
+            glam::DVec3::Z,
+        ];
+        let mut near = near.into_iter().flat_map(|axis| [axis, -axis]);
+        near.any(|way| camera.sees((*x + radius * way).as_vec3()))
+    };
+    !grains.is_empty() && !all.any(|(x, radius)| is_seen(x, *radius))
 }
 
 /// What tells a half from the other, above it; framed where the panels describe it. Returns where
@@ -142,9 +168,9 @@ impl Ink<'_> {
 }
 
 fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
-    ink.write(at, Align2::LEFT_TOP, format!("{time:.2} s"), 24.0, ink.text);
+    ink.write(at, Align2::LEFT_TOP, numeral::moment(time), 24.0, ink.text);
     if let Some(factor) = real_time_factor {
-        let text = format!("{factor:.2} × real time");
+        let text = format!("{} real time", numeral::times(factor));
         ink.write(
             at + vec2(1.0, 30.0),
             Align2::LEFT_TOP,

@@ -8,7 +8,7 @@ use crate::view::framing::outline;
 use crate::view::halves::parts;
 use crate::view::shown_worlds::{ShownWorlds, layers};
 use crate::view::view_settings::{ProjectionKind, ViewSettings};
-use crate::world::Shape;
+use crate::world::{Shape, World};
 use bevy::camera::{ClearColorConfig, ScalingMode, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::light::cluster::ClusterConfig;
@@ -52,12 +52,15 @@ pub(super) struct Framed {
     of: Option<(Shape, usize, usize, u32)>,
     /// The points that must be seen.
     outline: Vec<Vec3>,
+    /// The state that grains were last looked for in.
+    looked_at: u64,
     /// The camera after fitting.
     camera: Option<OrbitCamera>,
 }
 
 /// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away.
-/// An unbounded scene is measured once, not after every moving grain.
+/// An unbounded scene is measured anew when a grain leaves the picture: then it fits where the grains
+/// are and are going.
 pub(super) fn steer(
     mut settings: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
@@ -78,14 +81,39 @@ pub(super) fn steer(
             *framed = Framed {
                 of,
                 outline: outline(world, shown.watched),
-                camera: None,
+                ..Framed::default()
             };
+        }
+        if camera.fits && framed.looked_at != world.clock.step && framed.camera.is_some() {
+            framed.looked_at = world.clock.step;
+            if shown.worlds().any(|world| leaves_picture(world, &camera)) {
+                let outlines = shown.worlds().map(|world| outline(world, shown.watched));
+                framed.outline = outlines.flatten().collect();
+                framed.camera = None;
+            }
+        }
+    }
+    if settings.follows_selected
+        && let Some(world) = shown.world()
+        && let Some(place) = settings
+            .selected
+            .and_then(|grain| world.grains.position.get(grain))
+    {
+        let place = place.as_vec3();
+        if camera.focus != place {
+            (camera.focus, camera.fits) = (place, false);
         }
     }
     if camera.fits && framed.camera.as_ref() != Some(&*camera) && !framed.outline.is_empty() {
         camera.fit(&framed.outline);
         framed.camera = Some(camera.clone());
     }
+}
+
+/// Whether a grain of an unbounded `world` is outside the picture.
+fn leaves_picture(world: &World, camera: &OrbitCamera) -> bool {
+    let is_open = matches!(world.container.shape, Shape::Planes);
+    is_open && !(world.grains.position.iter()).all(|x| camera.sees(x.as_vec3()))
 }
 
 /// Yaw and pitch of the view that a scene opens with [rad]: for a column from higher up, so that
@@ -176,6 +204,10 @@ fn viewport(free: Option<egui::Rect>, pixels_per_point: f32, size: UVec2) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
+    use crate::solver::advise;
+    use crate::world;
+    use std::sync::Arc;
 
     #[test]
     fn picture_fills_the_free_rectangle_in_pixels() {
@@ -194,5 +226,44 @@ mod tests {
         assert!(end.cmple(UVec2::new(800, 600)).all());
         let none = egui::Rect::from_min_max(egui::pos2(900.0, 0.0), egui::pos2(950.0, 100.0));
         assert!(super::viewport(Some(none), 1.0, UVec2::new(800, 600)).is_none());
+    }
+
+    #[test]
+    fn a_grain_that_leaves_the_picture_is_followed_until_somebody_moves_away() {
+        let scene = Scene::open("slide-to-roll").unwrap();
+        let mut world = world::build(&scene, advise(&scene).time_step);
+        let mut app = App::new();
+        app.init_resource::<ViewSettings>()
+            .init_resource::<OrbitCamera>()
+            .init_resource::<ShownWorlds>()
+            .add_systems(Update, steer);
+        let show = |app: &mut App, world: &World| {
+            let mut shown = app.world_mut().resource_mut::<ShownWorlds>();
+            shown.watched = 0.3;
+            shown.show(Some(Arc::new(world.clone())));
+            app.update();
+            app.update();
+            let grain = world.grains.position[0].as_vec3();
+            app.world().resource::<OrbitCamera>().sees(grain)
+        };
+        assert!(show(&mut app, &world));
+        for _ in 0..3 {
+            world.clock.step += 1000;
+            world.grains.position[0].x += 0.7;
+            assert!(show(&mut app, &world), "{}", world.grains.position[0]);
+        }
+        let mut settings = app.world_mut().resource_mut::<ViewSettings>();
+        (settings.selected, settings.follows_selected) = (Some(0), true);
+        world.grains.position[0].y += 3.0;
+        world.clock.step += 1000;
+        assert!(show(&mut app, &world));
+        let focus = app.world().resource::<OrbitCamera>().focus;
+        assert_eq!(focus, world.grains.position[0].as_vec3());
+        (app.world_mut().resource_mut::<ViewSettings>()).follows_selected = false;
+        let mut camera = app.world_mut().resource_mut::<OrbitCamera>();
+        camera.pan(Vec2::new(5.0, 0.0));
+        world.clock.step += 1000;
+        world.grains.position[0].x += 0.7;
+        assert!(!show(&mut app, &world));
     }
 }

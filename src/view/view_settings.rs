@@ -36,6 +36,8 @@ pub struct ViewSettings {
     pub selected: Option<usize>,
     /// The grain beside it whose contact with it is looked at.
     pub beside: Option<usize>,
+    /// Whether the picture keeps that grain in its middle.
+    pub follows_selected: bool,
     /// The grains whose ways are drawn, by their numbers.
     pub traced: Vec<usize>,
     /// The half of the picture that the panels describe, where there are two.
@@ -82,6 +84,7 @@ impl Default for ViewSettings {
             show_velocities: false,
             selected: None,
             beside: None,
+            follows_selected: false,
             traced: Vec::new(),
             focus: Half::Left,
             show_axes: false,
@@ -154,7 +157,7 @@ impl ColourBy {
 }
 
 /// A perceptually even colour map that people with any kind of colour vision can read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ColourMap {
     /// Dark violet, green, yellow.
     #[default]
@@ -195,7 +198,7 @@ impl ColourMap {
 }
 
 /// The numbers at the two ends of the colour map, in the SI unit of what is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum ColourRange {
     /// From zero to a round number that most grains stay below.
     #[default]
@@ -208,7 +211,7 @@ pub enum ColourRange {
 }
 
 /// A direction along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum CoordinateAxis {
     X,
@@ -240,7 +243,7 @@ impl CoordinateAxis {
 }
 
 /// What is cut away; grains in a face of the cut show their section.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Cut {
     /// Everything beyond a plane.
     Beyond {
@@ -259,7 +262,7 @@ pub enum Cut {
 }
 
 /// How depth is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ProjectionKind {
     /// Near things are larger.
     #[default]

@@ -4,8 +4,8 @@
 //! In: a [`WindowJob`]. Out: the laboratory, until somebody closes it, or a picture.
 
 use crate::simulation::{Simulation, SimulationPlugin};
-use crate::ui::{Dock, UiPlugin, UserMemory, first_speed, title_in_words};
-use crate::view::{ViewPlugin, ViewSettings};
+use crate::ui::{Dock, SessionLook, UiPlugin, UserMemory, first_speed, title_in_words};
+use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
@@ -96,7 +96,14 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         Opened::Scene(_) => dock.scene_opened(&job.name),
         Opened::Session(_) => dock.session_opened(&job.name),
     }
+    let look = match &job.opened {
+        Opened::Scene(_) => None,
+        Opened::Session(session) => SessionLook::read(session.look()),
+    };
     dock.is_hidden = job.picture.as_ref().is_some_and(|picture| picture.plain);
+    if let Some(look) = look {
+        take_up(look, app.world_mut());
+    }
     app.insert_resource(job.opened.run(job.options))
         .insert_resource(OpeningComparison {
             wanted: job.compared,
@@ -191,4 +198,14 @@ fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
         let text = text.or_else(|| panic.downcast_ref::<&str>().map(ToString::to_string));
         text.unwrap_or_else(|| "the window system's libraries failed".to_owned())
     })
+}
+
+/// Looks as a session did.
+fn take_up(look: SessionLook, world: &mut World) {
+    world.resource_scope(|world, mut dock: Mut<Dock>| {
+        world.resource_scope(|world, mut view: Mut<ViewSettings>| {
+            let mut camera = world.get_resource_mut::<OrbitCamera>();
+            look.restore(&mut view, camera.as_deref_mut(), &mut dock);
+        });
+    });
 }

@@ -180,6 +180,8 @@ fn take_screenshots(
         job.go_on(&mut simulation, &mut studio, &mut is_free);
         !job.is_done(&mut studio)
     });
+    let is_picture = |job: &ScreenshotJob| matches!(job.subject, ScreenshotSubject::Picture(_));
+    orders.is_taking = jobs.0.iter().any(is_picture);
     orders.film = match jobs.film() {
         None => FilmState::Idle,
         Some((reel, JobStage::Ending)) => FilmState::Writing(reel.unwritten()),

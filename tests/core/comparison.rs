@@ -407,7 +407,10 @@ fn the_branches_of_both_halves_stay_when_a_comparison_ends() {
     let present = hashes(&simulation);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pair.grainfall");
-    simulation.send(LabCommand::Save(path.clone()));
+    simulation.send(LabCommand::Save {
+        path: path.clone(),
+        look: String::new(),
+    });
     until(&mut simulation, |s| !s.is_saving() && s.has_answered());
     simulation.send(LabCommand::EndComparison { keep: Half::Left });
     // The left run's own other branch, then the right run's, then the right run.
@@ -443,7 +446,10 @@ fn a_session_saved_in_a_comparison_holds_both_runs() {
     start(&mut simulation, &Parameter::Viscosity, 1.41);
     carry_out(&mut simulation, Command::Step(4 * lab.unit));
     for _ in 0..2 {
-        simulation.send(LabCommand::Save(path.clone()));
+        simulation.send(LabCommand::Save {
+            path: path.clone(),
+            look: String::new(),
+        });
         until(&mut simulation, |s| !s.is_saving());
     }
     assert!(

@@ -15,6 +15,7 @@ mod headless;
 mod measure;
 mod paper;
 mod parameters;
+mod recorder;
 #[cfg(feature = "headless")]
 mod reliability;
 mod run;

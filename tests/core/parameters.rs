@@ -251,3 +251,23 @@ fn pairs_are_named_in_the_order_of_the_scene() {
     assert_eq!(swapped.canonical(&world.materials), own);
     assert_eq!(own.name_kind(), NameKind::Pair);
 }
+
+#[test]
+fn named_values_are_those_of_the_scenes_own_materials() {
+    let names = |scene: &str, pair: [&str; 2]| {
+        let scene = Scene::open(scene).unwrap();
+        let world = build(&scene, advise(&scene).time_step);
+        let [a, b] = pair.map(str::to_owned);
+        let friction = Parameter::Friction(a, b);
+        let list = live_parameters(&scene, &world);
+        let info = list.iter().find(|info| info.parameter == friction).unwrap();
+        let presets = info.presets(&scene).into_iter();
+        let names = presets.map(|preset| (preset.name.to_owned(), preset.value));
+        names.collect::<Vec<_>>()
+    };
+    let own = names("two-frictions-drum", ["rough", "rough"]);
+    let expected = [("none", 0.0), ("smooth", 0.1), ("rough", 0.8)];
+    assert_eq!(own, expected.map(|(name, value)| (name.to_owned(), value)));
+    let glass = names("small-drum", ["glass", "glass"]);
+    assert!(glass.contains(&("dry glass".to_owned(), 0.4)));
+}

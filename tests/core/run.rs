@@ -623,3 +623,28 @@ fn closing_ends_a_thread_that_is_still_settling() {
     scene.seed += 1;
     drop(opened(scene, DriverKind::Thread));
 }
+
+#[test]
+fn a_minute_of_running_is_worth_a_question_even_without_a_change() {
+    let mut simulation = Lab::open(
+        scene("bouncing-grain"),
+        Options {
+            driver: DriverKind::Inline,
+            threads: 1,
+            autoplay: false,
+            speed: 0.01,
+            beds: BedStore::none(),
+            script: Vec::new(),
+            memory: 0,
+        },
+    );
+    while simulation.world().is_none() {
+        simulation.tick(TICK);
+    }
+    simulation.send(LabCommand::Hold(Some(10)));
+    simulation.send(Command::Play);
+    simulation.tick(TICK);
+    assert!(!simulation.is_unsaved());
+    simulation.tick(Duration::from_secs(61));
+    assert!(simulation.is_unsaved());
+}

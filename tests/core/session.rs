@@ -141,7 +141,7 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
         bytes.extend_from_slice(whole.strip_prefix(from.as_bytes()).unwrap());
         bytes
     };
-    let other = format!("grainfall session 3 {VERSION}");
+    let other = format!("grainfall session 4 {VERSION}");
     let cases: [(Vec<u8>, [&str; 2]); 8] = [
         (
             whole[..whole.len() - 1].to_vec(),
@@ -265,7 +265,10 @@ fn tick_until(simulation: &mut Lab, done: impl Fn(&Lab) -> bool) {
 
 /// Saves, waits for the file, and says why there is none, if there is none.
 fn saved(simulation: &mut Lab, path: &Path) -> Option<String> {
-    simulation.send(LabCommand::Save(path.to_owned()));
+    simulation.send(LabCommand::Save {
+        path: path.to_owned(),
+        look: "a look".into(),
+    });
     for _ in 0..60_000 {
         simulation.tick(Duration::from_millis(2));
         if let Some(file) = simulation.take_saved().pop() {
@@ -330,7 +333,10 @@ fn run_that_is_still_prepared_has_nothing_to_save_yet_and_waits() {
     let (_folder, path) = place();
     let options = options(&lab, DriverKind::Inline);
     let mut simulation = Lab::open(lab.scene.clone(), options);
-    simulation.send(LabCommand::Save(path.clone()));
+    simulation.send(LabCommand::Save {
+        path: path.clone(),
+        look: String::new(),
+    });
     assert!(simulation.world().is_none());
     tick_until(&mut simulation, |s| s.world().is_some());
     simulation.tick(Duration::ZERO);

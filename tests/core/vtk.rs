@@ -5,7 +5,7 @@ use grainfall::output::{write_contacts, write_container, write_grains, write_sha
 use grainfall::scene::Scene;
 use grainfall::simulation::Provenance;
 use grainfall::solver::{Solver, advise, force_terms};
-use grainfall::world::{Partner, Polyhedra, Polyhedron, World, build};
+use grainfall::world::{Contact, Partner, Polyhedra, Polyhedron, World, build};
 use std::io;
 
 /// A cube whose half edge is 1 mm when rounded by 0.2 mm, turned by a quarter about y, and a sphere
@@ -204,7 +204,16 @@ fn grains_are_points_with_what_each_has() {
     world.polyhedra = None;
     world.grains.spin[1] = DVec3::new(4.0, 5.0, 6.0);
     world.grains.force[0] = DVec3::new(0.5, 0.25, -0.125);
-    world.grains.contact_count[1] = 12;
+    world.contacts.push(Contact {
+        grain: 0,
+        partner: Partner::Grain(1),
+        spring: DVec3::ZERO,
+        stiffness: 0.0,
+        rolling: DVec3::ZERO,
+        force: DVec3::ZERO,
+        touching: true,
+        bridge: None,
+    });
     let file = File::of(&world, write_grains);
     let first = file.header.find("<VTKFile type=\"PolyData\"").unwrap();
     assert_eq!(&file.header[..first], "<?xml version=\"1.0\"?>\n");
@@ -229,7 +238,7 @@ fn grains_are_points_with_what_each_has() {
     assert_eq!(file.floats("v"), [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
     assert_eq!(file.floats("omega"), [0.0, 0.0, 0.0, 4.0, 5.0, 6.0]);
     assert_eq!(file.floats("f"), [0.5, 0.25, -0.125, 0.0, 0.0, 0.0]);
-    assert_eq!(file.integers("coordination"), [0, 12]);
+    assert_eq!(file.integers("coordination"), [1, 1]);
     assert!(file.header.contains("Name=\"TimeValue\""));
 }
 

@@ -5,9 +5,11 @@ use crate::window_of_panels::{friction, prepared, set, standing};
 use bevy::MinimalPlugins;
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
+use grainfall::measure::GrainQuantity;
 use grainfall::scene::Scene;
 use grainfall::simulation::{Command, DriverKind, Options, Simulation, SimulationPlugin, Status};
-use grainfall::ui::{Dock, DockPlugin, Request, Requests};
+use grainfall::ui::{Dock, DockPlugin, FilmState, Request, Requests, ScreenshotOrders};
+use grainfall::view::{ColourBy, Cut, OrbitCamera, ViewSettings};
 use grainfall::world::StateHash;
 use std::path::Path;
 
@@ -222,4 +224,76 @@ fn damaged_session_leaves_what_is_open() {
         reason.is_some_and(|reason| reason.contains("damaged")),
         "{reason:?}"
     );
+}
+
+#[test]
+fn a_session_looks_as_it_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("work.grainfall");
+    let mut app = app();
+    app.insert_resource(OrbitCamera::default());
+    work(&mut app);
+    let chosen = |app: &App| {
+        let view = app.world().resource::<ViewSettings>();
+        let shown = (view.colour_by, view.cut, view.show_axes, view.selected);
+        (shown, app.world().resource::<OrbitCamera>().pose())
+    };
+    let first = chosen(&app);
+    let mut view = app.world_mut().resource_mut::<ViewSettings>();
+    view.colour_by = ColourBy::Quantity(GrainQuantity::Spin);
+    view.cut = Some(Cut::Quarter { x: 0.01, z: 0.0 });
+    view.show_axes = true;
+    view.selected = Some(2);
+    let mut camera = app.world_mut().resource_mut::<OrbitCamera>();
+    camera.orbit(Vec2::new(40.0, 10.0));
+    camera.zoom(120.0, Vec2::ZERO);
+    let own = chosen(&app);
+    assert_ne!(own, first);
+    saved(&mut app, &path);
+    ask(&mut app, Request::Open("bouncing-grain".into()));
+    update_until(&mut app, |s| s.world().is_some());
+    app.insert_resource(OrbitCamera::default());
+    app.insert_resource(ViewSettings::default());
+    assert_eq!(chosen(&app), first);
+    ask(&mut app, Request::Open(path.display().to_string()));
+    update_until(&mut app, |s| {
+        s.scene().title == "Three grains" && s.world().is_some()
+    });
+    app.update();
+    assert_eq!(chosen(&app), own);
+}
+
+#[test]
+fn one_drag_is_one_change_however_long_it_takes_and_two_clicks_are_two() {
+    let mut app = app();
+    command(&mut app, Command::Step(10));
+    let hold = |app: &mut App, is_held| {
+        app.world_mut().resource_mut::<Dock>().is_holding = is_held;
+    };
+    hold(&mut app, true);
+    for value in [0.2, 0.25, 0.3] {
+        command(&mut app, set(friction(), value));
+        std::thread::sleep(std::time::Duration::from_millis(450));
+    }
+    hold(&mut app, false);
+    app.update();
+    let changes = |app: &App| simulation(app).changes().len();
+    assert_eq!(changes(&app), 1, "a drag that took more than a second");
+    for value in [0.5, 0.6] {
+        command(&mut app, set(friction(), value));
+    }
+    assert_eq!(changes(&app), 3, "two clicks at once");
+    command(&mut app, Command::Undo);
+    assert_eq!(simulation(&app).value(&friction()), Some(0.5.into()));
+}
+
+#[test]
+fn a_film_that_is_recorded_is_the_only_one() {
+    let mut app = app();
+    app.world_mut().resource_mut::<ScreenshotOrders>().film = FilmState::Recording {
+        pictures: 3,
+        time: 0.1,
+    };
+    ask(&mut app, Request::ChooseFilm);
+    assert!(!app.world().resource::<Dock>().path_dialog.is_open());
 }

@@ -192,8 +192,8 @@ pub static CASE: ParameterRow = ParameterRow {
 };
 
 /// The viscosities of Table 1.
-static CASES: [Preset; 7] = {
-    const fn of(index: usize) -> Preset {
+static CASES: [Preset<'static>; 7] = {
+    const fn of(index: usize) -> Preset<'static> {
         preset(LIQUID_CASES[index].name, LIQUID_CASES[index].viscosity)
     }
     [of(0), of(1), of(2), of(3), of(4), of(5), of(6)]

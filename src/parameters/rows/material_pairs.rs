@@ -3,7 +3,7 @@
 use crate::parameters::Names;
 use crate::parameters::parameter_row::{ANY, InWorld, PanelSection, ParameterRow, preset};
 use crate::physics::{PairProperties, limits};
-use crate::scene::{Scene, SceneGrains};
+use crate::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, ScenePlane};
 use crate::world::World;
 
 pub static WET_FRICTION: ParameterRow = ParameterRow {
@@ -53,7 +53,9 @@ pub static FRICTION: ParameterRow = ParameterRow {
     ],
     description: "Sliding starts when the tangential force reaches this share of the normal force.",
     equation: coulomb,
-    is_basic: |scene, names| scene.liquid.is_none() && is_of_note(scene, names),
+    is_basic: |scene, names| {
+        scene.liquid.is_none() && is_of_note(scene, names) && !bounces_straight(scene)
+    },
     rank: 2,
     in_world: Some(InWorld {
         read: |world, names| Some(pair(world, names)?.friction.into()),
@@ -97,7 +99,7 @@ pub static RESTITUTION: ParameterRow = ParameterRow {
     ],
     description: "Rebound speed over impact speed of a head-on impact.",
     equation: |scene| scene.law.words().restitution,
-    is_basic: |scene, _| is_listed(scene),
+    is_basic: |scene, _| is_listed(scene) && !rests(scene),
     in_world: Some(InWorld {
         read: |world, names| Some(pair(world, names)?.restitution.into()),
         write: |world, _, names, value| {
@@ -120,6 +122,36 @@ fn coulomb(scene: &Scene) -> &'static str {
 
 fn is_listed(scene: &Scene) -> bool {
     matches!(scene.grains, SceneGrains::List(_))
+}
+
+/// The only grain and the only plane of `scene`, where there is nothing else.
+fn alone_on_a_plane(scene: &Scene) -> Option<(&SceneGrain, &ScenePlane)> {
+    let (SceneGrains::List(list), SceneContainer::Planes(planes)) =
+        (&scene.grains, &scene.container)
+    else {
+        return None;
+    };
+    match (list.as_slice(), planes.as_slice()) {
+        ([grain], [plane]) => Some((grain, plane)),
+        _ => None,
+    }
+}
+
+/// Whether a lone grain meets its plane head-on and without spin: nothing slides there.
+fn bounces_straight(scene: &Scene) -> bool {
+    alone_on_a_plane(scene).is_some_and(|(grain, plane)| {
+        let across = [grain.velocity, scene.gravity].map(|way| way.cross(plane.normal).length());
+        let slides = across.into_iter().chain([grain.spin.length()]);
+        slides.fold(0.0, f64::max) < 1e-12
+    })
+}
+
+/// Whether a lone grain lies on its plane from the start: nothing bounces there.
+fn rests(scene: &Scene) -> bool {
+    alone_on_a_plane(scene).is_some_and(|(grain, plane)| {
+        let gap = (grain.position - plane.point).dot(plane.normal) - grain.radius;
+        gap.abs() < 1e-3 * grain.radius
+    })
 }
 
 /// Grains of one kind among each other; a few listed grains also on what they fall or roll on.

@@ -157,3 +157,36 @@ pub static OUTPUT_INTERVAL: ParameterRow = ParameterRow {
     }),
     ..super::AT_START
 };
+
+/// Leaves the samples to what happens.
+static FOLLOWING: [Choice; 1] = [Choice {
+    key: "automatic",
+    name: "automatic",
+    number: 0.0,
+}];
+
+pub static SAMPLE_INTERVAL: ParameterRow = ParameterRow {
+    key: "sample-interval",
+    name: |_| "sample interval",
+    kind: Kind::NumberOr(&units::TIME, &FOLLOWING),
+    expected: "`automatic`, or a time such as `20ms` or `10us`",
+    limits: Some(&limits::DURATION),
+    description: "Simulated time between two samples; by itself 20 ms and less while a column falls or few grains meet.",
+    slider: |_, _, _| limits::DURATION.least..=limits::DURATION.most,
+    section: PanelSection::Nowhere,
+    in_scene: Some(InScene {
+        read: |scene, _| {
+            let stated = scene.sample_interval.map(Value::Number);
+            Some(stated.unwrap_or(Value::Choice(&FOLLOWING[0])))
+        },
+        write: |scene, _, value| {
+            scene.sample_interval = match value {
+                Value::Number(interval) => Some(interval),
+                Value::Choice(_) => None,
+                Value::Count(_) => return None,
+            };
+            Some(())
+        },
+    }),
+    ..super::AT_START
+};

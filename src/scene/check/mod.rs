@@ -76,6 +76,19 @@ impl Scene {
                 ),
             ));
         }
+        if let Some(interval) = self.sample_interval {
+            within(&limits::DURATION, interval, || "sample_interval".to_owned())?;
+            if self.duration / interval > MOST_OUTPUTS {
+                return Err(Problem::value(
+                    "sample_interval",
+                    format!("{interval} s"),
+                    format!(
+                        "at least {} s, so that a run takes at most a million samples",
+                        self.duration / MOST_OUTPUTS
+                    ),
+                ));
+            }
+        }
         let TimeStep::Given(step) = self.time_step else {
             return Ok(());
         };

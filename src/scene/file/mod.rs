@@ -52,6 +52,8 @@ pub(super) struct SceneFile {
     duration: f64,
     #[serde(default = "paper_output_interval")]
     output_interval: f64,
+    #[serde(default)]
+    sample_interval: Option<f64>,
     #[serde(default = "first_seed")]
     seed: u64,
 }
@@ -164,6 +166,7 @@ impl SceneFile {
             time_step: self.time_step,
             duration: self.duration,
             output_interval: self.output_interval,
+            sample_interval: self.sample_interval,
             seed: self.seed,
         };
         let (defaults, law) = if scene.is_polyhedral() {

@@ -1,6 +1,6 @@
 //! The bar over the picture while a film is recorded or written.
 //!
-//! In: what becomes of the film. Out: requests to end the film or to give it up.
+//! In: what becomes of the film, and whether the run goes on. Out: requests to end the film or to give it up.
 
 use crate::ui::request::Request;
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrder};
@@ -8,14 +8,25 @@ use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use bevy_egui::egui::{self, RichText};
 
-/// Draws the bar over the picture, which `root` keeps free, while a film is recorded or written.
-pub fn film_bar_ui(root: &mut egui::Ui, film: FilmState, out: &mut Vec<Request>) {
+/// Draws the bar over the picture, which `root` keeps free, while a film is recorded or written; it
+/// says where nothing is recorded because the run `stands_still`.
+pub fn film_bar_ui(
+    root: &mut egui::Ui,
+    film: FilmState,
+    stands_still: bool,
+    out: &mut Vec<Request>,
+) {
+    let still = if stands_still {
+        ". The run stands still: press Play (Space)"
+    } else {
+        ""
+    };
     let text = match film {
         FilmState::Idle => return,
         FilmState::Recording { pictures, time } => {
             format!(
-                "Recording: {} s, {pictures} pictures",
-                number::fixed(time, 2)
+                "Recording: {}, {pictures} pictures{still}",
+                number::moment(time)
             )
         }
         FilmState::Writing(left) => format!("Writing the film: {left} pictures left"),

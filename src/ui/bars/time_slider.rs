@@ -137,7 +137,7 @@ const TO_THE_NEWEST: &str = "To the newest";
 
 /// `2.04 of 17.22 s`.
 fn place_in_words(time: f64, end: f64) -> String {
-    format!("{} of {} s", number::fixed(time, 2), number::fixed(end, 2))
+    format!("{} of {}", number::moment(time), number::moment(end))
 }
 
 /// Width of the text and the button right of the line. It does not depend on the moment shown, so
@@ -149,7 +149,8 @@ fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
         words.size().x
     };
     let spacing = ui.spacing();
-    let texts = width(place_in_words(end, end)) + width(TO_THE_NEWEST.to_owned());
+    let places = [end, end.min(0.1234)].map(|time| width(place_in_words(time, end)));
+    let texts = places[0].max(places[1]) + width(TO_THE_NEWEST.to_owned());
     texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
 }
 

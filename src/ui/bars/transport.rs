@@ -3,9 +3,10 @@
 
 use crate::simulation::{Command, Simulation, Status};
 use crate::ui::bars::time_slider::timeline_ui;
-use crate::ui::playback::{SPEEDS, allows, play_or_pause, step_back};
+use crate::ui::playback::{SPEEDS, allows, go_to, play_or_pause, step_back};
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
+use crate::ui::widgets::field::Field;
 use crate::ui::words::number;
 use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec2};
 
@@ -27,7 +28,7 @@ impl Transport {
             buttons_ui(ui, simulation, out);
             speed_ui(ui, simulation.speed(), out);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                clock_ui(ui, simulation);
+                clock_ui(ui, simulation, out);
                 warnings_ui(ui, simulation.warnings());
             });
         });
@@ -123,7 +124,7 @@ fn speed_name(speed: f64) -> String {
     }
 }
 
-fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
+fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let Some(world) = simulation.world() else {
         return;
     };
@@ -134,13 +135,29 @@ fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     let palette = Palette::of(ui.visuals());
     let (factor, asked) = (simulation.real_time_factor(), simulation.speed());
     let slower = factor > 0.0 && asked.is_finite() && factor < KEEPING_UP * asked;
-    let time = RichText::new(format!("t = {:.2} s", world.time()))
-        .monospace()
-        .size(17.0);
-    ui.label(time.strong())
-        .on_hover_text(format!("Simulated time, step {}", world.clock.step));
+    let mut time = world.time();
+    let field = Field {
+        label: "Time",
+        range: 0.0..=f64::MAX,
+        unit: "s",
+        // A short run is told to a hundredth of a millisecond.
+        decimals: if time < 1.0 { 2..=5 } else { 2..=2 },
+        is_whole: false,
+        speed: 0.0,
+        size: Some(vec2(104.0, 26.0)),
+    };
+    let typed = field.ui(ui, &mut time);
+    if typed.changed() && time != world.time() {
+        let command =
+            go_to(simulation, time).filter(|command| allows(simulation.status(), command));
+        out.extend(command.map(Request::Command));
+    }
+    typed.on_hover_text(format!(
+        "Simulated time, step {}. Click to type another: the run shows it, or goes on to it",
+        world.clock.step
+    ));
     if factor > 0.0 && ui.available_width() >= ROOM_FOR_CLOCK {
-        let text = RichText::new(format!("{factor:.2}× real time"));
+        let text = RichText::new(format!("{} real time", number::times(factor)));
         if slower {
             let hint = "This machine is slower than the speed asked for: simulated time slows down, nothing is skipped.";
             ui.label(text.color(palette.warning)).on_hover_text(hint);

@@ -14,6 +14,7 @@ use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
 use bevy::tasks::futures::check_ready;
 use bevy::tasks::{IoTaskPool, Task};
+use bevy_egui::egui::text::{CCursor, CCursorRange};
 use bevy_egui::egui::{self, Id, Key, Modal};
 use rfd::{AsyncFileDialog, FileHandle};
 use std::path::{Path, PathBuf};
@@ -154,12 +155,22 @@ impl Purpose {
             Err(format!(
                 "There is a folder {shown} already: choose another name."
             ))
+        } else if let Some(folder) = missing_folder(&whole) {
+            let folder = folder.display();
+            Err(format!(
+                "There is no folder {folder}: make it first, or choose another."
+            ))
         } else if whole.exists() {
             Ok(format!("Replaces {shown}"))
         } else {
             Ok(format!("Goes to {shown}"))
         }
     }
+}
+
+/// The folder that the file `whole` is to lie in, where there is none.
+fn missing_folder(whole: &Path) -> Option<&Path> {
+    whole.parent().filter(|folder| !folder.is_dir())
 }
 
 impl PathDialog {
@@ -291,9 +302,14 @@ fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath) -> Option<FieldAnswer> {
         ui.weak(typed.reason);
         let label = ui.label(typed.purpose.field());
         let field = egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY);
-        let field = ui.add(field).labelled_by(label.id);
+        let mut drawn = field.show(ui);
+        let field = drawn.response.response.clone().labelled_by(label.id);
         if std::mem::take(&mut typed.fresh) {
             field.request_focus();
+            // What is typed takes the place of what is suggested.
+            let all = CCursorRange::two(CCursor::new(0), CCursor::new(typed.text.chars().count()));
+            drawn.state.cursor.set_char_range(Some(all));
+            drawn.state.store(ui.ctx(), field.id);
         }
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let path = PathBuf::from(typed.text.trim());

@@ -4,19 +4,21 @@
 //! In: what is remembered. Out: a request to open one. The pictures are the program's own, made by
 //! `assets/gallery/make`.
 
-use crate::scene::{BuiltIn, Scene, built_in};
+use crate::scene::{BuiltIn, Scene, SceneContainer, built_in};
 use crate::solver::advise;
 use crate::ui::request::Request;
 use crate::ui::user_memory::UserMemory;
 use crate::ui::widgets::focus::follow_focus;
 use crate::ui::words::number;
 use bevy_egui::egui::{
-    self, ColorImage, Id, Modal, RichText, ScrollArea, TextureHandle, TextureOptions, WidgetInfo,
-    WidgetType, vec2,
+    self, ColorImage, Id, Modal, RichText, ScrollArea, Sense, TextureHandle, TextureOptions,
+    UiBuilder, WidgetInfo, WidgetType, vec2,
 };
 
 /// Size of a picture in points, half as many as it has pixels where the screen is fine.
 const PICTURE: egui::Vec2 = vec2(192.0, 120.0);
+/// Scenes that show what they promise at once.
+const FIRST: [&str; 2] = ["small-drum", "bouncing-grain"];
 /// A window wider than this has two scenes in a row.
 const TWO_IN_A_ROW: f32 = 900.0;
 
@@ -54,8 +56,54 @@ pub struct Gallery {
     cards: Vec<Card>,
 }
 
+/// What scenes of the gallery have in common, in the order in which they stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    First,
+    Drum,
+    Column,
+    FewGrains,
+    Paper,
+}
+
+impl Kind {
+    const ALL: [Self; 5] = [
+        Self::First,
+        Self::Drum,
+        Self::Column,
+        Self::FewGrains,
+        Self::Paper,
+    ];
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::First => "Start here",
+            Self::Drum => "Drums",
+            Self::Column => "Columns",
+            Self::FewGrains => "One contact",
+            Self::Paper => "Papers",
+        }
+    }
+
+    /// That of the scene in the file at `path`.
+    fn of(name: &str, path: &str, scene: &Scene) -> Self {
+        if FIRST.contains(&name) {
+            return Self::First;
+        }
+        if path.contains("papers/") {
+            return Self::Paper;
+        }
+        match scene.container {
+            SceneContainer::Drum { .. } => Self::Drum,
+            SceneContainer::Column { .. } => Self::Column,
+            _ => Self::FewGrains,
+        }
+    }
+}
+
 struct Card {
     name: &'static str,
+    kind: Kind,
     title: String,
     look_for: String,
     grains: usize,
@@ -114,14 +162,19 @@ impl Gallery {
             1
         };
         let mut chosen = None;
-        for row in self.cards.chunks(columns) {
-            ui.columns(columns, |places| {
-                for (ui, card) in places.iter_mut().zip(row) {
-                    if card.ui(ui, &self.speed(card, memory)) {
-                        chosen = Some(card.name.to_owned());
+        for kind in Kind::ALL {
+            let of_kind = |card: &&Card| card.kind == kind;
+            let cards: Vec<&Card> = self.cards.iter().filter(of_kind).collect();
+            ui.label(RichText::new(kind.title()).strong().size(17.0));
+            for row in cards.chunks(columns) {
+                ui.columns(columns, |places| {
+                    for (ui, card) in places.iter_mut().zip(row) {
+                        if card.ui(ui, &self.speed(card, memory)) {
+                            chosen = Some(card.name.to_owned());
+                        }
                     }
-                }
-            });
+                });
+            }
             ui.add_space(8.0);
         }
         chosen
@@ -132,16 +185,24 @@ impl Gallery {
     fn speed(&self, card: &Card, memory: &UserMemory) -> String {
         let speeds = memory.speeds();
         if let Some(speed) = speeds.get(card.name) {
-            return format!("{} times real time here", number::rough(*speed));
+            return format!("{} here", pace(*speed));
         }
         let alike = |other: &&Card| other.is_polyhedral == card.is_polyhedral;
         let known = (self.cards.iter().filter(alike))
             .filter_map(|other| Some((other.load, *speeds.get(other.name)?)))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         known.map_or("not run here yet".to_owned(), |(load, speed)| {
-            let expected = number::rough(speed * load / card.load);
-            format!("about {expected} times real time here, by its size")
+            format!("about {} here, by its size", pace(speed * load / card.load))
         })
+    }
+}
+
+/// How fast `speed` is, in words: `2.1 times real time`, `80 s for each second`.
+fn pace(speed: f64) -> String {
+    if speed >= 0.1 {
+        format!("{} times real time", number::rough(speed))
+    } else {
+        format!("{} s for each second", number::rough((1.0 / speed).round()))
     }
 }
 
@@ -152,6 +213,7 @@ impl Card {
         let grains = opened.grain_count();
         Some(Self {
             name: scene.name,
+            kind: Kind::of(scene.name, scene.path, &opened),
             grains,
             load: grains as f64 / advise(&opened).time_step,
             is_polyhedral: opened.is_polyhedral(),
@@ -162,16 +224,35 @@ impl Card {
         })
     }
 
-    /// Draws it; whether it was chosen.
+    /// Draws it, a button as a whole; whether it was chosen.
     fn ui(&self, ui: &mut egui::Ui, speed: &str) -> bool {
-        let mut chosen = false;
+        let builder = UiBuilder::new().id_salt(self.name).sense(Sense::click());
+        let card = ui.scope_builder(builder, |ui| {
+            let response = ui.response();
+            let visuals = ui.style().interact(&response);
+            let is_aimed_at = response.hovered() || response.has_focus();
+            let fill = is_aimed_at.then_some(visuals.weak_bg_fill);
+            // A text that can be selected would take the click.
+            ui.style_mut().interaction.selectable_labels = false;
+            egui::Frame::new()
+                .fill(fill.unwrap_or_default())
+                .corner_radius(6)
+                .inner_margin(6)
+                .show(ui, |ui| {
+                    ui.set_width(ui.available_width());
+                    self.content_ui(ui, speed);
+                });
+        });
+        let label = format!("Open {}", self.title);
+        let info = || WidgetInfo::labeled(WidgetType::Button, true, &label);
+        card.response.widget_info(info);
+        card.response.clicked()
+    }
+
+    fn content_ui(&self, ui: &mut egui::Ui, speed: &str) {
         ui.horizontal_top(|ui| {
             if let Some(picture) = &self.picture {
-                let image = egui::Image::new((picture.id(), PICTURE)).corner_radius(4);
-                let button = ui.add(egui::Button::image(image).frame(true));
-                let label = format!("Open {}", self.title);
-                button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
-                chosen = button.clicked();
+                ui.add(egui::Image::new((picture.id(), PICTURE)).corner_radius(4));
             }
             ui.vertical(|ui| {
                 ui.label(RichText::new(&self.title).strong());
@@ -181,7 +262,6 @@ impl Card {
                 ui.label(RichText::new(size).small().weak());
             });
         });
-        chosen
     }
 }
 
@@ -213,6 +293,12 @@ fn picture(name: &str) -> Option<ColorImage> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_pace_is_told_in_numbers_that_say_something() {
+        assert_eq!(pace(2.13), "2.1 times real time");
+        assert_eq!(pace(0.012), "83 s for each second");
+    }
 
     #[test]
     fn every_scene_has_a_small_picture() {

@@ -9,6 +9,9 @@ use crate::ui::shortcuts::{GESTURES, SHORTCUTS};
 use crate::ui::theme::Palette;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
 
+/// Height of what stands round the content of a sheet, with some air [points].
+const AROUND_CONTENT: f32 = 140.0;
+
 /// Draws `sheet`; false once it is closed.
 pub fn sheet_ui(ctx: &egui::Context, sheet: Sheet) -> bool {
     match sheet {
@@ -26,11 +29,8 @@ pub fn open_error_ui(ctx: &egui::Context, reason: &str) -> bool {
             .corner_radius(6)
             .inner_margin(10)
             .show(ui, |ui| {
-                let height = 0.5 * ui.ctx().content_rect().height();
-                ScrollArea::both().max_height(height).show(ui, |ui| {
-                    let text = RichText::new(reason).monospace();
-                    ui.add(egui::Label::new(text).selectable(true).extend());
-                });
+                let text = RichText::new(reason).monospace();
+                ui.add(egui::Label::new(text).selectable(true).wrap());
             });
         ui.label("What was open goes on. A scene can be corrected and opened again.");
     })
@@ -80,7 +80,13 @@ fn modal_ui(
         ui.set_width(width.min(0.9 * ui.ctx().content_rect().width()));
         ui.heading(title);
         ui.add_space(4.0);
-        content(ui);
+        // The title above and the button below are always in the window.
+        let height = ui.ctx().content_rect().height() - AROUND_CONTENT;
+        ScrollArea::vertical()
+            .id_salt(title)
+            .max_height(height)
+            .min_scrolled_height(height)
+            .show(ui, content);
         ui.add_space(4.0);
         ui.button("Close").clicked()
     });

@@ -72,6 +72,22 @@ impl Panel for AvalanchePlots {
         "Plots"
     }
 
+    fn choices(&self) -> String {
+        let axis = if self.logarithmic { "log" } else { "even" };
+        let frame = if self.corotating {
+            "drum"
+        } else {
+            "laboratory"
+        };
+        format!("{axis} {frame}")
+    }
+
+    fn take_choices(&mut self, choices: &str) {
+        if let Some((axis, frame)) = choices.split_once(' ') {
+            (self.logarithmic, self.corotating) = (axis == "log", frame == "drum");
+        }
+    }
+
     fn applies_to(&self, simulation: &Simulation) -> bool {
         has_bed(simulation)
     }
@@ -279,12 +295,8 @@ impl<'a> AvalancheMarks<'a> {
                 .color(self.palette.minimum),
         );
         let lift = LABEL_LIFT * plot.plot_bounds().height();
-        let mut free_from = f64::NEG_INFINITY;
-        for avalanche in self.avalanches {
-            if avalanche.start >= free_from {
-                plot.text(self.drop_label(avalanche, lift));
-                free_from = avalanche.start + self.between_labels;
-            }
+        for avalanche in labelled(self.avalanches, self.between_labels) {
+            plot.text(self.drop_label(avalanche, lift));
         }
     }
 
@@ -318,9 +330,45 @@ impl<'a> AvalancheMarks<'a> {
     }
 }
 
+/// The avalanches whose drop is written at their start: the largest first, each at least `apart`
+/// [s] from the others.
+fn labelled(avalanches: &[Avalanche], apart: f64) -> Vec<&Avalanche> {
+    let mut by_drop: Vec<&Avalanche> = avalanches.iter().collect();
+    by_drop.sort_by(|a, b| b.drop().total_cmp(&a.drop()));
+    let mut chosen: Vec<&Avalanche> = Vec::new();
+    for avalanche in by_drop {
+        let is_free = |other: &&Avalanche| (other.start - avalanche.start).abs() >= apart;
+        if chosen.iter().all(is_free) {
+            chosen.push(avalanche);
+        }
+    }
+    chosen
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_avalanche_has_its_label_and_no_two_overlap() {
+        let fall = |start: f64, drop: f64| Avalanche {
+            start,
+            end: start + 0.2,
+            theta_m: 0.6,
+            theta_r: 0.6 - drop,
+        };
+        let avalanches = [
+            fall(1.0, 0.08),
+            fall(1.5, 0.52),
+            fall(2.2, 0.09),
+            fall(4.0, 0.07),
+        ];
+        let starts: Vec<f64> = labelled(&avalanches, 1.0)
+            .into_iter()
+            .map(|avalanche| avalanche.start)
+            .collect();
+        assert_eq!(starts, [1.5, 4.0]);
+    }
 
     #[test]
     fn changes_of_one_drag_share_a_line() {

@@ -4,7 +4,9 @@
 //! In: the samples since the last change of a parameter. Out: points with their errors that move as
 //! the run goes on, and what becomes of the paper's law by the rules of [`Verdict`].
 
-use crate::measure::{Estimate, RunQuantity, Summary, Verdict, drop_ratio_law, dry_drum};
+use crate::measure::{
+    Estimate, RunQuantity, Summary, Verdict, beyond_kasper, drop_ratio_law, dry_drum,
+};
 use crate::simulation::{Command, Parameter, RunView, Simulation};
 use crate::ui::panel::Panel;
 use crate::ui::panels::averages::Averages;
@@ -90,7 +92,9 @@ impl Panel for BesidePaper {
     }
 
     fn applies_to(&self, simulation: &Simulation) -> bool {
-        simulation.scene().liquid.is_some()
+        let is_wet = simulation.scene().liquid.is_some();
+        // A speed that was changed is said where the laws would stand.
+        is_wet && simulation.scene().species().len() < 2
     }
 
     fn ui(
@@ -108,6 +112,12 @@ impl Panel for BesidePaper {
             ui.weak("The laws appear when the bed stands.");
             return;
         };
+        if let Some(reason) = beyond_kasper(world) {
+            ui.weak(format!(
+                "The laws of the paper say nothing of this drum: {reason}."
+            ));
+            return;
+        }
         let radius = world.grains.radius.first().copied().unwrap_or(0.0);
         let from = last_change(run);
         let summary = self.averages.over(run, from);

@@ -74,7 +74,7 @@ impl ChangeList {
             .stick_to_bottom(true)
             .show(ui, |ui| {
                 for row in &self.rows {
-                    let text = format!("{} s  {}", number::fixed(row.time, 2), row.text);
+                    let text = format!("{}  {}", number::moment(row.time), row.text);
                     let coloured = if row.step <= shown {
                         RichText::new(&text)
                     } else {
@@ -174,7 +174,7 @@ fn kept_runs_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Reques
             line_sample_ui(ui, Some(dash(index)), stroke);
             let name = format!("Run {}", record.number);
             ui.label(&name).on_hover_text(describe(record, simulation));
-            ui.weak(format!("to {} s", number::fixed(record.end.time, 2)));
+            ui.weak(format!("to {}", number::moment(record.end.time)));
             let buttons = [
                 ("Show", "Take this run up again", Command::Return(index)),
                 ("Forget", "Keep this run no longer", Command::Forget(index)),
@@ -205,10 +205,10 @@ fn describe(branch: &Branch, simulation: &RunView) -> String {
         return "Nothing was changed in it.".into();
     };
     format!(
-        "Its last change: {} {} at {} s",
+        "Its last change: {} {} at {}",
         parameter_name(parameter, simulation),
         value_in_words(parameter, *value),
-        number::fixed(stamped.time, 2)
+        number::moment(stamped.time)
     )
 }
 

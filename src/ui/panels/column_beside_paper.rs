@@ -8,7 +8,7 @@ use crate::measure::{
     CRITICAL_ASPECT_RATIO, Collapse, InitialColumn, REST_TIME_LAW, TALL_ASPECT_RATIO,
     TALL_REST_TIME_LAW, cone_volume_law, run_out_law,
 };
-use crate::simulation::Simulation;
+use crate::simulation::{Command, Parameter, RunView, Simulation};
 use crate::ui::panel::{Panel, is_column};
 use crate::ui::panels::beside_paper::{PaperPlot, PaperPoint, comparison_ui, law_over};
 use crate::ui::request::Request;
@@ -52,18 +52,37 @@ impl Panel for ColumnBesidePaper {
             ui.weak("The laws appear with the first sample.");
             return;
         };
+        if let Some(time) = changed_in_fall(run) {
+            let moment = number::moment(time);
+            ui.weak(format!(
+                "It was changed at {moment}, as it fell, and is no longer one column of the paper. \
+                 Reset (R) lets it fall as it is now."
+            ));
+            return;
+        }
         for comparison in comparisons(&column, &collapse) {
             comparison_ui(ui, comparison);
         }
         let effective = number::fixed(column.effective_aspect_ratio(), 2);
         let friction = number::fixed(column.particle_friction, 3);
         let state = match collapse.rest_time {
-            Some(time) => format!("At rest since {} s.", number::fixed(time, 2)),
+            Some(time) => format!("At rest since {}.", number::moment(time)),
             None => "Still moving.".into(),
         };
         let text = format!("α_eff {effective}, μ_p {friction}. {state}");
         ui.label(RichText::new(text).small().weak());
     }
+}
+
+/// When what the column is made of was changed after its start [s], if it was.
+fn changed_in_fall(run: &RunView) -> Option<f64> {
+    let matters = |command: &Command| match command {
+        Command::Set { parameter, .. } => *parameter != Parameter::TimeStep,
+        _ => false,
+    };
+    let mut commands = run.commands().iter();
+    let change = commands.find(|stamped| stamped.step > 0 && matters(&stamped.command));
+    change.map(|stamped| stamped.time)
 }
 
 fn comparisons(column: &InitialColumn, collapse: &Collapse) -> [PaperPlot; 3] {

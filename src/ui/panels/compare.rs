@@ -5,6 +5,7 @@
 
 use crate::measure::{LEFT_OUT, Measure, ResultKey, RunQuantity, Summary, difference_in_words};
 use crate::parameters::{Kind, Parameter, ParameterInfo, Preset, Value};
+use crate::scene::Scene;
 use crate::simulation::{Half, Simulation};
 use crate::ui::detail::is_basic;
 use crate::ui::panel::{Panel, has_bed};
@@ -112,7 +113,7 @@ impl Compare {
         if let (Some(info), Some(present)) = (of(&parameter), simulation.value(&parameter)) {
             let left = value_in_words(&parameter, present);
             ui.label(format!("Left: {left}, the present value"));
-            other = other_ui(ui, info, other).unwrap_or(other);
+            other = other_ui(ui, info, other, simulation.scene()).unwrap_or(other);
             let why_not = why_not(simulation, other == present);
             let button = egui::Button::new(RichText::new("Start side by side").strong());
             let button = button_unless_ui(ui, why_not, button)
@@ -181,7 +182,7 @@ fn choice_ui(ui: &mut egui::Ui, list: &[&ParameterInfo], chosen: &mut Parameter)
 }
 
 /// The row of the other value; what is wanted instead of it, if anything.
-fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: Value) -> Option<Value> {
+fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: Value, scene: &Scene) -> Option<Value> {
     let (own, range) = (info.row(), info.range());
     let row = ValueRow {
         label: "value on the right",
@@ -191,7 +192,7 @@ fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: Value) -> Option<Val
         display: own.kind.unit().shown,
         is_logarithmic: own.is_logarithmic(&range),
         is_whole: !matches!(own.kind, Kind::Number(_)),
-        presets: &named_values(info),
+        presets: &named_values(info, scene),
         caption: None,
         range,
     };
@@ -201,12 +202,12 @@ fn other_ui(ui: &mut egui::Ui, info: &ParameterInfo, other: Value) -> Option<Val
 }
 
 /// Values of the parameter of `info` that have a name.
-fn named_values(info: &ParameterInfo) -> Vec<Preset> {
+fn named_values<'a>(info: &ParameterInfo, scene: &'a Scene) -> Vec<Preset<'a>> {
     let choices = info.row().kind.choices().iter().map(|choice| Preset {
         name: choice.name,
         value: choice.number,
     });
-    choices.chain(info.row().presets.iter().copied()).collect()
+    choices.chain(info.presets(scene)).collect()
 }
 
 /// A value far from the present one, so that the two runs look unlike: the farthest named one, else
@@ -223,7 +224,7 @@ fn telling(info: &ParameterInfo, simulation: &Simulation) -> Value {
             (value - present).abs()
         }
     };
-    let named = named_values(info);
+    let named = named_values(info, simulation.scene());
     let values = named.iter().map(|preset| preset.value);
     let inside = values.filter(|value| range.contains(value));
     let farthest = inside.max_by(|a, b| far(a).total_cmp(&far(b)));

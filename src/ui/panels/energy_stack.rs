@@ -4,7 +4,7 @@
 //! In: the samples. Out: the plot, its numbers at the moment shown, the moment that is clicked on.
 
 use crate::measure::{Measure, Series};
-use crate::simulation::{RunView, Simulation};
+use crate::simulation::{RunView, SAMPLE_INTERVAL, Simulation};
 use crate::ui::panel::{Panel, energy_comes_first};
 use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plots::axes::{fitting_plot, tick};
@@ -109,7 +109,10 @@ impl Panel for EnergyStack {
         let unit = format!("{prefix}J");
         ui.label(RichText::new(format!("Where the energy is and went [{unit}]")).strong());
         let label_unit = unit.clone();
+        let end = stack.time.last().copied().unwrap_or(0.0);
         let drawn = fitting_plot(ui, "energy stack")
+            .include_x(0.0)
+            .include_x(if end > 0.0 { end } else { SAMPLE_INTERVAL })
             .x_axis_formatter(|mark, _| format!("{} s", tick(mark.value, false)))
             .label_formatter(move |hover| Some(cursor(hover, &label_unit)))
             .show(ui, |plot| {
@@ -159,12 +162,16 @@ fn cursor(hover: &HoverPosition, unit: &str) -> String {
             position,
             ..
         } => format!(
-            "{plot_name}\n{:.2} s\n{} {unit}",
-            position.x,
+            "{plot_name}\n{}\n{} {unit}",
+            number::moment(position.x),
             number::short(position.y)
         ),
         HoverPosition::Elsewhere { position } => {
-            format!("{:.2} s\n{} {unit}", position.x, number::short(position.y))
+            format!(
+                "{}\n{} {unit}",
+                number::moment(position.x),
+                number::short(position.y)
+            )
         }
     }
 }

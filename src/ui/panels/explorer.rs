@@ -5,11 +5,11 @@
 //! and the plot as a request to export it.
 
 use crate::measure::{Avalanche, Measure, Series};
-use crate::simulation::{Half, Provenance, Simulation};
+use crate::simulation::{Half, Provenance, SAMPLE_INTERVAL, Simulation};
 use crate::ui::panel::{Panel, energy_comes_first};
 use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plot_export::{Export, ExportedRun, PlotAxis};
-use crate::ui::plots::axes::fitting_plot;
+use crate::ui::plots::axes::{fitting_plot, height_of};
 use crate::ui::plots::decimate::decimate;
 use crate::ui::plots::run_curves::{compared_line, halves_ui, kept_runs};
 use crate::ui::plots::time_plot::moment_ui;
@@ -21,7 +21,7 @@ use crate::ui::words::number;
 use crate::ui::words::run_names::half_title;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, Stroke, WidgetInfo, WidgetType};
-use egui_plot::{HoverPosition, Line, LineStyle, VLine};
+use egui_plot::{HoverPosition, Line, LineStyle, Plot, PlotItem, VLine};
 
 /// Most points of a curve over another quantity than time.
 const MOST_POINTS: usize = 4000;
@@ -47,6 +47,22 @@ impl Default for Explorer {
 impl Panel for Explorer {
     fn title(&self) -> &'static str {
         "Any quantity"
+    }
+
+    fn choices(&self) -> String {
+        let over = self.over.map_or("", |measure| measure.quantity().key);
+        format!("{}, {over}", self.quantity.quantity().key)
+    }
+
+    fn take_choices(&mut self, choices: &str) {
+        let measure = |key: &str| {
+            let mut all = Measure::ALL.into_iter();
+            all.find(|measure| measure.quantity().key == key)
+        };
+        if let Some((quantity, over)) = choices.split_once(", ") {
+            self.quantity = measure(quantity).unwrap_or(self.quantity);
+            self.over = measure(over);
+        }
     }
 
     fn comes_first(&self, simulation: &Simulation) -> bool {
@@ -161,7 +177,8 @@ impl Explorer {
         // Another pair of quantities begins with bounds of its own.
         let name = format!("{} over {}", y.label(), x.label());
         ui.label(RichText::new(&name).strong());
-        let plot = fitting_plot(ui, &name)
+        let plot = fitting_plot(ui, &name);
+        let plot = within(plot, &points_of(&lines), over_time)
             .show_crosshair(true)
             .label_formatter(move |hover| Some(cursor(hover, units)));
         let drawn = plot.show(ui, |plot| {
@@ -215,6 +232,33 @@ impl Explorer {
             .unwrap_or_else(|| Provenance::of_scene(simulation.scene()));
         Export { x, y, runs, from }
     }
+}
+
+/// The points of all lines.
+fn points_of(lines: &[Line<'_>]) -> Vec<[f64; 2]> {
+    let points = lines.iter().flat_map(|line| match line.geometry() {
+        egui_plot::PlotGeometry::Points(points) => points,
+        _ => &[],
+    });
+    points.map(|point| [point.x, point.y]).collect()
+}
+
+/// `plot` with all `points` in view, a constant too; time begins at zero.
+fn within<'a>(plot: Plot<'a>, points: &[[f64; 2]], over_time: bool) -> Plot<'a> {
+    let height = height_of(points.iter(), 0.0);
+    let turned: Vec<[f64; 2]> = points.iter().map(|[x, y]| [*y, *x]).collect();
+    let width = height_of(turned.iter(), 0.0);
+    let (from, to) = if over_time {
+        let end = points.iter().map(|[time, _]| *time).fold(0.0, f64::max);
+        (0.0, if end > 0.0 { end } else { SAMPLE_INTERVAL })
+    } else {
+        width.into_inner()
+    };
+    plot.set_margin_fraction(egui::Vec2::ZERO)
+        .include_x(from)
+        .include_x(to)
+        .include_y(*height.start())
+        .include_y(*height.end())
 }
 
 /// Where an avalanche starts.

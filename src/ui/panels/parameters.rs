@@ -60,7 +60,9 @@ impl Group {
             PanelSection::Gravity => Some(Self::Gravity),
             PanelSection::Mixture => Some(Self::Mixture),
             PanelSection::Liquid => Some(Self::Liquid),
-            PanelSection::Contact if scene.has_grains_of(a) && scene.has_grains_of(b) => {
+            PanelSection::Contact
+                if scene.has_grains_of(a) && scene.has_grains_of(b) && scene.grain_count() > 1 =>
+            {
                 Some(Self::GrainGrain)
             }
             PanelSection::Contact => Some(Self::GrainWall),
@@ -124,11 +126,19 @@ impl Parameters {
         if detail == Detail::Lab {
             self.start.rows_ui(ui, simulation);
         } else {
-            let live = away().filter(|info| !is_basic(info, simulation.scene()));
+            let live = away().filter(|info| is_unseen(info, simulation));
             unseen_ui(ui, live.count() + of_start);
         }
         self.start.footer_ui(ui, out);
     }
+}
+
+/// Whether the panel does not show the parameter of `info`. Of two species that share the grains,
+/// the share of the one that is shown says that of the other.
+fn is_unseen(info: &ParameterInfo, simulation: &Simulation) -> bool {
+    let scene = simulation.scene();
+    let is_said = matches!(info.parameter, Parameter::Share(_)) && scene.species().len() == 2;
+    !is_basic(info, scene) && !is_said
 }
 
 /// Says how many values are others than the scene's and not shown, and shows them.
@@ -153,7 +163,7 @@ fn group_ui(
         wanted && info.acts && Group::of(&info.parameter, scene) == Some(group)
     };
     let mut pair = None;
-    for info in simulation.parameters().iter().filter(shown) {
+    for info in in_order(simulation.parameters().iter().filter(shown), scene) {
         let own = info.parameter.pair();
         if pair != Some(own) {
             heading_ui(ui, group, own, scene);
@@ -193,6 +203,22 @@ fn group_ui(
             out.extend(wanted.inner.map(set_in));
         }
     }
+}
+
+/// The `list` with the parameters of each pair of materials together, those that matter most first.
+fn in_order<'a>(
+    list: impl Iterator<Item = &'a ParameterInfo>,
+    scene: &Scene,
+) -> Vec<&'a ParameterInfo> {
+    let mut list: Vec<&ParameterInfo> = list.collect();
+    let pairs: Vec<_> = list.iter().map(|info| info.parameter.pair()).collect();
+    let place = |info: &&ParameterInfo| {
+        let pair = info.parameter.pair();
+        let place = pairs.iter().position(|other| *other == pair);
+        (place, !is_basic(info, scene))
+    };
+    list.sort_by_cached_key(place);
+    list
 }
 
 /// The button that leads to two values of a parameter side by side; whether it was pressed.
@@ -334,9 +360,10 @@ fn number_ui(
         range,
     };
     let extent = row.extent();
+    let presets = info.presets(scene);
     match detail {
         // Liquids have buttons of their own.
-        Detail::Basics if info.parameter != Parameter::Viscosity => row.presets = own.presets,
+        Detail::Basics if info.parameter != Parameter::Viscosity => row.presets = &presets,
         Detail::Basics => {}
         Detail::Lab => row.caption = Some(format!("{extent} · acts at once")),
     }

@@ -181,7 +181,7 @@ fn hint_of(entry: &SummaryEntry) -> String {
 }
 
 fn latest_ui(ui: &mut egui::Ui, sample: &Sample, applies: impl Fn(Measure) -> bool) {
-    ui.label(RichText::new(format!("At {:.2} s", sample.time)).strong());
+    ui.label(RichText::new(format!("At {}", number::moment(sample.time))).strong());
     table_ui(
         ui,
         LATEST

@@ -20,6 +20,11 @@ pub const SPARSE_Y: f32 = 3.5;
 /// Smallest height of a plot, in its unit: a curve of zeros still needs marks that differ.
 const LEAST_SPAN: f64 = 1e-30;
 
+/// Share of a number below which two are the same but for rounding.
+const ROUNDING: f64 = 1e-9;
+/// Height of the plot of a constant, as a share of it.
+const SPAN_OF_CONSTANT: f64 = 0.2;
+
 /// The range that shows all `points` with a little room, at least `smallest` high.
 pub fn height_of<'a>(
     points: impl Iterator<Item = &'a [f64; 2]>,
@@ -31,8 +36,14 @@ pub fn height_of<'a>(
     if low > high {
         return 0.0..=smallest.max(1.0);
     }
-    let span = (high - low).max(smallest).max(LEAST_SPAN);
     let middle = 0.5 * (low + high);
+    let apart = if high - low > ROUNDING * middle.abs() {
+        high - low
+    } else {
+        // A constant: its number stands at a mark, and zero is out of sight.
+        SPAN_OF_CONSTANT * middle.abs()
+    };
+    let span = apart.max(smallest).max(LEAST_SPAN);
     middle - (0.5 + BELOW) * span..=middle + (0.5 + ABOVE) * span
 }
 
@@ -92,6 +103,14 @@ pub fn tidy(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_constant_is_seen_where_it_is() {
+        let energy = 5.655e-6;
+        let height = height_of([[0.0, energy], [1.0, energy * (1.0 + 1e-12)]].iter(), 0.0);
+        assert!(height.contains(&energy) && !height.contains(&0.0));
+        assert!(height.end() - height.start() < 0.5 * energy, "{height:?}");
+    }
 
     #[test]
     fn a_curve_of_zeros_has_a_few_marks() {

@@ -14,6 +14,8 @@ use std::ops::RangeInclusive;
 
 /// Room for half of the last label of the time axis.
 const ROOM_AT_THE_RIGHT: f32 = 14.0;
+/// Width and height of the name of a kept run, as shares of the plot.
+const LABEL_SIZE: [f64; 2] = [0.14, 0.1];
 /// Room for the value of a run beside the title, in points.
 const ROOM_FOR_VALUE: f32 = 92.0;
 
@@ -77,8 +79,9 @@ impl TimePlot {
         let compared = compared.map(|points| compared_line("right", points, palette));
         let shown = plot.show(ui, move |plot| {
             plot.set_plot_bounds(bounds);
+            let mut labels = Vec::new();
             for (index, (name, points)) in kept.into_iter().enumerate() {
-                kept_ui(plot, index, &name, points, palette.kept);
+                kept_ui(plot, index, &name, points, palette.kept, &mut labels);
             }
             plot.line(line);
             if let Some(line) = compared {
@@ -151,8 +154,15 @@ fn head_ui(ui: &mut egui::Ui, title: &str, values: &[String], colours: [Color32;
     }
 }
 
-/// A kept run as a dashed line with its name at the end.
-fn kept_ui(plot: &mut PlotUi, index: usize, name: &str, points: Vec<[f64; 2]>, colour: Color32) {
+/// A kept run as a dashed line with its name at the end, below the `labels` that stand there already.
+fn kept_ui(
+    plot: &mut PlotUi,
+    index: usize,
+    name: &str,
+    points: Vec<[f64; 2]>,
+    colour: Color32,
+    labels: &mut Vec<[f64; 2]>,
+) {
     let Some([time, value]) = points.last().copied() else {
         return;
     };
@@ -165,8 +175,26 @@ fn kept_ui(plot: &mut PlotUi, index: usize, name: &str, points: Vec<[f64; 2]>, c
             }),
     );
     let label = RichText::new(name).small().color(colour);
-    let end = time.min(plot.plot_bounds().max()[0]);
-    plot.text(Text::new(name, PlotPoint::new(end, value), label).anchor(Align2::RIGHT_BOTTOM));
+    let bounds = plot.plot_bounds();
+    let end = time.min(bounds.max()[0]);
+    let place = free_place([end, value], [bounds.width(), bounds.height()], labels);
+    labels.push(place);
+    plot.text(Text::new(name, PlotPoint::from(place), label).anchor(Align2::RIGHT_BOTTOM));
+}
+
+/// Where a label that belongs at `wanted` stands on a plot of this `size` without lying over others.
+fn free_place(wanted: [f64; 2], size: [f64; 2], others: &[[f64; 2]]) -> [f64; 2] {
+    let [width, height] = [LABEL_SIZE[0] * size[0], LABEL_SIZE[1] * size[1]];
+    let is_taken = |place: &[f64; 2]| {
+        let covers = |other: &[f64; 2]| {
+            (other[0] - place[0]).abs() < width && (other[1] - place[1]).abs() < 0.99 * height
+        };
+        others.iter().any(covers)
+    };
+    let below = |rows: usize| [wanted[0], wanted[1] - rows as f64 * height];
+    // Each of them may cover two rows.
+    let mut places = (0..=2 * others.len()).map(below);
+    places.find(|place| !is_taken(place)).unwrap_or(wanted)
 }
 
 /// A mark at the moment shown.
@@ -192,10 +220,34 @@ fn hover_label(hover: &HoverPosition, decades: bool, unit: &str) -> String {
     } else {
         position.y
     };
-    let place = format!("{:.2} s\n{} {unit}", position.x, number::short(value));
+    let place = format!(
+        "{}\n{} {unit}",
+        number::moment(position.x),
+        number::short(value)
+    );
     if name.is_empty() {
         place
     } else {
         format!("{name}\n{place}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_runs_that_end_together_stand_below_each_other() {
+        let size = [20.0, 10.0];
+        let mut labels = Vec::new();
+        for value in [5.0, 5.1, 4.9, 9.0] {
+            let place = free_place([18.0, value], size, &labels);
+            let is_free = |other: &[f64; 2]| (place[1] - other[1]).abs() >= 0.99;
+            assert!(labels.iter().all(is_free), "{place:?} {labels:?}");
+            labels.push(place);
+        }
+        assert_eq!((labels[0], labels[3]), ([18.0, 5.0], [18.0, 9.0]));
+        let far = free_place([2.0, 5.0], size, &labels);
+        assert_eq!(far, [2.0, 5.0]);
     }
 }

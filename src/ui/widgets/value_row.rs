@@ -33,7 +33,7 @@ pub struct ValueRow<'a> {
     /// Whether it counts something.
     pub is_whole: bool,
     /// Named values.
-    pub presets: &'a [Preset],
+    pub presets: &'a [Preset<'a>],
     /// A line below it, if any.
     pub caption: Option<String>,
 }

@@ -2,7 +2,8 @@
 //! ([`numeral`](crate::measure::numeral)), and what the panels say with them.
 
 pub use crate::measure::numeral::{
-    capitalised, fixed, power_of_ten, prefix_for, rounded, short, trimmed, with_prefix,
+    capitalised, fixed, moment, power_of_ten, prefix_for, rounded, short, times, trimmed,
+    with_prefix,
 };
 
 use crate::measure::Measure;

@@ -1,7 +1,10 @@
 //! Coordination number and largest overlap of contacts placed by hand.
 
 use super::*;
-use grainfall::measure::{contact_shares, coordination_number, largest_overlap};
+use grainfall::measure::{
+    GrainQuantity, contact_shares, coordination_number, largest_overlap, walls_touched,
+};
+use grainfall::scene::Scene;
 
 #[test]
 fn chain_of_four_touches_one_and_a_half_on_average() {
@@ -84,4 +87,19 @@ fn overlap_of_polyhedra_is_relative_to_the_smaller_rounding() {
     ];
     // 2e-6 of 1e-4, 3e-6 of 2e-4, 1.5e-6 of 1e-4
     assert_close(largest_overlap(&world), 0.02, 1e-16);
+}
+
+#[test]
+fn the_mean_of_the_grains_coordination_is_that_of_the_bed() {
+    let scene = Scene::open("small-drum").unwrap();
+    let (run, _) = crate::run::prepared(&scene, 1, crate::run::shared_beds());
+    let mut counts = Vec::new();
+    GrainQuantity::Coordination.append(run.world(), &mut counts);
+    let mean = counts.iter().sum::<f64>() / counts.len() as f64;
+    assert!((mean - coordination_number(run.world())).abs() < 1e-12 && mean > 2.0);
+    // Those at the rim touch it too, which is told apart.
+    let walls: usize = (0..counts.len())
+        .map(|i| walls_touched(run.world(), i))
+        .sum();
+    assert!(walls > 10, "{walls}");
 }

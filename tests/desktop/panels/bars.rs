@@ -162,11 +162,11 @@ fn a_film_that_is_recorded_can_be_ended_or_cancelled() {
         time: 0.24,
     };
     let mut harness = Harness::builder().with_size([600.0, 200.0]).build_ui_state(
-        |ui, (film, asked): &mut (FilmState, Vec<Request>)| film_bar_ui(ui, *film, asked),
+        |ui, (film, asked): &mut (FilmState, Vec<Request>)| film_bar_ui(ui, *film, false, asked),
         (film, Vec::new()),
     );
     harness.run_steps(2);
-    harness.get_by_label("Recording: 0.24 s, 7 pictures");
+    harness.get_by_label("Recording: 240.0 ms, 7 pictures");
     harness.get_by_label("Stop and save").click();
     harness.get_by_label("Cancel the film").click();
     harness.run_steps(2);
@@ -225,4 +225,18 @@ fn sessions_are_saved_by_key_and_by_menu() {
     harness.get_by_label_contains("Save the session as").click();
     harness.run_steps(2);
     assert_eq!(harness.state().asked, [Request::ChooseSession]);
+}
+
+#[test]
+fn a_film_of_a_run_that_stands_says_what_it_waits_for() {
+    use grainfall::ui::{FilmState, film_bar_ui};
+    let film = FilmState::Recording {
+        pictures: 1,
+        time: 0.0,
+    };
+    let mut harness = Harness::builder()
+        .with_size([600.0, 200.0])
+        .build_ui(move |ui| film_bar_ui(ui, film, true, &mut Vec::new()));
+    harness.run_steps(2);
+    harness.get_by_label_contains("The run stands still: press Play (Space)");
 }

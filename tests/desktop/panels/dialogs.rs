@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::scene::Scene;
 use grainfall::simulation::Status;
-use grainfall::ui::{Purpose, Request, open_error_ui};
+use grainfall::ui::{Purpose, Request, Sheet, open_error_ui};
 use std::path::Path;
 
 #[test]
@@ -143,4 +143,100 @@ fn it_is_said_where_a_file_goes_and_what_it_replaces() {
     std::fs::remove_file(&taken).unwrap();
     std::fs::create_dir(&taken).unwrap();
     assert_eq!(write(&taken), ([false, false, true], true));
+}
+
+/// Sizes of windows in which everything can be reached [points].
+const SIZES: [[f32; 2]; 2] = [[1440.0, 900.0], [1024.0, 640.0]];
+
+#[test]
+fn sheets_lie_within_the_window_and_scroll_to_their_end() {
+    for [width, height] in SIZES {
+        let mut harness = Window::of(prepared());
+        harness.set_size(egui::vec2(width, height));
+        harness.state_mut().dock.show_sheet(Sheet::Shortcuts);
+        harness.run_steps(6);
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, height));
+        for label in ["Shortcuts", "Close"] {
+            let place = harness.get_all_by_label(label).map(|node| node.rect());
+            assert!(
+                place.into_iter().any(|place| window.contains_rect(place)),
+                "{label}"
+            );
+        }
+        let last = "Draw its trail, or no longer";
+        harness.get_by_label(last).scroll_to_me();
+        harness.run_steps(30);
+        let place = harness.get_by_label(last).rect();
+        let close = harness.get_by_label("Close").rect();
+        assert!(place.bottom() <= close.top(), "{place:?} {close:?}");
+    }
+}
+
+#[test]
+fn a_long_error_is_read_without_scrolling_sideways() {
+    let reason = format!(
+        "{}/scene.ron, line 3: expected a title",
+        "a long folder/".repeat(20)
+    );
+    for [width, height] in SIZES {
+        let shown = reason.clone();
+        let mut harness = Harness::builder()
+            .with_size([width, height])
+            .build_ui(move |ui| assert!(open_error_ui(ui.ctx(), &shown)));
+        harness.run_steps(4);
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width, height));
+        for label in [reason.as_str(), "Close"] {
+            let place = harness.get_by_label(label).rect();
+            assert!(window.contains_rect(place), "{label}: {place:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_typed_takes_the_place_of_the_path_that_is_suggested() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = Window::of(prepared());
+    let dialog = &mut harness.state_mut().dock.path_dialog;
+    dialog.type_path(Purpose::Session, "There is no dialog here.");
+    harness.run_steps(4);
+    let path = folder.path().join("mine");
+    harness.event(egui::Event::Text(path.display().to_string()));
+    harness.run_steps(3);
+    let whole = path.with_extension("grainfall");
+    harness.get_by_label(&format!("Goes to {}", whole.display()));
+    // A folder that is not there is a slip more often than a wish.
+    harness.event(egui::Event::Text("/other/mine".into()));
+    harness.run_steps(3);
+    harness.get_by_label_contains("There is no folder");
+    assert!(harness.get_by_label("Save").accesskit_node().is_disabled());
+}
+
+#[test]
+fn a_dialog_and_a_picture_close_what_tells_of_the_place_under_the_pointer() {
+    for opens_dialog in [true, false] {
+        let mut harness = Window::of(prepared());
+        let play = harness.get_by_label("Single step").rect().center();
+        harness.event(egui::Event::PointerMoved(play));
+        harness.run_steps(60);
+        assert!(is_drawn(&harness, "One time step"));
+        if opens_dialog {
+            harness.state_mut().dock.show_scenes();
+        } else {
+            harness.state_mut().dock.is_photographed = true;
+        }
+        harness.run_steps(4);
+        assert!(!is_drawn(&harness, "One time step"), "{opens_dialog}");
+    }
+}
+
+/// Whether `words` are drawn in the window.
+fn is_drawn(harness: &Harness<'_, Window>, words: &str) -> bool {
+    harness
+        .output()
+        .shapes
+        .iter()
+        .any(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) => text.galley.text().contains(words),
+            _ => false,
+        })
 }

@@ -1,6 +1,6 @@
 //! Keys: shortcuts, and the focus that the keyboard moves.
 
-use crate::window_of_panels::{Window, prepared};
+use crate::window_of_panels::{Window, prepared, type_number};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
@@ -76,4 +76,25 @@ fn a_narrow_window_shows_the_side_that_is_wanted_and_says_why_not_both() {
     harness.get_by_label("Controls on the left").click();
     harness.run_steps(10);
     harness.get_by_label("Last 20 s");
+}
+
+#[test]
+fn ten_or_a_hundred_steps_and_a_typed_time_are_one_gesture() {
+    let mut harness = Window::of(prepared());
+    let shift = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+    for (modifiers, steps) in [(Modifiers::COMMAND, 10), (shift, 100)] {
+        harness.state_mut().asked.clear();
+        harness.key_press_modifiers(modifiers, Key::ArrowRight);
+        harness.run_steps(2);
+        let step = Request::Command(Command::Step(steps));
+        assert_eq!(harness.state().asked, [step]);
+    }
+    harness.state_mut().asked.clear();
+    type_number(&mut harness, "Time", "0.01");
+    let time_step = harness.state().simulation.world().unwrap().clock.time_step;
+    let steps = (0.01 / time_step).round() as u64;
+    assert_eq!(
+        harness.state().asked,
+        [Request::Command(Command::Step(steps))]
+    );
 }

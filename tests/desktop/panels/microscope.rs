@@ -16,7 +16,8 @@ fn microscope_shows_a_grain_its_contacts_and_every_term_of_their_forces() {
         "Velocity",
         "Spin",
         "Mass",
-        "Coordination",
+        "Coordination number",
+        "Walls touched",
         "Kinetic energy",
     ] {
         harness.get_by_label(label);
@@ -44,14 +45,14 @@ fn microscope_shows_a_grain_its_contacts_and_every_term_of_their_forces() {
 #[test]
 fn a_grain_that_is_clicked_opens_the_microscope() {
     let mut harness = Window::of(after(wet(), 0.2));
-    assert!(harness.query_by_label("Coordination").is_none());
+    assert!(harness.query_by_label("Coordination number").is_none());
     harness.state_mut().view.selected = Some(1);
     harness.run_steps(4);
-    harness.get_by_label("Coordination");
+    harness.get_by_label("Coordination number");
     // A grain that the next scene does not have is no grain.
     harness.state_mut().view.selected = Some(1000);
     harness.run_steps(3);
-    assert!(harness.query_by_label("Coordination").is_none());
+    assert!(harness.query_by_label("Coordination number").is_none());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::timeline::carried_out;
 use crate::window_of_panels::{
-    Window, commands, friction, in_the_lab, prepared, set, type_number, wet,
+    Window, commands, friction, in_the_lab, prepared, ready, set, standing, type_number, wet,
 };
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key};
@@ -11,7 +11,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::parameters::{Parameter, ParameterInfo, Value, Values};
 use grainfall::physics::{LIQUID_CASES, PAPER_VOLUME};
 use grainfall::scene::Scene;
-use grainfall::simulation::Command;
+use grainfall::simulation::{Command, Simulation};
 use grainfall::ui::{Detail, Request, parameter_ui};
 
 #[test]
@@ -328,4 +328,40 @@ fn arrow_keys_step_the_control_that_has_the_focus() {
     harness.key_press(Key::R);
     harness.run_steps(2);
     assert_eq!(harness.state().asked, [Request::Command(Command::Reset)]);
+}
+
+#[test]
+fn a_grain_alone_has_walls_to_meet_and_what_acts_on_it_comes_first() {
+    let scene = Scene::open("slide-to-roll").unwrap();
+    let alone = ready(Simulation::open(scene, standing()));
+    let harness = in_the_lab(alone);
+    assert!(harness.query_by_label("Grain – grain").is_none());
+    harness.get_by_label("Grain – wall");
+    let row = |name: &str| {
+        let label = format!("{name} glass – glass");
+        harness
+            .get_by_role_and_label(Role::SpinButton, &label)
+            .rect()
+    };
+    assert!(row("friction").top() < row("restitution").top());
+    let scene = Scene::open("bouncing-grain").unwrap();
+    let harness = in_the_lab(ready(Simulation::open(scene, standing())));
+    let row = |name: &str| {
+        let label = format!("{name} glass – floor");
+        harness
+            .get_by_role_and_label(Role::SpinButton, &label)
+            .rect()
+    };
+    assert!(row("restitution").top() < row("friction").top());
+}
+
+#[test]
+fn a_share_that_follows_from_the_one_shown_is_no_further_change() {
+    let mut scene = Scene::open("two-frictions-drum").unwrap();
+    scene.set("count", "30").unwrap();
+    let mut simulation = ready(Simulation::open(scene, standing()));
+    let share = Parameter::Share("rough".into());
+    carried_out(&mut simulation, set(share, 0.5));
+    let harness = Window::of(simulation);
+    assert!(harness.query_by_label_contains("more changed").is_none());
 }

@@ -95,3 +95,17 @@ fn the_look_is_as_it_was_the_last_time() {
     let look = Look { scale: 1.5, ..look };
     assert_eq!(UserMemory::at(path).look(), look);
 }
+
+#[test]
+fn the_gallery_is_in_groups_and_a_card_is_a_button_as_a_whole() {
+    let mut harness = Window::of(prepared());
+    harness.state_mut().dock.show_scenes();
+    harness.run_steps(6);
+    let titles = ["Start here", "Drums", "Columns", "One contact", "Papers"];
+    let tops = titles.map(|title| harness.get_by_label(title).rect().top());
+    assert!(tops.is_sorted(), "{tops:?}");
+    let small = Scene::open("small-drum").unwrap();
+    harness.get_by_label(&small.look_for).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().asked, [Request::Open("small-drum".into())]);
+}

@@ -2,6 +2,7 @@
 //!
 //! In: a world and a grain's index. Out: rows of a table, in the units that people think in.
 
+use crate::measure::{GrainQuantity, coordinations, walls_touched};
 use crate::ui::widgets::value_table::TableRow;
 use crate::ui::words::number;
 use crate::world::World;
@@ -39,10 +40,11 @@ pub(super) fn numbers(world: &World, i: usize) -> Vec<TableRow> {
         ),
         TableRow::of("Mass", number::with_prefix(1e3 * mass, "g"), ""),
         TableRow::of(
-            "Coordination",
-            grains.contact_count[i].to_string(),
-            "Partners that it touches, walls too",
+            GrainQuantity::Coordination.name(),
+            coordinations(world)[i].to_string(),
+            GrainQuantity::Coordination.quantity().description,
         ),
+        TableRow::of("Walls touched", walls_touched(world, i).to_string(), ""),
     ];
     if world.wetting().is_some() {
         rows.push(TableRow::of(

@@ -141,6 +141,8 @@ fn choice_ui(ui: &mut egui::Ui, world: &World, view: &mut ViewSettings) {
     });
     if let Some(field) = typed.inner {
         slip_ui(ui, &field);
+        ui.checkbox(&mut view.follows_selected, "Follow it")
+            .on_hover_text("Keep it in the middle of the picture. F shows everything again.");
     }
     trails_ui(ui, view);
 }
