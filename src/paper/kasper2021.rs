@@ -4,13 +4,13 @@
 //! tell most; then the other liquids and more seeds; then finer grains; then the bridges that the
 //! paper's program computes instead of those it prints.
 
+use super::markdown::{head, line};
 use super::plan::{Batch, Paper, PaperTable};
-use crate::measure::{DropThreshold, Measure, ResultKey, RunQuantity, Summary, drop_ratio_law};
+use crate::measure::{DropThreshold, Measure, ResultKey, RunQuantity, drop_ratio_law};
 use crate::sweep::{
     CaseResult, Drum, Drums, Ensemble, Sweep, TableColumn, drum_statements, ensembles,
     statements_table,
 };
-use std::fmt::Write as _;
 
 /// The paper.
 pub static KASPER2021: Paper = Paper {
@@ -158,33 +158,31 @@ const DROPS: TableColumn = TableColumn::of_run("drops", RunQuantity::Avalanches)
 fn dry_table(drums: &Drums) -> String {
     let mut dry: Vec<&Drum> = drums.0.iter().filter(|drum| drum.is_dry()).collect();
     dry.reverse();
-    let results: Vec<Summary> = dry.iter().map(|drum| drum.ensemble.results()).collect();
-    let heads = dry.iter().map(|drum| format!("r = {} mm", drum.radius));
-    let mut text = line("quantity", heads);
-    text += &line("---", dry.iter().map(|_| "---".to_owned()));
-    text += &line("seeds", dry.iter().map(|drum| seeds(drum)));
-    let grains = dry.iter().map(|drum| {
-        let scene = &drum.ensemble.first().case.scene;
-        scene.grain_count().to_string()
-    });
-    text += &line("grains", grains);
-    for row in DRY {
-        text += &line(
-            &row.head(),
-            results.iter().map(|own| row.cell_for_people(own)),
-        );
+    let row = |first: String, cell: &dyn Fn(&Drum) -> String| {
+        let cells = dry.iter().map(|drum| cell(drum));
+        std::iter::once(first).chain(cells).collect::<Vec<_>>()
+    };
+    let grains = |drum: &Drum| drum.ensemble.first().case.scene.grain_count().to_string();
+    let mut text = head(&row("quantity".into(), &|drum| {
+        format!("r = {} mm", drum.radius)
+    }));
+    text += &line(&row("seeds".into(), &seeds));
+    text += &line(&row("grains".into(), &grains));
+    for result in DRY {
+        let cell = |drum: &Drum| result.cell_for_people(&drum.ensemble.results());
+        text += &line(&row(result.head(), &cell));
     }
     text
 }
 
 /// A row for each drum, coarse grains first and the dry one of each radius before the wet ones.
 fn wet_table(drums: &Drums, sweep: &Sweep) -> String {
-    let heads = ["n", "η [mPa s]", "seeds"].map(str::to_owned).into_iter();
-    let heads = heads.chain([ANGLE.head(), DROP.head(), DROPS.head()]);
-    let heads = heads.chain(["Δθ/Δθ dry".to_owned(), "Eq. 23".to_owned()]);
-    let heads: Vec<String> = heads.chain(WET.iter().map(TableColumn::head)).collect();
-    let rule: Vec<String> = heads.iter().map(|_| "---".to_owned()).collect();
-    let mut text = line("r [mm]", heads.into_iter()) + &line("---", rule.into_iter());
+    let first = ["r [mm]", "n", "η [mPa s]", "seeds"].map(str::to_owned);
+    let drops = [ANGLE.head(), DROP.head(), DROPS.head()];
+    let ratios = ["Δθ/Δθ dry", "Eq. 23"].map(str::to_owned);
+    let rest = WET.iter().map(TableColumn::head);
+    let heads = first.into_iter().chain(drops).chain(ratios).chain(rest);
+    let mut text = head(&heads.collect::<Vec<_>>());
     let mut radii: Vec<&[Drum]> = drums.0.chunk_by(|a, b| a.radius == b.radius).collect();
     radii.reverse();
     for drums in radii
@@ -193,13 +191,13 @@ fn wet_table(drums: &Drums, sweep: &Sweep) -> String {
     {
         let dry = drums.iter().find(|drum| drum.is_dry());
         for drum in *drums {
-            let _ = write!(text, "{}", wet_row(drum, dry, sweep));
+            text += &line(&wet_row(drum, dry, sweep));
         }
     }
     text
 }
 
-fn wet_row(drum: &Drum, dry: Option<&Drum>, sweep: &Sweep) -> String {
+fn wet_row(drum: &Drum, dry: Option<&Drum>, sweep: &Sweep) -> Vec<String> {
     let results = drum.ensemble.results();
     let viscosity = if drum.is_dry() {
         "dry".to_owned()
@@ -213,12 +211,11 @@ fn wet_row(drum: &Drum, dry: Option<&Drum>, sweep: &Sweep) -> String {
     let law = wet().map(|wet| format!("{:.2}", drop_ratio_law(1e-3 * wet.viscosity)));
     let nothing = || crate::measure::numeral::NOTHING.to_owned();
     let number = value(drum.ensemble.first(), "liquid", sweep).to_owned();
-    let cells = [number, viscosity, seeds(drum)].into_iter();
+    let cells = [drum.radius.to_string(), number, viscosity, seeds(drum)].into_iter();
     let of_drops = [ANGLE, DROP, DROPS].map(|column| column.cell_for_people(&results));
     let ratios = [ratio, law].map(|cell| cell.unwrap_or_else(nothing));
     let rest = WET.iter().map(|column| column.cell_for_people(&results));
-    let cells = cells.chain(of_drops).chain(ratios).chain(rest);
-    line(&drum.radius.to_string(), cells)
+    cells.chain(of_drops).chain(ratios).chain(rest).collect()
 }
 
 /// Whether a case belongs to this reading of the bridges' law; dry drums, which have no bridges,
@@ -236,9 +233,4 @@ fn value<'a>(case: &'a CaseResult, key: &str, sweep: &Sweep) -> &'a str {
 
 fn seeds(drum: &Drum) -> String {
     drum.ensemble.members.len().to_string()
-}
-
-fn line(first: &str, cells: impl Iterator<Item = String>) -> String {
-    let cells: Vec<String> = std::iter::once(first.to_owned()).chain(cells).collect();
-    format!("| {} |\n", cells.join(" | "))
 }

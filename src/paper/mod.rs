@@ -13,12 +13,16 @@
 //! | `job` | running a paper, or setting beside each other what is there |
 //! | `registry` | the papers by name |
 //! | `kasper2021` | Kasper et al. 2021: its cases and tables |
+//! | `man2023` | Man et al. 2023: likewise |
 //! | `document` | tables between the markers of a document |
+//! | `markdown` | rows of tables |
 //! | `plan` | what a paper is: cases by parts and seeds |
 
 mod document;
 mod job;
 mod kasper2021;
+mod man2023;
+mod markdown;
 mod plan;
 mod registry;
 

@@ -1,11 +1,12 @@
 //! The papers by name.
 
 use super::kasper2021::KASPER2021;
+use super::man2023::MAN2023;
 use super::plan::Paper;
 use crate::runner::RunnerError;
 
 /// Every paper that the program can run.
-pub static PAPERS: [&Paper; 1] = [&KASPER2021];
+pub static PAPERS: [&Paper; 2] = [&KASPER2021, &MAN2023];
 
 /// The paper called `name`.
 ///

@@ -42,6 +42,15 @@ impl TableColumn {
         Self::new(head, ResultKey::OfAvalanches(RunQuantity::Drop, threshold))
     }
 
+    /// The same in another unit, with so many digits.
+    pub const fn in_unit(self, unit: Unit, digits: usize) -> Self {
+        Self {
+            unit,
+            format: Format::Fixed(digits),
+            ..self
+        }
+    }
+
     pub const fn with_digits(self, digits: usize) -> Self {
         Self {
             format: Format::Fixed(digits),
@@ -115,10 +124,7 @@ const COLLAPSE: &[TableColumn] = &[
     TableColumn::of_run("t_f", RunQuantity::RestTime),
     TableColumn::of_run("T_max", RunQuantity::DimensionlessPeakTime),
     TableColumn::of_run("T_f", RunQuantity::DimensionlessRestTime),
-    TableColumn {
-        unit: units::ERG,
-        ..TableColumn::of_run("peak energy", RunQuantity::PeakEnergy).with_digits(2)
-    },
+    TableColumn::of_run("peak energy", RunQuantity::PeakEnergy).in_unit(units::ERG, 2),
     TableColumn::of_samples("P11", Measure::FirstPairs),
     TableColumn::of_samples("P12", Measure::MixedPairs),
     TableColumn::of_samples("P22", Measure::SecondPairs),

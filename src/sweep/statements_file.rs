@@ -5,6 +5,7 @@
 use super::Sweep;
 use super::ensemble::Ensemble;
 use super::kasper_statements::statements_by_reading;
+use super::man_statements::column_statements;
 use super::statements::markdown;
 use crate::output::write_file;
 use crate::runner::RunnerError;
@@ -20,7 +21,11 @@ pub fn write_statements(
     sweep: &Sweep,
     ensembles: &[Ensemble],
 ) -> Result<Option<String>, RunnerError> {
-    let readings = statements_by_reading(sweep, ensembles);
+    let mut readings = statements_by_reading(sweep, ensembles);
+    let columns = column_statements(ensembles);
+    if !columns.is_empty() {
+        readings.push((None, columns));
+    }
     if readings.is_empty() {
         return Ok(None);
     }

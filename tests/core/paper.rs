@@ -131,3 +131,32 @@ fn results_of_another_method_are_never_mixed_in_silence() {
         text(&rest, "runs")
     );
 }
+
+#[test]
+fn markers_of_the_validation_name_tables_that_its_papers_make() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/validation.md");
+    let mut text = fs::read_to_string(path).unwrap();
+    let before: Vec<String> = outside(&text);
+    for paper in PAPERS {
+        let folder = tempfile::tempdir().unwrap();
+        let tables = paper::set_beside(&small(paper.name, &[], folder.path())).unwrap();
+        // An unknown name is refused, and so is a document without a marker of the paper.
+        text = paper::replace(&text, paper.name, &tables.tables).unwrap();
+    }
+    assert_eq!(
+        outside(&text),
+        before,
+        "what stands around the tables is ours"
+    );
+    assert!(before.len() > PAPERS.len());
+}
+
+/// The lines of a document that stand outside its tables.
+fn outside(text: &str) -> Vec<String> {
+    let mut is_inside = false;
+    let lines = text.lines().filter(|line| {
+        is_inside = (is_inside || line.starts_with("<!-- table: ")) && *line != "<!-- end -->";
+        !is_inside
+    });
+    lines.map(str::to_owned).collect()
+}

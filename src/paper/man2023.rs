@@ -1,0 +1,177 @@
+//! Man et al. 2023: the column of angular grains of two frictions. Its cases and its tables.
+//!
+//! Order of the cases: low columns first, which cost least; H 10 cm takes hours, and taller ones,
+//! which the paper goes on to, are left out.
+
+use super::markdown::{head, line};
+use super::plan::{Batch, Paper, PaperTable};
+use crate::measure::numeral::NOTHING;
+use crate::measure::{
+    Measure, RunQuantity, Summary, cone_volume_law, contact_shares_law, run_out_law,
+};
+use crate::physics::units;
+use crate::sweep::{
+    CaseResult, Ensemble, Sweep, TableColumn, column_statements, ensembles, statements_table,
+};
+
+/// The paper. All steps are of one length, short enough for every column that was tried.
+pub static MAN2023: Paper = Paper {
+    name: "man2023",
+    source: "Man et al. 2023, the collapse of columns of grains of two frictions",
+    scene: "column",
+    settings: &["duration=440ms", "time-step=2.2us", "output-interval=20ms"],
+    keys: &["mu11", "mu22", "height", "mix"],
+    batches: &[
+        batch("h1", H1, MIXES, (1, 3)),
+        batch("frictions", &["0.1", "0.1", "10mm"], &["0.3"], (1, 3)),
+        batch("frictions", &["0.4", "0.8", "10mm"], &["0.3"], (1, 3)),
+        batch("h2", H2, MIXES, (1, 1)),
+        batch("h5", H5, MIXES, (1, 1)),
+        batch("h5", H5, MIXES, (2, 3)),
+        batch("h2", H2, MIXES, (2, 3)),
+        batch("h10", &["0.1", "0.4", "100mm"], &["0.3"], (1, 3)),
+    ],
+    small_settings: &[
+        "duration=60ms",
+        "radius=10mm",
+        "cell=4mm",
+        "rounding=0.4mm",
+        "normal-stiffness=100",
+        "time-step=automatic",
+    ],
+    small_batches: &[
+        batch("h1", H1, &["0.3"], (1, 2)),
+        batch("h2", H2, &["0.3"], (1, 2)),
+    ],
+    tables,
+};
+
+const H1: &[&str] = &["0.1", "0.4", "10mm"];
+const H2: &[&str] = &["0.1", "0.4", "20mm"];
+const H5: &[&str] = &["0.1", "0.4", "50mm"];
+const MIXES: &[&str] = &["0.1", "0.3", "0.5"];
+
+const fn batch(
+    part: &'static str,
+    values: &'static [&'static str],
+    list: &'static [&'static str],
+    seeds: (u64, u64),
+) -> Batch {
+    Batch {
+        part,
+        values,
+        list,
+        seeds,
+    }
+}
+
+/// The rows of the table behind those of the laws.
+const COLUMN: &[TableColumn] = &[
+    TableColumn::of_run("R_∞", RunQuantity::FinalFront),
+    TableColumn::of_samples("R_99", Measure::FrontRadius99),
+    TableColumn::of_samples("R_95", Measure::FrontRadius95),
+    TableColumn::of_samples("largest cluster R_c", Measure::ClusterRadius),
+    TableColumn::of_run("H_∞/R_i", RunQuantity::RelativeHeight),
+    TableColumn::of_run("deposit", RunQuantity::Shape),
+    TableColumn::of_run("t_max", RunQuantity::PeakTime),
+    TableColumn::of_run("T_max", RunQuantity::DimensionlessPeakTime),
+    TableColumn::of_run("t_f", RunQuantity::RestTime),
+    TableColumn::of_run("T_f", RunQuantity::DimensionlessRestTime),
+    TableColumn::of_run("peak energy per grain", RunQuantity::PeakEnergy).in_unit(units::ERG, 2),
+    TableColumn::of_samples("P11", Measure::FirstPairs),
+    TableColumn::of_samples("P12", Measure::MixedPairs),
+    TableColumn::of_samples("P22", Measure::SecondPairs),
+    TableColumn::of_samples("largest overlap", Measure::LargestOverlap).with_digits(4),
+    TableColumn::of_run("energy residual", RunQuantity::RelativeEnergyResidual),
+];
+const RUN_OUT: TableColumn = TableColumn::of_run("ℛ", RunQuantity::RunOut);
+const CONE: TableColumn = TableColumn::of_run("V_cone/V_init", RunQuantity::RelativeConeVolume);
+
+/// The tables, from the cases that are there.
+fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
+    let ensembles = ensembles(sweep, outcomes);
+    let table = |name, title, text| PaperTable { name, title, text };
+    vec![
+        table(
+            "laws",
+            "Run-out and cone beside the laws",
+            laws(sweep, &ensembles),
+        ),
+        table("columns", "All results", columns(sweep, &ensembles)),
+        table(
+            "statements",
+            "Statements",
+            statements_table(&column_statements(&ensembles)),
+        ),
+    ]
+}
+
+/// What is varied of each ensemble, and the number of its seeds.
+fn heads(sweep: &Sweep) -> Vec<String> {
+    let keys = sweep
+        .variations
+        .iter()
+        .map(|variation| variation.key.as_str());
+    let keys = keys.filter(|key| *key != "seed");
+    keys.chain(["seeds"]).map(str::to_owned).collect()
+}
+
+fn start(ensemble: &Ensemble) -> Vec<String> {
+    let seeds = ensemble.members.len().to_string();
+    ensemble.values.iter().cloned().chain([seeds]).collect()
+}
+
+/// Run-out, volume of the cone and contact shares, each beside the paper's law.
+fn laws(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
+    let behind = [
+        "α_eff",
+        "ℛ",
+        "law",
+        "V_cone/V_init",
+        "Eq. 4.4",
+        "P11, P12, P22 by chance",
+    ];
+    let heads: Vec<String> = (heads(sweep).into_iter())
+        .chain(behind.map(str::to_owned))
+        .collect();
+    let mut text = head(&heads);
+    for ensemble in ensembles {
+        let results = ensemble.results();
+        let number = |quantity| ensemble.mean(quantity);
+        let effective = number(RunQuantity::EffectiveAspectRatio);
+        let law =
+            |law: fn(f64) -> f64| effective.map_or_else(nothing, |x| format!("{:.3}", law(x)));
+        let shares = number(RunQuantity::SecondShare).map_or_else(nothing, |second| {
+            contact_shares_law(second)
+                .map(|share| format!("{share:.2}"))
+                .join(", ")
+        });
+        let mut cells = start(ensemble);
+        cells.push(effective.map_or_else(nothing, |x| format!("{x:.3}")));
+        cells.push(RUN_OUT.cell_for_people(&results));
+        cells.push(law(run_out_law));
+        cells.push(CONE.cell_for_people(&results));
+        cells.push(law(cone_volume_law));
+        cells.push(shares);
+        text += &line(&cells);
+    }
+    text
+}
+
+fn columns(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
+    let results: Vec<Summary> = ensembles.iter().map(Ensemble::results).collect();
+    let heads: Vec<String> = (heads(sweep).into_iter())
+        .chain(COLUMN.iter().map(TableColumn::head))
+        .collect();
+    let mut text = head(&heads);
+    for (ensemble, results) in ensembles.iter().zip(&results) {
+        let mut cells = start(ensemble);
+        cells.extend(COLUMN.iter().map(|column| column.cell_for_people(results)));
+        text += &line(&cells);
+    }
+    text
+}
+
+fn nothing() -> String {
+    NOTHING.to_owned()
+}
