@@ -150,13 +150,13 @@ impl<P: Proof> Four<P> {
     }
 
     #[inline(always)]
-    fn difference(proof: P, a: &Row, b: &Row) -> Self {
+    pub(super) fn difference(proof: P, a: &Row, b: &Row) -> Self {
         Self::load(proof, a) - Self::load(proof, b)
     }
 
     /// The vector of `a − b`, the companion of `a + b`.
     #[inline(always)]
-    fn difference_and_sum(proof: P, a: &Row, b: &Row) -> Self {
+    pub(super) fn difference_and_sum(proof: P, a: &Row, b: &Row) -> Self {
         // SAFETY: AVX is there, as `proof` is.
         let flipped =
             unsafe { _mm256_xor_pd(Self::load(proof, b).1, _mm256_set_pd(-0.0, 0.0, 0.0, 0.0)) };

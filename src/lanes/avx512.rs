@@ -11,13 +11,14 @@
 )]
 
 use super::avx2::{Four, Proof};
-use super::vocabulary::{Lanes, Row, Rows, WIDEST, Work, split_bits};
+use super::vocabulary::{Lanes, Quad, Row, Rows, WIDEST, Work, split_bits};
 use std::arch::x86_64::{
     __m512d, __mmask8, _CMP_GT_OQ, _mm512_add_epi64, _mm512_add_pd, _mm512_and_si512,
     _mm512_castpd_si512, _mm512_castpd256_pd512, _mm512_castpd512_pd256, _mm512_castsi512_pd,
     _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_extractf64x4_pd, _mm512_insertf64x4, _mm512_loadu_pd,
-    _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_or_si512, _mm512_set1_epi64, _mm512_set1_pd,
-    _mm512_sqrt_pd, _mm512_srli_epi64, _mm512_storeu_pd, _mm512_sub_pd, _mm512_xor_pd,
+    _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_or_si512, _mm512_permutex2var_pd, _mm512_set_epi64,
+    _mm512_set1_epi64, _mm512_set1_pd, _mm512_shuffle_f64x2, _mm512_sqrt_pd, _mm512_srli_epi64,
+    _mm512_storeu_pd, _mm512_sub_pd, _mm512_unpackhi_pd, _mm512_unpacklo_pd, _mm512_xor_pd,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -83,27 +84,41 @@ impl Neg for Eight {
     }
 }
 
-/// Rows of the first and of the last four numbers.
+/// A row, in a register of AVX2.
 type FourNumbers = Four<Avx512>;
 
 impl Eight {
-    /// Columns of eight from columns of the first four and of the last four.
+    /// Two rows in one register.
     #[inline(always)]
-    fn join(first: [FourNumbers; 4], last: [FourNumbers; 4]) -> [Self; 4] {
-        [
-            Self::of_halves(first[0], last[0]),
-            Self::of_halves(first[1], last[1]),
-            Self::of_halves(first[2], last[2]),
-            Self::of_halves(first[3], last[3]),
-        ]
-    }
-
-    #[inline(always)]
-    fn of_halves(first: FourNumbers, last: FourNumbers) -> Self {
+    fn two_rows(first: FourNumbers, second: FourNumbers) -> Self {
         // SAFETY: AVX-512 is there, as `first.0` proves.
         Self(first.0, unsafe {
-            _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(first.1), last.1)
+            _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(first.1), second.1)
         })
+    }
+
+    /// Eight rows as columns: registers that hold rows 0 and 2, 1 and 3, 4 and 6, 5 and 7 need no
+    /// permutation.
+    #[inline(always)]
+    fn columns(rows: [FourNumbers; WIDEST]) -> [Self; 4] {
+        let proof = rows[0].0;
+        let [a, b, c, d] = [
+            Self::two_rows(rows[0], rows[2]),
+            Self::two_rows(rows[1], rows[3]),
+            Self::two_rows(rows[4], rows[6]),
+            Self::two_rows(rows[5], rows[7]),
+        ];
+        // SAFETY: AVX-512 is there, as `proof` is.
+        unsafe {
+            let low = [_mm512_unpacklo_pd(a.1, b.1), _mm512_unpacklo_pd(c.1, d.1)];
+            let high = [_mm512_unpackhi_pd(a.1, b.1), _mm512_unpackhi_pd(c.1, d.1)];
+            [
+                Self(proof, _mm512_shuffle_f64x2::<0x88>(low[0], low[1])),
+                Self(proof, _mm512_shuffle_f64x2::<0x88>(high[0], high[1])),
+                Self(proof, _mm512_shuffle_f64x2::<0xDD>(low[0], low[1])),
+                Self(proof, _mm512_shuffle_f64x2::<0xDD>(high[0], high[1])),
+            ]
+        }
     }
 
     #[inline(always)]
@@ -147,26 +162,44 @@ impl Lanes for Eight {
 
     #[inline(always)]
     fn gather(proof: Avx512, rows: Rows) -> [Self; 4] {
-        Self::join(
-            FourNumbers::gather_four(proof, rows, 0),
-            FourNumbers::gather_four(proof, rows, 4),
-        )
+        Self::columns([
+            FourNumbers::load(proof, rows[0]),
+            FourNumbers::load(proof, rows[1]),
+            FourNumbers::load(proof, rows[2]),
+            FourNumbers::load(proof, rows[3]),
+            FourNumbers::load(proof, rows[4]),
+            FourNumbers::load(proof, rows[5]),
+            FourNumbers::load(proof, rows[6]),
+            FourNumbers::load(proof, rows[7]),
+        ])
     }
 
     #[inline(always)]
     fn gather_difference(proof: Avx512, a: Rows, b: Rows) -> [Self; 4] {
-        Self::join(
-            FourNumbers::gather_four_differences(proof, a, b, 0),
-            FourNumbers::gather_four_differences(proof, a, b, 4),
-        )
+        Self::columns([
+            FourNumbers::difference(proof, a[0], b[0]),
+            FourNumbers::difference(proof, a[1], b[1]),
+            FourNumbers::difference(proof, a[2], b[2]),
+            FourNumbers::difference(proof, a[3], b[3]),
+            FourNumbers::difference(proof, a[4], b[4]),
+            FourNumbers::difference(proof, a[5], b[5]),
+            FourNumbers::difference(proof, a[6], b[6]),
+            FourNumbers::difference(proof, a[7], b[7]),
+        ])
     }
 
     #[inline(always)]
     fn gather_difference_and_sum(proof: Avx512, a: Rows, b: Rows) -> [Self; 4] {
-        Self::join(
-            FourNumbers::gather_four_differences_and_sums(proof, a, b, 0),
-            FourNumbers::gather_four_differences_and_sums(proof, a, b, 4),
-        )
+        Self::columns([
+            FourNumbers::difference_and_sum(proof, a[0], b[0]),
+            FourNumbers::difference_and_sum(proof, a[1], b[1]),
+            FourNumbers::difference_and_sum(proof, a[2], b[2]),
+            FourNumbers::difference_and_sum(proof, a[3], b[3]),
+            FourNumbers::difference_and_sum(proof, a[4], b[4]),
+            FourNumbers::difference_and_sum(proof, a[5], b[5]),
+            FourNumbers::difference_and_sum(proof, a[6], b[6]),
+            FourNumbers::difference_and_sum(proof, a[7], b[7]),
+        ])
     }
 
     #[inline(always)]
@@ -180,15 +213,24 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
-    fn rows(columns: [Self; 4]) -> [FourNumbers; WIDEST] {
-        let [a, b, c, d] = [
-            columns[0].halves(),
-            columns[1].halves(),
-            columns[2].halves(),
-            columns[3].halves(),
-        ];
-        let [r0, r1, r2, r3] = FourNumbers::transpose([a[0], b[0], c[0], d[0]]);
-        let [r4, r5, r6, r7] = FourNumbers::transpose([a[1], b[1], c[1], d[1]]);
+    fn rows([a, b, c, d]: [Self; 4]) -> [FourNumbers; WIDEST] {
+        // SAFETY: AVX-512 is there, as `a.0` proves.
+        let pairs = unsafe {
+            let first = _mm512_set_epi64(11, 10, 3, 2, 9, 8, 1, 0);
+            let second = _mm512_set_epi64(15, 14, 7, 6, 13, 12, 5, 4);
+            let low = [_mm512_unpacklo_pd(a.1, b.1), _mm512_unpacklo_pd(c.1, d.1)];
+            let high = [_mm512_unpackhi_pd(a.1, b.1), _mm512_unpackhi_pd(c.1, d.1)];
+            [
+                _mm512_permutex2var_pd(low[0], first, low[1]),
+                _mm512_permutex2var_pd(high[0], first, high[1]),
+                _mm512_permutex2var_pd(low[0], second, low[1]),
+                _mm512_permutex2var_pd(high[0], second, high[1]),
+            ]
+        };
+        let [r0, r2] = Self(a.0, pairs[0]).halves();
+        let [r1, r3] = Self(a.0, pairs[1]).halves();
+        let [r4, r6] = Self(a.0, pairs[2]).halves();
+        let [r5, r7] = Self(a.0, pairs[3]).halves();
         [r0, r1, r2, r3, r4, r5, r6, r7]
     }
 
