@@ -125,8 +125,8 @@ impl<N: Lanes> ContactGroup<N> {
             tangential_stiffness * part,
             zero,
         ];
-        let met = (touching, overlap);
-        let along = normal_contact(Hooke::default(), constants, met, approach, zero);
+        let contact = (touching, overlap);
+        let along = normal_contact(Hooke::default(), constants, contact, approach, zero);
         let (repulsion, dashpot) = if IMPLICIT {
             let holds = along.repulsion.exceeds(zero);
             (

@@ -91,9 +91,9 @@ pub fn half_step<N: Lanes, L: Law>(processor: N::Processor, dt: f64) -> N {
     N::splat(processor, if L::OBJECTIVE { 0.5 * dt } else { 0.0 })
 }
 
-/// How pairs side by side press each other before anything drags them: geometry, normal force,
-/// slip.
-pub struct Meeting<N: Lanes> {
+/// The state of pairs side by side before friction and liquid: geometry, normal force, relative
+/// motion.
+pub struct PairState<N: Lanes> {
     /// Unit vectors from the grains to their partners.
     pub normal: [N; 3],
     /// Overlaps, negative at a gap [m].
@@ -114,7 +114,7 @@ pub struct Meeting<N: Lanes> {
     twist: N,
 }
 
-impl<N: Lanes> Meeting<N> {
+impl<N: Lanes> PairState<N> {
     /// Pairs of `partners` with these constants; `half_step` as [`half_step`] has it.
     #[inline(always)]
     pub fn of<L: Law, P: Partners<N>>(
@@ -140,8 +140,8 @@ impl<N: Lanes> Meeting<N> {
         };
         let velocity = partners.velocity(processor);
         let approach = dot(velocity, middle_normal);
-        let met = (touching, overlap);
-        let along = normal_contact(law, *law_constants, met, approach, zero);
+        let contact = (touching, overlap);
+        let along = normal_contact(law, *law_constants, contact, approach, zero);
         let (spin, partner_spin) = partners.spins(processor);
         let rolling_sum = if P::WALL {
             times(spin, arm)
@@ -233,20 +233,20 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let dt = N::splat(processor, all.dt);
     let (_, [friction, rolling_arm, ..]) = *constants;
     let half_step = half_step::<N, L>(processor, all.dt);
-    let met = Meeting::of(processor, all.law, partners, constants, half_step);
-    let [spin, partner_spin] = met.spins;
+    let state = PairState::of(processor, all.law, partners, constants, half_step);
+    let [spin, partner_spin] = state.spins;
     let rolling_spin = partners.rolling(processor);
-    let (bridge, bounding) = met.wetted(processor, all, liquid, constants, rolling_spin.1);
+    let (bridge, bounding) = state.wetted(processor, all, liquid, constants, rolling_spin.1);
 
-    let (normal, slip, touching) = (met.normal, met.slip, met.touching);
-    let (law, elastic) = (met.along.coefficients, met.along.elastic);
+    let (normal, slip, touching) = (state.normal, state.slip, state.touching);
+    let (law, elastic) = (state.along.coefficients, state.along.elastic);
     let stiffness = N::choose(touching, law.tangential_stiffness, zero);
     let updated = update(
         processor,
         side_by_side::<N, _>(|k| &springs[k]),
         Slip {
             way: times(slip, dt),
-            twist: met.twist,
+            twist: state.twist,
         },
         normal,
         touching,
@@ -256,9 +256,9 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let unslid = N::choose(updated.slides, zero, law.tangential_damping);
     let damping = N::choose(touching, unslid, zero);
     let mut tangential = minus(times(updated.spring, -stiffness), times(slip, damping));
-    let damped = (met.along.repulsion - elastic) * met.approach;
+    let damped = (state.along.repulsion - elastic) * state.approach;
     let in_dashpots = dt * (damped + damping * dot(slip, slip));
-    let (mut repulsion, mut ruptures) = (met.along.repulsion, 0);
+    let (mut repulsion, mut ruptures) = (state.along.repulsion, 0);
     if let Some(bridge) = bridge {
         repulsion = repulsion + bridge.repulsion;
         tangential = plus(tangential, bridge.drag);
@@ -268,10 +268,10 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let moment = cross(normal, tangential);
 
     let before = N::gather(processor, side_by_side::<N, _>(|k| &contacts[k].rolling));
-    let rolling = met.rolling(processor, rolling_arm * elastic, before, rolling_spin);
+    let rolling = state.rolling(processor, rolling_arm * elastic, before, rolling_spin);
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = dt * partners.wall_power(processor, force, rolling);
-    let ([arm, partner_arm], count) = (met.arms, N::choose(touching, one, zero));
+    let ([arm, partner_arm], count) = (state.arms, N::choose(touching, one, zero));
     let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
     let companions = [arm, partner_arm, count];
     write(contacts, [force, moment, rolling], companions, exchanged);

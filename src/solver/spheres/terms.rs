@@ -7,7 +7,7 @@
 use super::super::row::row;
 use super::super::terms::{AT_THE_BOUND, ForceTerms};
 use super::super::walls::WallBody;
-use super::contacts::{Meeting, common_constants, half_step};
+use super::contacts::{PairState, common_constants, half_step};
 use super::integrate::{SphereLoad, StepConstants, Total, kick, set_free_spin};
 use super::partners::{GrainAndWall, Partners, TwoGrains};
 use super::rows::Sphere;
@@ -70,8 +70,8 @@ impl Explanation<'_> {
     fn terms<L: Law, P: Partners<One>>(&self, law: L, partners: P, first: &Sphere) -> ForceTerms {
         let (contact, constants) = (self.contact, common_constants((), &self.constants));
         let half_step = half_step::<One, L>((), self.world.clock.time_step);
-        let met = Meeting::of((), law, partners, &constants, half_step);
-        let (elastic, repulsion) = (met.along.elastic.get(), met.along.repulsion.get());
+        let state = PairState::of((), law, partners, &constants, half_step);
+        let (elastic, repulsion) = (state.along.elastic.get(), state.along.repulsion.get());
         let (pull, resistance) = (contact.bridge.as_ref())
             .map_or((0.0, 0.0), |bridge| (bridge.capillary, bridge.viscous));
         let wetting = self.world.wetting().map(|liquid| liquid.law.coulomb);
@@ -79,11 +79,11 @@ impl Explanation<'_> {
             (Partner::Grain(_), Some(CoulombBound::Total)) => {
                 (repulsion + (resistance - pull)).abs()
             }
-            _ => met.along.bounding.get(),
+            _ => state.along.bounding.get(),
         };
         let [friction, ..] = self.constants.contact;
         let coulomb_bound = friction * bounding;
-        let touching = met.touching;
+        let touching = state.touching;
         let spring = if touching {
             -contact.spring * contact.stiffness
         } else {
@@ -91,17 +91,17 @@ impl Explanation<'_> {
         };
         let slides = touching && spring.length() >= coulomb_bound * (1.0 - AT_THE_BOUND);
         let damping = if touching && !slides {
-            met.along.coefficients.tangential_damping.get()
+            state.along.coefficients.tangential_damping.get()
         } else {
             0.0
         };
-        let (normal, slip) = (vector(met.normal), vector(met.slip));
+        let (normal, slip) = (vector(state.normal), vector(state.slip));
         ForceTerms {
             feature: None,
             normal,
-            point: super::super::row::vector(first.position) + normal * met.arms[0].get(),
-            overlap: met.depth.get(),
-            approach: met.approach.get(),
+            point: super::super::row::vector(first.position) + normal * state.arms[0].get(),
+            overlap: state.depth.get(),
+            approach: state.approach.get(),
             slip,
             slides,
             coulomb_bound,
