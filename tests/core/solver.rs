@@ -20,6 +20,7 @@ mod polyhedra;
 mod published;
 mod random_scenes;
 mod resume;
+mod resumes;
 mod rolling;
 mod terms;
 mod time_step;
