@@ -19,6 +19,8 @@ mod avx2;
 mod avx512;
 mod processor;
 mod scalar;
+#[cfg(test)]
+mod tests;
 mod vocabulary;
 
 pub use processor::{Processor, prefetch};
