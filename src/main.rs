@@ -9,17 +9,16 @@ use grainfall::headless::terminal::{say, tell};
 use grainfall::headless::{
     self, ImportTask, PaperTask, Report, Said, SweepTask, check_threads, interruption,
 };
-use grainfall::output::write_file;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
 use grainfall::physics::units::seconds;
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
 use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
-use grainfall::scene::{Scene, StoredCells, built_in, take_packings_from_anywhere};
+use grainfall::scene::{Scene, built_in, take_packings_from_anywhere};
 #[cfg(feature = "desktop")]
 use grainfall::simulation::Options;
-use grainfall::simulation::{Estimate, ScriptedCommand, Session, make_bed};
+use grainfall::simulation::{Estimate, ScriptedCommand, Session};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
 use std::error::Error;
@@ -253,13 +252,13 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         take_packings_from_anywhere();
     }
     match arguments.task {
-        Some(Task::Bed { scene, out }) => return write_bed(&scene, &out),
+        Some(Task::Bed { scene, out }) => return headless::write_bed(&scene, &out),
         Some(Task::Verify { file, threads }) => {
             let threads = checked_threads(threads, Report::Text)?;
             return headless::confirm(&file, threads, &*interruption()?);
         }
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
-        Some(Task::Pack { scene, set, out }) => return write_packing(&scene, &set, &out),
+        Some(Task::Pack { scene, set, out }) => return headless::write_packing(&scene, &set, &out),
         Some(Task::Sweep(task)) => return run_sweep(&task, &allowed),
         Some(Task::Import(task)) => return task.carry_out(),
         Some(Task::Export {
@@ -487,29 +486,6 @@ fn list_settings(name: &str, json: bool) -> Result<u8, RunnerError> {
     };
     say(text.trim_end());
     Ok(0)
-}
-
-fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
-    let scene = Scene::open(name)?;
-    let bed = make_bed(&scene, available_threads())
-        .map_err(|error| RunnerError::Input(error.to_string()))?;
-    write_file(path, |file| file.write_all(&bed))?;
-    Ok(exit::DONE)
-}
-
-fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, RunnerError> {
-    let mut scene = Scene::open(name)?;
-    for setting in settings {
-        if !apply_settings(&mut scene.clone(), std::slice::from_ref(setting))?.is_empty() {
-            return Err(RunnerError::Input(format!(
-                "--set {setting}: changes nothing about the grains' places and shapes"
-            )));
-        }
-    }
-    apply_settings(&mut scene, settings)?;
-    let grains = headless::pack(&scene)?;
-    write_file(path, |file| file.write_all(&StoredCells::encode(&grains)?))?;
-    Ok(exit::DONE)
 }
 
 /// Prints `error` and what led to it, once, for people.

@@ -33,6 +33,8 @@ mod import;
 mod imported_state;
 mod lammps_deck;
 mod liggghts_deck;
+mod liggghts_model;
+mod liggghts_walls;
 mod lines;
 mod mpi_engine;
 mod wall_mesh;

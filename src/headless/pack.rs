@@ -1,16 +1,53 @@
-//! A scene's Voronoi cells cut to grains, with progress.
+//! What a scene begins with, computed once and kept in a file: its settled bed, its grains cut from
+//! Voronoi cells.
 
 use super::Progress;
 use crate::geometry::Rounded;
-use crate::runner::RunnerError;
-use crate::scene::Scene;
+use crate::output::write_file;
+use crate::runner::{RunnerError, apply_settings, available_threads, exit};
+use crate::scene::{Scene, StoredCells};
+use crate::simulation::make_bed;
 use crate::world::Packing;
+use std::path::Path;
+
+/// Settles the bed of the scene called `name` into a file. Returns the exit code.
+///
+/// # Errors
+/// When there is no such scene, it has no bed, or the file cannot be written.
+pub fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
+    let scene = Scene::open(name)?;
+    let bed = make_bed(&scene, available_threads())
+        .map_err(|error| RunnerError::Input(error.to_string()))?;
+    write_file(path, |file| file.write_all(&bed))?;
+    Ok(exit::DONE)
+}
+
+/// Cuts the grains of the scene called `name`, after these `settings`, into a file. Returns the exit
+/// code.
+///
+/// # Errors
+/// When there is no such scene, it cuts none, a setting changes nothing about them, or the file
+/// cannot be written.
+pub fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, RunnerError> {
+    let mut scene = Scene::open(name)?;
+    for setting in settings {
+        if !apply_settings(&mut scene.clone(), std::slice::from_ref(setting))?.is_empty() {
+            return Err(RunnerError::Input(format!(
+                "--set {setting}: changes nothing about the grains' places and shapes"
+            )));
+        }
+    }
+    apply_settings(&mut scene, settings)?;
+    let grains = pack(&scene)?;
+    write_file(path, |file| file.write_all(&StoredCells::encode(&grains)?))?;
+    Ok(exit::DONE)
+}
 
 /// The grains of `scene`, cut from Voronoi cells; progress goes to standard error.
 ///
 /// # Errors
 /// When the scene cuts none.
-pub fn pack(scene: &Scene) -> Result<Vec<Rounded>, RunnerError> {
+fn pack(scene: &Scene) -> Result<Vec<Rounded>, RunnerError> {
     let mut packing = Packing::new(scene).ok_or_else(|| {
         RunnerError::Input(format!(
             "«{}» cuts no Voronoi cells; expected a scene with `grains: Voronoi(…)`",

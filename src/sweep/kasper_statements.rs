@@ -1,35 +1,31 @@
 //! What Kasper et al. 2021 state of dry and wet drums, as rules.
 //!
 //! In: the ensembles of a sweep that varies nothing but liquid, viscosity, radius, seed and the law
-//! of bridges. Out: for each law the statements for which there are cases, with their comparisons. Bounds that the paper gives in
-//! words (*about*, *hardly*) stand here as numbers, each in the rule that a reader sees.
+//! of bridges. Out: for each law the statements for which there are cases, with their comparisons.
+//! Bounds that the paper gives in words (*about*, *hardly*) stand here as numbers, each in the rule
+//! that a reader sees.
 
 use super::Sweep;
 use super::drums::{Drum, Drums};
 use super::ensemble::Ensemble;
+use super::kasper_parts::{DROP, RATIO, along, beside_the_law, between, flows_always, share};
 use super::statements::{Part, Statement};
 use super::variation::SEED;
-use crate::measure::{
-    Estimate, Measure, Quantity, ResultKey, RunQuantity, Verdict, drop_ratio_law,
-};
+use crate::measure::{Estimate, Measure, ResultKey, RunQuantity, Verdict};
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// The law of bridges: a reading of the paper, not a case of it.
 const READING: &str = "bridge-law";
 /// The keys that the paper varies, and that of its readings.
 const VARIED: [&str; 5] = ["liquid", "viscosity", "radius", SEED, READING];
-/// A bed that flows for this share of the time flows always.
-const ALWAYS: f64 = 0.98;
 /// Viscosity up to which a liquid counts as water [mPa s].
 const WATER: f64 = 2.0;
 
 const ANGLE: ResultKey = ResultKey::OfSamples(Measure::SurfaceAngle);
-const DROP: ResultKey = ResultKey::OfRun(RunQuantity::Drop);
 const TEMPERATURE: ResultKey = ResultKey::OfSamples(Measure::GranularTemperature);
 const PACKING: ResultKey = ResultKey::OfSamples(Measure::PackingFraction);
 const ROUGHNESS: ResultKey = ResultKey::OfSamples(Measure::SurfaceRoughness);
 const CURVATURE: ResultKey = ResultKey::OfSamples(Measure::SurfaceCurvature);
-const SHARE: ResultKey = ResultKey::OfRun(RunQuantity::NonRigidShare);
 
 /// Statements with the reading of the paper under which cases were run, where there are several.
 pub type StatementsOfReading = (Option<String>, Vec<Statement>);
@@ -270,99 +266,11 @@ impl Drums<'_> {
     }
 }
 
-/// How a ratio is written.
-const RATIO: Quantity = Quantity {
-    key: "ratio",
-    ..*RunQuantity::NonRigidShare.quantity()
-};
-
-fn flows_always(drum: &Drum) -> bool {
-    drum.get(SHARE).is_some_and(|share| share.mean >= ALWAYS)
-}
-
-/// A result along each of several series of drums, judged as a whole.
-fn along(
-    series: &[Vec<&Drum>],
-    key: ResultKey,
-    rule: impl Fn(&[Estimate]) -> Verdict,
-) -> Vec<Part> {
-    let part = |drums: &Vec<&Drum>| {
-        let found = drums
-            .iter()
-            .filter_map(|drum| Some((*drum, drum.get(key)?)));
-        let found: Vec<(&Drum, Estimate)> = found.collect();
-        let (first, last) = (found.first()?.0, found.last()?.0);
-        let means: Vec<Estimate> = found.iter().map(|(_, mean)| *mean).collect();
-        let place = if first.radius == last.radius {
-            format!(
-                "r = {} mm, {} to {}",
-                first.radius,
-                first.liquid(),
-                last.liquid()
-            )
-        } else {
-            let (liquid, from, to) = (first.liquid(), first.radius, last.radius);
-            format!("{liquid}, r = {from} to {to} mm")
-        };
-        let texts: Vec<String> = means
-            .iter()
-            .map(|mean| key.quantity().text(*mean))
-            .collect();
-        let verdict = rule(&means);
-        (means.len() > 1).then(|| Part {
-            place,
-            found: texts.join(", "),
-            verdict,
-        })
-    };
-    series.iter().filter_map(part).collect()
-}
-
-/// Whether a result of `drum` lies within `bounds`.
-fn between(drum: &Drum, key: ResultKey, bounds: std::ops::Range<f64>) -> Option<Part> {
-    let mean = drum.get(key)?;
-    Some(Part {
-        place: drum.place(),
-        found: key.quantity().text(mean),
-        verdict: Verdict::of_between(mean, bounds),
-    })
-}
-
-/// Whether `drum` flows always, or does not; beside the paper's share that of the drum's frame.
-fn share(drum: &Drum, always: bool) -> Option<Part> {
-    let bounds = if always {
-        ALWAYS..f64::INFINITY
-    } else {
-        f64::NEG_INFINITY..ALWAYS
-    };
-    let part = between(drum, SHARE, bounds)?;
-    let corotating = drum.get(ResultKey::OfRun(RunQuantity::CorotatingShare));
-    let beside = corotating.map_or_else(String::new, |share| {
-        let text = RunQuantity::CorotatingShare.quantity().text(share);
-        format!(" (in the drum's frame {text})")
-    });
-    let expected = if always { "above" } else { "below" };
-    Some(Part {
-        found: format!("{}{beside}, to be {expected} {ALWAYS}", part.found),
-        ..part
-    })
-}
-
-/// The ratio of a wet drop to the dry one beside Eq. 23.
-fn beside_the_law((wet, dry): (&Drum, &Drum)) -> Option<Part> {
-    let ratio = wet.get(DROP)?.over(dry.get(DROP)?);
-    let law = drop_ratio_law(1e-3 * wet.viscosity);
-    Some(Part {
-        place: wet.place(),
-        found: format!("{} beside {law:.2}", RATIO.text(ratio)),
-        verdict: Verdict::of_between(ratio, law - 0.1..law + 0.1),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::case::CaseResult;
     use super::super::ensemble::ensembles;
+    use super::super::kasper_parts::SHARE;
     use super::super::{Case, Variation};
     use super::*;
     use crate::measure::{MeasuredValue, Series, Summary, SummaryEntry};

@@ -21,6 +21,7 @@ mod drums;
 mod ensemble;
 mod ensemble_table;
 mod folder;
+mod kasper_parts;
 mod kasper_statements;
 mod man_statements;
 mod plan;
