@@ -10,7 +10,7 @@
 //! - A column falls at once: samples are as far apart as a twelfth of the time since its start,
 //!   and at first as a part of the time of its fall.
 //! - Few grains meet and part: the states before and after that are sampled, each of the first
-//!   steps of a contact, then an eighth of its length so far apart; and a flight at every eighth,
+//!   steps of a contact, then a quarter of its length so far apart; and a flight at every quarter,
 //!   its highest point included.
 //!
 //! No two samples are farther apart than on the grid. A run has at most [`FINE_ALLOWANCE`] more
@@ -26,9 +26,9 @@ const FEW_GRAINS: usize = 16;
 /// Steps of a contact that are all sampled.
 const FIRST_STEPS: u64 = 20;
 /// Samples of a contact while its length grows by a factor of e.
-const OF_CONTACT: u64 = 8;
+const OF_CONTACT: u64 = 4;
 /// Samples of the rise of a grain that is thrown up, that of its highest point included.
-const OF_RISE: f64 = 4.0;
+const OF_RISE: f64 = 2.0;
 /// Samples of a column while the time since its start grows by a factor of e.
 const OF_FALL: f64 = 12.0;
 /// First samples of a column, in the time in which a grain falls from its top.

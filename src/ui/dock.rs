@@ -81,8 +81,8 @@ pub struct Dock {
     pub is_changing: bool,
     /// Whether a picture of the window is being taken, in which no tooltip belongs.
     pub is_photographed: bool,
-    /// For how many frames a dialog has lain over the panels.
-    dialog_frames: u8,
+    /// Tooltips that there were when a dialog came over the panels, while it is there.
+    stale_tooltips: Option<Vec<egui::LayerId>>,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
     /// Whether the dock is hidden and the picture fills the window.
@@ -142,7 +142,7 @@ impl Default for Dock {
             is_holding: false,
             is_changing: false,
             is_photographed: false,
-            dialog_frames: 0,
+            stale_tooltips: None,
             file_hovers: false,
             is_hidden: false,
         }
@@ -164,7 +164,6 @@ impl Dock {
         self.remember_ui(root.ctx(), simulation);
         self.is_holding =
             (root.ctx()).input(|input| input.pointer.any_down() || !input.keys_down.is_empty());
-        self.close_tooltips(root.ctx());
         out.extend(shortcuts::pressed(root.ctx(), simulation));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
@@ -177,29 +176,30 @@ impl Dock {
         }
         self.windows_ui(root.ctx(), out);
         focus_ui(root.ctx(), Palette::of(root.visuals()));
-        if self.is_photographed {
-            hide_tooltips(root.ctx());
-        }
+        self.hide_stale_tooltips(root.ctx());
     }
 
-    /// Closes what tells of a place under the pointer where a dialog has come over it: egui lets it
-    /// stand until the pointer leaves that place.
-    fn close_tooltips(&mut self, ctx: &egui::Context) {
+    /// Leaves out of this frame what tells of a place under the pointer that a dialog lies over now,
+    /// and in a picture every such thing: egui lets it stand until the pointer leaves that place.
+    fn hide_stale_tooltips(&mut self, ctx: &egui::Context) {
         let has_dialog = self.shows_scenes
             || self.path_dialog.is_open()
             || self.sheet.is_some()
             || self.open_error.is_some()
             || self.leaving.is_some();
-        // In its first frame the place below it still is under the pointer.
-        if has_dialog && self.dialog_frames == 1 {
-            ctx.memory_mut(egui::Memory::reset_areas);
-            ctx.request_repaint();
-        }
-        self.dialog_frames = if has_dialog {
-            self.dialog_frames.saturating_add(1)
-        } else {
-            0
+        let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
+        let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
+        self.stale_tooltips = match (has_dialog, self.stale_tooltips.take()) {
+            (false, _) => None,
+            (true, known) => Some(known.unwrap_or_else(|| layers.clone())),
         };
+        let stale = self.stale_tooltips.clone().unwrap_or_default();
+        let hidden = if self.is_photographed { layers } else { stale };
+        ctx.graphics_mut(|graphics| {
+            for layer in hidden {
+                *graphics.entry(layer) = egui::layers::PaintList::default();
+            }
+        });
     }
 
     /// The sections of both sides, by the titles of their panels.
@@ -447,17 +447,6 @@ impl Dock {
             });
         ctx.request_repaint_after(NOTICE_TIME);
     }
-}
-
-/// Leaves all tooltips out of this frame.
-fn hide_tooltips(ctx: &egui::Context) {
-    let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
-    let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
-    ctx.graphics_mut(|graphics| {
-        for layer in layers {
-            *graphics.entry(layer) = egui::layers::PaintList::default();
-        }
-    });
 }
 
 /// Whether the run is at its start and has not been played.
