@@ -12,7 +12,8 @@
 //! | `imported_state` | a frame as a state of a scene |
 //! | `export` | the folder that an engine runs |
 //! | `liggghts_deck`, `lammps_deck` | the engines' scripts |
-//! | `deck` | what both have in common |
+//! | `liggghts_walls` | walls in the words of LIGGGHTS |
+//! | `deck`, `liggghts_model` | what both have in common; contact laws in the words of LIGGGHTS |
 //! | `atoms_file`, `wall_mesh` | the grains as a data file, walls as triangles |
 //! | `frames` | what engines wrote, read back: instant by instant |
 //! | `dump_file`, `data_file` | dumps and data files |

@@ -303,12 +303,13 @@ fn a_change_of_one_half_in_the_past_begins_another_run_in_both() {
 }
 
 #[test]
-fn values_that_follow_each_other_at_once_are_one_change_of_both() {
+fn values_that_are_set_in_one_drag_are_one_change_of_both() {
     let lab = wet_lab();
     let mut simulation = opened(&lab, DriverKind::Thread);
     start(&mut simulation, &Parameter::Viscosity, 1.41);
     carry_out(&mut simulation, Command::Step(lab.unit));
     let before = hashes(&simulation);
+    simulation.send(LabCommand::OpenChange);
     for gravity in [9.0, 8.0, 7.0] {
         simulation.send(set(Parameter::Gravity, gravity));
         simulation.send(set_right(&Parameter::Viscosity, 0.1 * gravity));
@@ -316,6 +317,7 @@ fn values_that_follow_each_other_at_once_are_one_change_of_both() {
     // What is refused changes nothing, in neither of them.
     simulation.send(set(Parameter::Gravity, -1.0));
     simulation.send(set_right(&Parameter::Viscosity, f64::NAN));
+    simulation.send(LabCommand::CloseChange);
     carry_out(&mut simulation, Command::Step(lab.unit));
     assert_eq!(simulation.value(&Parameter::Gravity), Some(7.0.into()));
     carry_out(&mut simulation, Command::Undo);
