@@ -25,7 +25,7 @@ pub struct ImportTask {
     /// The engine's time step [default: that of the export, or the scene's]
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Folder for the files [default: out/<scene>-<engine>]
+    /// Folder for the files [default: out/SCENE-ENGINE]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace the run that the folder holds
