@@ -40,6 +40,7 @@
 //! | [`output`] | the files that a run leaves behind |
 //! | [`runner`] | a scene run to its end: the one loop that advances, records, keeps checkpoints, stops |
 //! | [`engines`] | scenes for engines that run under MPI, and what they computed |
+//! | [`recording`] | a run's folder read back: its states one by one, without computing them again |
 //! | [`sweep`] | variations of a scene side by side: cases, table, plots |
 //! | [`paper`] | a paper's cases in one command: what they are, their tables in files and documents |
 //! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
@@ -96,6 +97,11 @@ pub mod output;
 pub mod paper;
 pub mod parameters;
 pub mod physics;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
+pub mod recording;
 pub mod run;
 pub mod runner;
 pub mod scene;

@@ -18,7 +18,7 @@ use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exi
 use grainfall::scene::{Scene, built_in, take_packings_from_anywhere};
 #[cfg(feature = "desktop")]
 use grainfall::simulation::Options;
-use grainfall::simulation::{Estimate, ScriptedCommand, Session};
+use grainfall::simulation::{Estimate, Kept, ScriptedCommand};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
 use std::error::Error;
@@ -126,7 +126,7 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 /// What to open and what to change about it.
 #[derive(Args)]
 struct What {
-    /// A scene file, a session saved in the window, or the name of a built-in scene
+    /// A scene file, a session saved in the window, the folder of a run, or the name of a built-in scene
     scene: Option<String>,
     /// Simulated time of a run without a window: 10s, 500ms
     #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
@@ -274,14 +274,14 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     let what = arguments.what;
     let name = what.scene.clone().unwrap_or_else(first_scene);
     #[cfg(feature = "desktop")]
-    if Session::is_at(Path::new(&name)) && !arguments.no_render {
-        let session = unchanged_session(&name, &what)?;
+    if Kept::is_at(&name) && !arguments.no_render {
+        let opened = unchanged(&name, &what)?;
         let options = window_options(&what, Vec::new());
-        return open_window(name, session.into(), options, arguments.picture);
+        return open_window(name, opened, options, arguments.picture);
     }
-    if Session::is_at(Path::new(&name)) {
+    if Kept::is_at(&name) {
         return Err(RunnerError::Input(format!(
-            "{name} is a session: `grainfall verify {name}` runs it again without a window"
+            "{name} holds what was computed: it opens in a window, and `grainfall verify` computes it again without one"
         )));
     }
     let (scene, script) = changed_scene(&name, &what)?;
@@ -356,9 +356,9 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
     Ok((scene, script))
 }
 
-/// The session in the file called `name`, which opens as it was.
+/// The session or the recording called `name`, which opens as it was.
 #[cfg(feature = "desktop")]
-fn unchanged_session(name: &str, what: &What) -> Result<Session, RunnerError> {
+fn unchanged(name: &str, what: &What) -> Result<Opened, RunnerError> {
     let refuse = |reason: String| Err(RunnerError::Input(reason));
     let given = [
         &what.duration,
@@ -371,11 +371,11 @@ fn unchanged_session(name: &str, what: &What) -> Result<Session, RunnerError> {
         || what.commands.is_some()
     {
         return refuse(format!(
-            "{name} is a session and opens as it was saved: leave the options out and change it in the window, or give a \
-             scene its changes with --commands {name}"
+            "{name} opens as it was saved: leave the options out and change it in the window, or give a scene the changes of a \
+             session or a summary.json with --commands"
         ));
     }
-    Session::read(Path::new(name)).or_else(|error| refuse(error.to_string()))
+    Kept::read(Path::new(name)).map_or_else(refuse, |kept| Ok(kept.into()))
 }
 
 /// `scenes/papers/kasper2021/dry-r3.ron` is called `dry-r3`.

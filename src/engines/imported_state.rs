@@ -8,7 +8,7 @@ use super::atom_frame::{Atom, AtomFrame};
 use super::atom_types::GrainType;
 use crate::measure::{Measure, Sample};
 use crate::solver::Solver;
-use crate::world::{Clock, Grains, Ledger, Surface, World};
+use crate::world::{Clock, Grains, Ledger, World};
 use glam::DVec3;
 
 /// What a sample of an imported state has no value of: it takes forces, or what contacts remember.
@@ -71,7 +71,8 @@ impl StateBuilder {
         world.restart_clock(0.0);
         world.ledger = *self.ledger.get_or_insert(world.ledger);
         world.clock.step = frame.step;
-        move_walls(&mut world);
+        let time = world.time();
+        world.container.carry(time);
         forget_forces(&mut world, frame);
         Ok(world)
     }
@@ -98,20 +99,6 @@ impl StateBuilder {
         grains.velocity.set(moving(|atom| atom.velocity));
         grains.spin.set(moving(|atom| atom.spin));
         Ok(grains)
-    }
-}
-
-/// Puts walls where they are by then.
-fn move_walls(world: &mut World) {
-    let time = world.time();
-    world.container.angle = world.container.drum_speed() * time;
-    for wall in &mut world.container.walls {
-        let way = wall.motion.velocity * time;
-        match &mut wall.surface {
-            Surface::Plane { point, .. } => *point += way,
-            Surface::Tube { rim, .. } => *rim += way.y,
-            Surface::Cylinder { .. } => {}
-        }
     }
 }
 

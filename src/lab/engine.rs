@@ -1,4 +1,5 @@
-//! What a driver moves: a preparation that becomes a run, the runs of a lab, and their clock.
+//! What a driver moves: a preparation that becomes a run, the runs of a lab or a recording, and
+//! their clock.
 //!
 //! In: [`Message`]s, which are commands and ticks. Out: [`Update`]s. [`Engine::work`] does one
 //! short piece at a time, so that commands are answered quickly; how the pieces fall does not show
@@ -6,9 +7,11 @@
 
 use super::clock::{LabClock, Mode};
 use super::lab_command::LabCommand;
+use super::playback::Playback;
 use super::runs::Runs;
 use super::update::{SavedFile, Update};
 use super::{Half, Options, Status};
+use crate::recording::Recording;
 use crate::run::{
     Command, CommandError, Parameter, Pieces, Preparation, Prepared, Run, Script, ScriptedCommand,
     Session, Timeline, Value,
@@ -61,6 +64,8 @@ pub struct Engine {
 enum LabStage {
     Preparing(Box<Preparation>),
     Ready(Runs),
+    /// Nothing is computed.
+    Recorded(Box<Playback>),
     /// There is no run, as the status says.
     Failed(Status),
 }
@@ -83,6 +88,16 @@ impl Engine {
         let original = Arc::new(session.original().clone());
         let timeline = session.into_timeline(options.threads, options.memory);
         Self::at(LabStage::Ready(Runs::new(timeline)), original, options)
+    }
+
+    /// An engine that plays `recording` from its start.
+    pub fn play_back(recording: Recording, options: Options) -> Self {
+        let scene = recording.scene().clone();
+        let stage = match Playback::new(recording, options.memory) {
+            Ok(playback) => LabStage::Recorded(Box::new(playback)),
+            Err(reason) => LabStage::Failed(Status::Failed(reason)),
+        };
+        Self::at(stage, scene, options)
     }
 
     fn at(stage: LabStage, original: Arc<Scene>, options: Options) -> Self {
@@ -116,6 +131,7 @@ impl Engine {
         match &self.stage {
             LabStage::Preparing(_) => true,
             LabStage::Ready(runs) => runs.have_work(&self.clock),
+            LabStage::Recorded(playback) => playback.has_work(&self.clock),
             LabStage::Failed(_) => false,
         }
     }
@@ -139,6 +155,7 @@ impl Engine {
                     self.dispatch_waiting();
                 }
             }
+            LabStage::Recorded(playback) => playback.advance(&mut self.clock),
             LabStage::Failed(_) => {}
         }
     }
@@ -148,6 +165,10 @@ impl Engine {
         let mut update = std::mem::take(&mut self.news);
         update.status = Some(self.status());
         update.answered = Some(self.answered);
+        if let LabStage::Recorded(playback) = &mut self.stage {
+            update.warnings.extend(playback.take_notes());
+            update.runs = Some(playback.news());
+        }
         if let LabStage::Ready(runs) = &mut self.stage {
             if self.profiled.elapsed() > PROFILE_TIME {
                 self.profiled = Instant::now();
@@ -168,6 +189,8 @@ impl Engine {
                     progress: preparation.progress(),
                 };
             }
+            LabStage::Recorded(_) if self.clock.mode() == Mode::Paused => return Status::Paused,
+            LabStage::Recorded(_) => return Status::Running,
             LabStage::Ready(runs) => runs,
         };
         match runs.fault() {
@@ -206,6 +229,9 @@ impl Engine {
 
     /// Lets the runs go on by what `passed` wall-clock time is worth.
     fn tick(&mut self, passed: Duration) {
+        if let LabStage::Recorded(playback) = &self.stage {
+            self.clock.tick(passed, playback.now());
+        }
         if let LabStage::Ready(runs) = &mut self.stage {
             self.clock.tick(passed, runs.now());
             if let Some(step) = self.clock.due() {
@@ -222,6 +248,11 @@ impl Engine {
             return;
         }
         self.answered += 1;
+        if let LabStage::Recorded(playback) = &mut self.stage {
+            let refused = playback.take(&command, &mut self.clock).err();
+            let refused = refused.map(|refusal| refusal.to_string());
+            return self.news.warnings.extend(refused);
+        }
         if parts_changes(&command) {
             self.open_change = self.open_change.map(|_| false);
         }
@@ -338,7 +369,7 @@ impl Engine {
                     matches!(command, LabCommand::All(command) if command.moving().is_some());
                 runs.is_pair() || !moves
             }
-            LabStage::Failed(_) => false,
+            LabStage::Recorded(_) | LabStage::Failed(_) => false,
         }
     }
 
@@ -355,7 +386,7 @@ impl Engine {
             LabStage::Ready(runs) => runs
                 .save(&path, &self.original, look)
                 .map_err(|error| error.to_string()),
-            LabStage::Preparing(_) | LabStage::Failed(_) => Err("there is no run".into()),
+            _ => Err("there is no run".into()),
         };
         self.news.saved.push(SavedFile { path, outcome });
     }

@@ -12,7 +12,8 @@ use super::lab_command::LabCommand;
 use super::runs::ONE_STEP;
 use super::update::{RunsNews, SavedFile, Update};
 use super::{DriverKind, Half, Options, RunView, Status};
-use crate::run::{Changed, Command, Parameter, Provenance, Session, Value, accept};
+use crate::recording::{Recording, RecordingFacts};
+use crate::run::{Changed, Command, CommandError, Parameter, Provenance, Session, Value, accept};
 use crate::scene::Scene;
 use crate::solver::{TimeStepAdvice, advise};
 use std::ops::Deref;
@@ -32,6 +33,8 @@ pub struct Lab {
     runs: Vec<RunView>,
     /// What the two differ in.
     comparison: Option<Parameter>,
+    /// What is known of the recording that is played, where nothing is computed.
+    recording: Option<RecordingFacts>,
     /// The scene as it was opened, before what acts from the next start on was changed.
     original: Arc<Scene>,
     /// None where the system gave no thread or the thread has died.
@@ -98,6 +101,24 @@ impl Lab {
         })
     }
 
+    /// Plays `recording` from its start. What `options` say of threads, beds and scripts means
+    /// nothing for it.
+    pub fn play_back(recording: Recording, options: Options) -> Self {
+        let scene = recording.scene().clone();
+        let advice = TimeStepAdvice {
+            time_step: recording.first_step(),
+            ..advise(&scene)
+        };
+        let facts = recording.facts();
+        let lab = Self::with(scene.clone(), scene, advice, options, move |options| {
+            Engine::play_back(recording, options)
+        });
+        Self {
+            recording: Some(facts),
+            ..lab
+        }
+    }
+
     fn with(
         scene: Arc<Scene>,
         original: Arc<Scene>,
@@ -113,6 +134,7 @@ impl Lab {
         let mut lab = Self {
             runs: vec![RunView::new(scene, advice)],
             comparison: None,
+            recording: None,
             original,
             driver: None,
             speed,
@@ -158,8 +180,16 @@ impl Lab {
         })
     }
 
+    /// What is known of the recording that is played; none where a run is computed.
+    pub fn recording(&self) -> Option<&RecordingFacts> {
+        self.recording.as_ref()
+    }
+
     /// Where what is shown comes from; nothing before there is a state.
     pub fn provenance(&self) -> Option<Provenance> {
+        if self.recording.is_some() {
+            return Some(Provenance::recorded(self.scene(), self.world()?));
+        }
         let provenance = Provenance::of(self.scene(), self.world()?);
         let Some(Comparison { parameter, right }) = self.comparison() else {
             return Some(provenance);
@@ -229,6 +259,7 @@ impl Lab {
                     run.expect(&Command::Set { parameter, value });
                 }
             }
+            LabCommand::Save { .. } if self.recording.is_some() => {}
             LabCommand::Save { .. } => self.saved.pending.push(self.sent),
             LabCommand::Compare { .. }
             | LabCommand::OpenChange
@@ -241,7 +272,9 @@ impl Lab {
 
     /// Whether two runs can be compared from here.
     pub fn can_compare(&self) -> bool {
-        self.comparison.is_none() && matches!(self.status, Status::Running | Status::Paused)
+        self.comparison.is_none()
+            && self.recording.is_none()
+            && matches!(self.status, Status::Running | Status::Paused)
     }
 
     /// Whether [`LabCommand::Compare`] can be carried out now with this `parameter` and `value`.
@@ -249,6 +282,9 @@ impl Lab {
     /// # Errors
     /// Why it would be refused, in a sentence.
     pub fn check_comparison(&self, parameter: &Parameter, value: Value) -> Result<(), String> {
+        if self.recording.is_some() {
+            return Err(CommandError::Recorded.to_string());
+        }
         if self.comparison.is_some() {
             return Err("Two runs are compared already: end that comparison first".into());
         }
@@ -301,7 +337,7 @@ impl Lab {
                 self.take(update);
             }
         }
-        if self.status == Status::Running {
+        if self.status == Status::Running && self.recording.is_none() {
             self.saved.worked += passed;
         }
     }

@@ -149,6 +149,12 @@ impl RunView {
         self.sought.unwrap_or_else(shown)
     }
 
+    /// The step that was come to: of a recording it may lie between that of the state shown and the
+    /// next one.
+    pub fn reached(&self) -> u64 {
+        self.news.as_ref().map_or(0, |news| news.reached)
+    }
+
     /// Whether the state shown is not the newest of the present branch.
     pub fn looks_back(&self) -> bool {
         self.step() < self.past.end.step

@@ -86,6 +86,7 @@ impl LabRun {
         self.share_branch(rests);
         RunNews {
             world: self.shown.clone(),
+            reached: self.shown.clock.step,
             parameters: self.timeline.run().parameters().clone(),
             branch: self.branch.clone(),
             latest: self.timeline.branch().series.last(),

@@ -41,6 +41,9 @@ pub struct RunsNews {
 pub struct RunNews {
     /// The state.
     pub world: Arc<World>,
+    /// The step that was come to: that of the state, or a later one where only some states of a
+    /// run are known.
+    pub reached: u64,
     /// The parameters that can change while it goes on.
     pub parameters: Arc<[ParameterInfo]>,
     /// What was changed and measured, up to its end or to a little before it.

@@ -77,9 +77,15 @@ impl GrainQuantity {
         self.quantity().unit.shown.name
     }
 
-    /// Whether grains of `world` have it.
+    /// Whether grains of `world` have it. What another program computed may come without forces.
     pub fn applies_to(self, world: &World) -> bool {
-        self != Self::Liquid || world.wetting().is_some()
+        match self {
+            Self::Liquid => world.wetting().is_some(),
+            Self::LargestForce | Self::Pressure => {
+                (world.contacts.first()).is_none_or(|contact| contact.force.is_finite())
+            }
+            _ => true,
+        }
     }
 
     /// That of each grain of `world` in the shown unit, appended to `values`.

@@ -40,6 +40,11 @@ impl Write for Digested<'_> {
     }
 }
 
+/// The digest of `bytes`.
+pub fn digest_of(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
 /// The digest of the file at `path`.
 ///
 /// # Errors

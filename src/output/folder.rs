@@ -13,7 +13,7 @@ use crate::files::{
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The file that says a folder is a run's.
 pub const SUMMARY: &str = "summary.json";
@@ -255,6 +255,14 @@ pub fn write_file(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
     write_whole(path, fill).map_err(|source| OutputError::write(path, source))
+}
+
+/// Whether `name` is that of a file in a folder or in a folder of it, and of nothing above.
+pub fn is_own_name(name: &str) -> bool {
+    let path = Path::new(name);
+    let mut parts = path.components();
+    parts.all(|part| matches!(part, Component::Normal(_)))
+        && (1..=2).contains(&path.components().count())
 }
 
 /// Whether frames of this `kind` have such a `name`; earlier programs wrote polyhedra as `.vtu`.

@@ -8,7 +8,7 @@ use super::contacts_file::write_contacts;
 use super::container_file::write_container;
 use super::folder::FRAMES;
 use super::grains_file::write_grains;
-use super::shapes_file::write_shapes;
+use super::shapes_file::{SHAPES, write_shapes};
 use super::{OutputError, OutputFolder};
 use crate::run::Provenance;
 use crate::world::World;
@@ -16,8 +16,6 @@ use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// What a polyhedron looks like.
-const SHAPES: &str = "shapes.vtu";
 /// What they lie in.
 const CONTAINER: &str = "container.vtp";
 

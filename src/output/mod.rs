@@ -42,11 +42,13 @@ mod vtk;
 
 pub use contacts_file::write_contacts;
 pub use container_file::write_container;
-pub use digest::digest_of_file;
+pub use digest::{digest_of, digest_of_file};
 pub use ending::Ending;
 pub use error::OutputError;
-pub use folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY, write_file};
+pub use folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY, is_own_name, write_file};
+pub use frames::LISTS;
 pub use grains_file::write_grains;
 pub use recorder::{IMPORTED, Recorder, Subject, Written};
 pub use run_so_far::RunSoFar;
-pub use shapes_file::write_shapes;
+pub use series_file::SERIES;
+pub use shapes_file::{SHAPES, with_faces_moved, write_shapes};

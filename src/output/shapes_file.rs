@@ -14,6 +14,8 @@ use glam::{DMat3, DVec3};
 use std::io::{self, Write};
 use std::iter::once;
 
+/// The file.
+pub const SHAPES: &str = "shapes.vtu";
 /// VTK's numbers of the kinds of cell.
 const VERTEX: u8 = 1;
 const POLYHEDRON: u8 = 42;
@@ -157,12 +159,18 @@ fn kind(shape: &Polyhedron) -> u8 {
     }
 }
 
-/// The corners of `shape` where its faces, moved out by the rounding radius, meet. Exact where
-/// three faces meet in a corner; of more, the place that lies nearest to all of them.
+/// The corners of `shape` where its faces, moved out by the rounding radius, meet.
 fn solid(shape: &Polyhedron) -> Vec<DVec3> {
-    let mut sums = vec![(DMat3::ZERO, DVec3::ZERO); shape.vertices.len()];
-    for face in &shape.faces {
-        let normal = outward(shape, face);
+    with_faces_moved(&shape.vertices, &shape.faces, shape.rounding)
+}
+
+/// `corners` of a solid where its `faces`, moved out by `distance` [m], meet. Exact where three
+/// faces meet in a corner; of more, the place that lies nearest to all of them. Moved back by as
+/// much, the corners are where they were.
+pub fn with_faces_moved(corners: &[DVec3], faces: &[Vec<u16>], distance: f64) -> Vec<DVec3> {
+    let mut sums = vec![(DMat3::ZERO, DVec3::ZERO); corners.len()];
+    for face in faces {
+        let normal = outward(corners, face);
         for &corner in face {
             let (squares, sum) = &mut sums[usize::from(corner)];
             *squares += DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
@@ -170,15 +178,15 @@ fn solid(shape: &Polyhedron) -> Vec<DVec3> {
         }
     }
     let moved = |(corner, (squares, sum)): (&DVec3, (DMat3, DVec3))| {
-        let out = *corner + shape.rounding * (squares.inverse() * sum);
+        let out = *corner + distance * (squares.inverse() * sum);
         if out.is_finite() { out } else { *corner }
     };
-    shape.vertices.iter().zip(sums).map(moved).collect()
+    corners.iter().zip(sums).map(moved).collect()
 }
 
 /// Unit normal of a face, outwards.
-fn outward(shape: &Polyhedron, face: &[u16]) -> DVec3 {
-    let corner = |k: usize| shape.vertices[usize::from(face[k % face.len()])];
+fn outward(corners: &[DVec3], face: &[u16]) -> DVec3 {
+    let corner = |k: usize| corners[usize::from(face[k % face.len()])];
     let around = (0..face.len()).map(|k| corner(k).cross(corner(k + 1)));
     around.sum::<DVec3>().normalize_or_zero()
 }

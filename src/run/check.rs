@@ -18,6 +18,12 @@ pub enum CommandError {
         /// The keys there are.
         known: Vec<String>,
     },
+    /// What is shown was computed before.
+    #[error(
+        "This is a recording: it shows what was computed before. `Run anew` beside the timeline starts a run that can be \
+         changed"
+    )]
+    Recorded,
     /// The parameter takes no such value at all.
     #[error(transparent)]
     Unsuited(#[from] Unsuited),

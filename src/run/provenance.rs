@@ -9,6 +9,9 @@ use crate::scene::Scene;
 use crate::world::World;
 use std::fmt;
 
+/// What is said of a state that has no hash.
+const RECORDED: &str = "out of the files of a run, in 32 bits";
+
 /// Where a file came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
@@ -24,7 +27,8 @@ pub struct Provenance {
 struct State {
     time: f64,
     step: u64,
-    hash: String,
+    /// None of a state out of files that round it.
+    hash: Option<String>,
 }
 
 impl Provenance {
@@ -41,7 +45,24 @@ impl Provenance {
     /// From the state of `scene` with this `hash`, at `time` [s] after `step` steps.
     pub fn at(scene: &Scene, time: f64, step: u64, hash: String) -> Self {
         Self {
-            state: Some(State { time, step, hash }),
+            state: Some(State {
+                time,
+                step,
+                hash: Some(hash),
+            }),
+            ..Self::of_scene(scene)
+        }
+    }
+
+    /// From `world`, a state of a run of `scene` as its files hold it, in 32 bits: a hash would be
+    /// that of no state of the run.
+    pub fn recorded(scene: &Scene, world: &World) -> Self {
+        Self {
+            state: Some(State {
+                time: world.time(),
+                step: world.clock.step,
+                hash: None,
+            }),
             ..Self::of_scene(scene)
         }
     }
@@ -73,7 +94,10 @@ impl Provenance {
         if let Some(state) = &self.state {
             entries.push(("Time", format!("{:?} s", state.time)));
             entries.push(("Step", state.step.to_string()));
-            entries.push(("State hash", state.hash.clone()));
+            entries.push(match &state.hash {
+                Some(hash) => ("State hash", hash.clone()),
+                None => ("State", RECORDED.to_owned()),
+            });
         }
         if let Some((change, hash)) = &self.beside {
             entries.push(("Right half", change.clone()));
@@ -127,7 +151,8 @@ impl fmt::Display for Provenance {
             self.scene, self.seed
         )?;
         if let Some(State { time, step, hash }) = &self.state {
-            write!(f, ", t = {time:?} s, step {step}, state {hash}")?;
+            let state = hash.as_deref().unwrap_or(RECORDED);
+            write!(f, ", t = {time:?} s, step {step}, state {state}")?;
         }
         match &self.beside {
             Some((change, hash)) => write!(f, ", beside it with {change}: state {hash}"),

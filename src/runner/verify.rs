@@ -8,14 +8,14 @@
 use super::drive::{End, drive};
 use super::{Advance, DirectRun, RunnerError, Watch, exit};
 use crate::files::read_whole;
-use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file};
+use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file, is_own_name};
 use crate::run::{BedStore, RunRecord, Session, VERSION, fingerprint};
 use crate::scene::within_folders;
 use crate::solver::Fault;
 use crate::world::StateHash;
 use serde_json::Value;
 use std::fs;
-use std::path::{Component, Path};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Largest record that is read [bytes]: one of a scene with as many listed grains as a file holds.
@@ -76,12 +76,34 @@ impl RunRecord {
             let session = Session::read(path).map_err(|e| RunnerError::Input(e.to_string()))?;
             return Ok(session.into_record());
         }
-        let name = path.display();
-        let refuse = |reason: String| {
-            RunnerError::Input(format!(
-                "{name}: {reason}; expected a run's summary.json, or a session or a list of changes saved in the window"
-            ))
-        };
+        let refuse = |reason: String| refused(path, &reason);
+        let (record, is_as_written) = Self::stated_by(path)?;
+        if record.status.as_deref() == Some(IMPORTED) {
+            return Err(refuse(
+                "its run was imported from another engine, and cannot be computed again here"
+                    .into(),
+            ));
+        }
+        if record.state_hash.is_none() {
+            return Err(refuse("states no state to come to".into()));
+        }
+        if !is_as_written {
+            return Err(refuse(format!(
+                "its fingerprint does not fit: the file was edited or damaged, or written by another version than \
+                 {VERSION} (it says {})",
+                record.version
+            )));
+        }
+        Ok(record)
+    }
+
+    /// The record in the JSON file at `path`, whatever run it is of, and whether it is as it was
+    /// written.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or states no run of a sound scene.
+    pub fn stated_by(path: &Path) -> Result<(Self, bool), RunnerError> {
+        let refuse = |reason: String| refused(path, &reason);
         let bytes = read_whole(path, LARGEST_FILE)
             .map_err(|error| refuse(format!("cannot be read: {error}")))?;
         // A packing lies where the program is called, as when the record was made, or beside it.
@@ -90,24 +112,12 @@ impl RunRecord {
             .map_err(|error| refuse(error.to_string()))?;
         let stated: Value =
             serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
-        if record.status.as_deref() == Some(IMPORTED) {
-            return Err(refuse(
-                "its run was imported from another engine, and cannot be computed again here"
-                    .into(),
-            ));
-        }
-        if record.program != "grainfall" || record.state_hash.is_none() {
-            return Err(refuse("states no state to come to".into()));
-        }
-        if record.fingerprint != Some(fingerprint(&stated)) {
-            return Err(refuse(format!(
-                "its fingerprint does not fit: the file was edited or damaged, or written by another version than \
-                 {VERSION} (it says {})",
-                record.version
-            )));
+        if record.program != "grainfall" {
+            return Err(refuse("states no run of Grainfall".into()));
         }
         record.check().map_err(refuse)?;
-        Ok(record)
+        let is_as_written = record.fingerprint == Some(fingerprint(&stated));
+        Ok((record, is_as_written))
     }
 
     /// Computes the state again on `threads` threads, from time zero, until `stop` says so, and
@@ -243,6 +253,14 @@ impl RunRecord {
     }
 }
 
+/// That the file at `path` holds no record, and what it should be.
+fn refused(path: &Path, reason: &str) -> RunnerError {
+    RunnerError::Input(format!(
+        "{}: {reason}; expected a run's summary.json, or a session or a list of changes saved in the window",
+        path.display()
+    ))
+}
+
 /// Whether the fault that was `met` is the one `stated`. Up to which state it is undone depends on
 /// the pieces in which a run goes on, and does not count.
 fn is_stated(met: &Fault, stated: Option<&Value>) -> bool {
@@ -252,13 +270,6 @@ fn is_stated(met: &Fault, stated: Option<&Value>) -> bool {
     ["grain", "time", "kind"]
         .iter()
         .all(|key| met[key] == stated[key])
-}
-
-/// Whether `name` is that of a file in a folder or in a folder of it, and of nothing above.
-fn is_own_name(name: &str) -> bool {
-    let path = Path::new(name);
-    let mut parts = path.components();
-    parts.all(|part| matches!(part, Component::Normal(_))) && path.components().count() <= 2
 }
 
 /// Adds to `found` where `stated` is not what it `is`.

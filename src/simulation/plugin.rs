@@ -1,6 +1,7 @@
 //! The Bevy resource and the plugin: one fixed-timestep system that lets a [`Simulation`] go on.
 
 use crate::lab::{Half, Lab, Options};
+use crate::recording::Recording;
 use crate::run::Session;
 use crate::scene::Scene;
 use bevy::app::{App, FixedUpdate, Plugin};
@@ -25,6 +26,11 @@ impl Simulation {
     /// As [`Lab::resume`].
     pub fn resume(session: Session, options: Options) -> Self {
         Self(Lab::resume(session, options))
+    }
+
+    /// As [`Lab::play_back`].
+    pub fn play_back(recording: Recording, options: Options) -> Self {
+        Self(Lab::play_back(recording, options))
     }
 
     /// As [`Lab::made_of`].

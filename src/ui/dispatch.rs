@@ -7,8 +7,8 @@
 use crate::parameters::{Parameter, Value};
 use crate::scene::Scene;
 use crate::simulation::{
-    Command, Half, LabCommand, Options, RunRecord, SavedFile, ScriptedCommand, Session,
-    SessionError, Simulation,
+    Command, CommandError, Half, Kept, LabCommand, Options, RunRecord, SavedFile, ScriptedCommand,
+    Simulation,
 };
 use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
@@ -30,9 +30,9 @@ use std::sync::Arc;
 #[derive(Resource, Clone, Debug)]
 pub struct OpenWith(pub(super) Options);
 
-/// A session that is being read.
+/// What is being read: a session or a recording.
 #[derive(Resource, Default)]
-pub struct Opening(Option<(String, Task<Result<Session, SessionError>>)>);
+pub struct Opening(Option<(String, Task<Result<Kept, String>>)>);
 
 /// What opening a scene or a session changes.
 #[derive(SystemParam)]
@@ -90,6 +90,10 @@ fn fulfil(
     opener: &mut Opener,
     exit: &mut MessageWriter<AppExit>,
 ) {
+    let is_recording = (simulation.as_ref()).is_some_and(|lab| lab.recording().is_some());
+    if is_recording && request.takes_a_run() {
+        return dock.notify(CommandError::Recorded.to_string());
+    }
     match (request, simulation) {
         (Request::Command(command), Some(simulation)) => simulation.send(command),
         (Request::StartComparison(parameter, value), Some(simulation)) => {
@@ -114,6 +118,9 @@ fn fulfil(
         }
         (Request::Save, simulation) => save(simulation, dock, opener),
         (Request::Start(scene), run) => opener.start_again(*scene, run.as_deref(), dock),
+        (Request::RunAnew, Some(recording)) => {
+            opener.start_again(recording.scene().clone(), Some(recording), dock);
+        }
         (Request::Trail, _) => opener.trace_selected(),
         (Request::NoTrails, _) => opener.view.traced.clear(),
         (Request::Camera(request), _) => {
@@ -145,6 +152,7 @@ fn fulfil(
             | Request::StartComparison(..)
             | Request::SetIn(..)
             | Request::EndComparison(_)
+            | Request::RunAnew
             | Request::SaveSession(_)
             | Request::SaveChanges(_),
             None,
@@ -215,9 +223,10 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
     }
 }
 
-/// The error of opening the scene called `name`; none where it opens or is a session.
+/// The error of opening the scene called `name`; none where it opens or is no scene but a session or
+/// a recording.
 fn no_scene(name: &str) -> Option<String> {
-    let scene = (!Session::is_at(Path::new(name))).then(|| Scene::open(name))?;
+    let scene = (!Kept::is_at(name)).then(|| Scene::open(name))?;
     scene.err().map(|error| error.to_string())
 }
 
@@ -250,7 +259,7 @@ fn tell_saved(simulation: &mut Simulation, dock: &mut Dock) -> Option<Request> {
     next
 }
 
-/// Opens the session that has been read. Where it cannot be read the present one goes on.
+/// Opens what has been read. Where it cannot be read the present run goes on.
 pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
     let Some((name, task)) = &mut opener.opening.0 else {
         return;
@@ -260,18 +269,20 @@ pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
     };
     let name = std::mem::take(name);
     opener.opening.0 = None;
+    let duration = read.as_ref().map_or(1.0, |kept| kept.scene().duration);
+    let options = opener.options_for(duration);
     match read {
-        Ok(session) => {
-            let options = Options {
-                speed: first_speed(session.record().scene.duration),
-                ..opener.options.0.clone()
-            };
+        Ok(Kept::Session(session)) => {
             let look = session.look().to_owned();
-            opener.show(Simulation::resume(session, options));
+            opener.show(Simulation::resume(*session, options));
             dock.session_opened(&name);
             opener.take_up(&look, &mut dock);
         }
-        Err(error) => dock.show_open_error(error.to_string()),
+        Ok(Kept::Recording(recording)) => {
+            opener.show(Simulation::play_back(*recording, options));
+            dock.scene_opened(&name);
+        }
+        Err(error) => dock.show_open_error(error),
     }
 }
 
@@ -288,6 +299,14 @@ impl Opener<'_, '_> {
         }
     }
 
+    /// How something of this `duration` [s] is run or played.
+    fn options_for(&self, duration: f64) -> Options {
+        Options {
+            speed: first_speed(duration),
+            ..self.options.0.clone()
+        }
+    }
+
     /// Draws the trail of the selected grain, or no longer.
     fn trace_selected(&mut self) {
         if let Some(grain) = self.view.selected {
@@ -295,14 +314,14 @@ impl Opener<'_, '_> {
         }
     }
 
-    /// Opens the scene or the session called `name`; one that cannot be opened leaves the present
+    /// Opens the scene, the session or the recording called `name`; one that cannot be opened leaves the present
     /// one running.
     fn open(&mut self, name: String, dock: &mut Dock) {
         self.opening.0 = None;
-        if Session::is_at(Path::new(&name)) {
+        if Kept::is_at(&name) {
             dock.notify(format!("Reading {name}"));
             let path = PathBuf::from(&name);
-            let read = IoTaskPool::get().spawn(async move { Session::read(&path) });
+            let read = IoTaskPool::get().spawn(async move { Kept::read(&path) });
             self.opening.0 = Some((name, read));
             return;
         }

@@ -306,7 +306,8 @@ impl Dock {
             painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
         };
         if simulation.is_none() {
-            let text = "Open a scene or a session: File menu, Ctrl+O, or drop a file here";
+            let text =
+                "Open a scene, a session or a recording: File menu, Ctrl+O, or drop a file here";
             write(text, 18.0, visuals.text_color());
         }
         if self.file_hovers {
@@ -338,6 +339,11 @@ impl Dock {
     /// Says `text` for a few seconds.
     pub fn notify(&mut self, text: impl Into<String>) {
         self.notice = Some((text.into(), Instant::now()));
+    }
+
+    /// What is told now, if anything.
+    pub fn notice(&self) -> Option<&str> {
+        self.notice.as_ref().map(|(text, _)| text.as_str())
     }
 
     /// Puts the scene called `name` first among the recent ones and resets the panels for it.
@@ -429,7 +435,7 @@ impl Dock {
             .take()
             .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
         let waiting = "Waiting for the system's file dialog; ask again to type a path";
-        let said = self.notice.as_ref().map(|(text, _)| text.as_str());
+        let said = self.notice();
         let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
             return;
         };

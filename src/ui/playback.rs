@@ -3,6 +3,7 @@
 //! In: the simulation as it is. Out: a command or a request where it means something now, nothing
 //! elsewhere. Buttons, keys and plots ask here, so that all of them follow the same rule.
 
+use crate::recording::RecordingFacts;
 use crate::simulation::{Command, RunView, SAMPLE_INTERVAL, Simulation, Status};
 use crate::ui::request::Request;
 
@@ -56,8 +57,40 @@ pub fn play_or_pause(status: &Status) -> Option<Command> {
 
 /// The command that shows the step before the one shown, where there is one.
 pub fn step_back(simulation: &Simulation) -> Option<Command> {
-    let before = Command::Seek(simulation.step().checked_sub(1)?);
+    let before = match simulation.recording() {
+        Some(recording) => state_from(recording, simulation, Way::Back, 1)?,
+        None => Command::Seek(simulation.step().checked_sub(1)?),
+    };
     allows(simulation.status(), &before).then_some(before)
+}
+
+/// The command that shows the step after the one shown; of a recording the next state that there
+/// is.
+pub fn step_on(simulation: &Simulation) -> Option<Command> {
+    let next = match simulation.recording() {
+        Some(recording) => state_from(recording, simulation, Way::On, 1)?,
+        None => Command::Step(1),
+    };
+    allows(simulation.status(), &next).then_some(next)
+}
+
+/// The command that shows the state of `recording` that is at least so many `steps` from the one
+/// shown, and another one; none beyond its first and its last.
+fn state_from(
+    recording: &RecordingFacts,
+    simulation: &RunView,
+    way: Way,
+    steps: u64,
+) -> Option<Command> {
+    let (moments, step) = (&recording.moments, simulation.step());
+    let shown = recording.index_at(step);
+    let last = moments.len().checked_sub(1)?;
+    let index = match way {
+        Way::Back => (recording.index_at(step.saturating_sub(steps))).min(shown.checked_sub(1)?),
+        Way::On if shown == last => return None,
+        Way::On => (recording.index_at(step.saturating_add(steps))).max(shown + 1),
+    };
+    Some(Command::Seek(moments.get(index)?.step))
 }
 
 /// The command that shows the moment one sampling interval before or after the one shown. After the
@@ -71,6 +104,9 @@ pub fn leap(simulation: &Simulation, way: Way) -> Option<Command> {
 /// The command that goes so many `steps` from the moment shown; beyond the newest one the run goes
 /// on.
 pub fn go(simulation: &Simulation, way: Way, steps: u64) -> Option<Command> {
+    if let Some(recording) = simulation.recording() {
+        return state_from(recording, simulation, way, steps);
+    }
     let (step, end) = (simulation.step(), simulation.past().end.step);
     match way {
         Way::Back => (step > 0).then(|| Command::Seek(step.saturating_sub(steps))),
@@ -83,7 +119,7 @@ pub fn go(simulation: &Simulation, way: Way, steps: u64) -> Option<Command> {
 pub fn go_to(simulation: &Simulation, time: f64) -> Option<Command> {
     let step = simulation.step_times()?.step_at(time.max(0.0));
     let end = simulation.past().end.step;
-    if step <= end || simulation.looks_back() {
+    if step <= end || simulation.looks_back() || simulation.recording().is_some() {
         return Some(Command::Seek(step.min(end)));
     }
     Some(Command::Step(step - end))

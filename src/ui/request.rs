@@ -31,13 +31,15 @@ pub enum Request {
     Camera(CameraRequest),
     /// Show the scenes that come with the program.
     ShowScenes,
-    /// Let the person choose a file of a scene or a session.
+    /// Let the person choose a file of a scene, a session or a recording.
     ChooseFile,
-    /// Open this: the path of a scene or a session, or a built-in scene's name.
+    /// Open this: the path of a scene, a session or a recording, or a built-in scene's name.
     Open(String),
     /// Start afresh with this scene in place of the present one, and the present values of the live
     /// parameters.
     Start(Box<Scene>),
+    /// Start a run of the scene of the recording that is shown, with the values of that moment.
+    RunAnew,
     /// Write the whole session to the file it has, or let the person choose one.
     Save,
     /// Let the person choose where the whole session goes.
@@ -72,6 +74,30 @@ impl Request {
     /// Whether it gives a parameter a value: what is set while one drag lasts is one change.
     pub(super) fn sets_a_value(&self) -> bool {
         matches!(self, Self::Command(Command::Set { .. }) | Self::SetIn(..))
+    }
+
+    /// Whether it takes a run: what a recording is not asked for.
+    pub(super) fn takes_a_run(&self) -> bool {
+        match self {
+            Self::Command(command) => matches!(
+                command,
+                Command::Set { .. }
+                    | Command::Undo
+                    | Command::Redo
+                    | Command::Return(_)
+                    | Command::Forget(_)
+            ),
+            Self::Compare(_)
+            | Self::StartComparison(..)
+            | Self::SetIn(..)
+            | Self::EndComparison(_)
+            | Self::Save
+            | Self::ChooseSession
+            | Self::SaveSession(_)
+            | Self::ChooseChanges
+            | Self::SaveChanges(_) => true,
+            _ => false,
+        }
     }
 }
 

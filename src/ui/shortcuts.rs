@@ -5,7 +5,7 @@
 //! text is typed or a dialog is open, no key counts.
 
 use crate::simulation::{Command, Simulation};
-use crate::ui::playback::{Way, allows, go, leap, play_or_pause, step_back, to_avalanche};
+use crate::ui::playback::{Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche};
 use crate::ui::request::{Request, Sheet};
 use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
@@ -22,6 +22,7 @@ pub struct Shortcut {
 enum KeyAction {
     PlayOrPause,
     StepBack,
+    StepOn,
     Steps(Way, u64),
     Leap(Way),
     ToTheNewest,
@@ -90,7 +91,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         keys: &[key(Key::Period), key(Key::ArrowRight)],
         name: "One time step",
-        action: KeyAction::Ask(Request::Command(Command::Step(1))),
+        action: KeyAction::StepOn,
     },
     Shortcut {
         keys: &[key(Key::Comma), key(Key::ArrowLeft)],
@@ -207,7 +208,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     },
     Shortcut {
         keys: &[ctrl(Key::O)],
-        name: "Open a scene or a session",
+        name: "Open a scene, a session or a recording",
         action: KeyAction::Ask(Request::ChooseFile),
     },
     Shortcut {
@@ -319,6 +320,7 @@ impl Shortcut {
             KeyAction::Ask(request) => return Some(request.clone()),
             KeyAction::PlayOrPause => play_or_pause(simulation?.status())?,
             KeyAction::StepBack => step_back(simulation?)?,
+            KeyAction::StepOn => step_on(simulation?)?,
             KeyAction::Leap(way) => leap(simulation?, *way)?,
             KeyAction::Steps(way, steps) => go(simulation?, *way, *steps)?,
             KeyAction::Avalanche(way) => return to_avalanche(simulation?, *way),

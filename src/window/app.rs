@@ -93,11 +93,11 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         dock.remember(UserMemory::user());
     }
     match &job.opened {
-        Opened::Scene(_) => dock.scene_opened(&job.name),
+        Opened::Scene(_) | Opened::Recording(_) => dock.scene_opened(&job.name),
         Opened::Session(_) => dock.session_opened(&job.name),
     }
     let look = match &job.opened {
-        Opened::Scene(_) => None,
+        Opened::Scene(_) | Opened::Recording(_) => None,
         Opened::Session(session) => SessionLook::read(session.look()),
     };
     dock.is_hidden = job.picture.as_ref().is_some_and(|picture| picture.plain);

@@ -167,7 +167,7 @@ fn take_screenshots(
     let is_another_run = simulation.is_added();
     if let Some((reel, stage)) = jobs.film()
         && *stage != JobStage::Ending
-        && reel.is_cut_off(is_another_run)
+        && (reel.is_cut_off(is_another_run) || reel.is_over(&simulation))
     {
         end_film(reel, stage, &mut simulation);
     }

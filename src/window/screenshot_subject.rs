@@ -166,7 +166,11 @@ impl SinglePicture {
             return true;
         };
         let Some(step) = *aim else {
-            *aim = (simulation.world()).map(|world| world.clock.step_at(*time));
+            let step = (simulation.world()).map(|world| world.clock.step_at(*time));
+            // A recording goes no further than its last state.
+            let end = simulation.past().end.step;
+            let is_over = |step: &u64| simulation.recording().is_some() && *step > end;
+            *aim = step.map(|step| if is_over(&step) { end } else { step });
             // Until there is a run it holds where it begins.
             simulation.send(LabCommand::Hold(aim.or(Some(0))));
             return false;
@@ -175,7 +179,7 @@ impl SinglePicture {
         if !simulation.has_answered() {
             return false;
         }
-        let is_there = |run: &RunView| run.world().is_some_and(|w| w.clock.step >= step);
+        let is_there = |run: &RunView| run.world().is_some() && run.reached() >= step;
         let are_there = (Half::ALL.into_iter()).all(|half| is_there(simulation.half(half)));
         if are_there {
             // How fast it came here, on the way to a picture, is nothing to show.
@@ -227,6 +231,12 @@ impl FilmReel {
         is_another_run && self.pictures > 0 || self.film.has_ended()
     }
 
+    /// Whether the recording that it shows ends before its next picture.
+    pub(super) fn is_over(&self, simulation: &Simulation) -> bool {
+        let ends = self.next > simulation.past().end.step;
+        self.pictures > 0 && ends && simulation.recording().is_some()
+    }
+
     /// There is no further picture: the run may go on.
     pub(super) fn finish(&mut self, simulation: &mut Simulation) {
         self.film.finish();
@@ -242,15 +252,15 @@ impl FilmReel {
         let (Some(times), Some(world)) = (simulation.step_times(), simulation.world()) else {
             return false;
         };
-        let sought = times.time_at(simulation.step());
+        // Between two states of a recording the last one is shown.
+        let sought = times.time_at(simulation.step().max(simulation.reached()));
         if (sought - self.due).abs() > 1.5 * self.interval.max(world.clock.time_step) {
             // Somebody went to another moment: the film goes on from there.
             self.due = sought;
         }
         // A time step that was changed meanwhile has another step there.
         self.aim_at(times.step_at(self.due), simulation);
-        let is_there = (simulation.world()).is_some_and(|world| world.clock.step >= self.next);
-        is_there && self.film.has_room()
+        simulation.reached() >= self.next && self.film.has_room()
     }
 
     /// The next picture is that of `step`; the run goes no further until it is taken.

@@ -4,18 +4,18 @@
 //! codes.
 
 use crate::parameters::{Parameter, Value};
+use crate::recording::Recording;
 use crate::scene::Scene;
-use crate::simulation::{Options, Session, Simulation};
+use crate::simulation::{Kept, Options, Session, Simulation};
 use crate::window::environment::Missing;
 use bevy::math::UVec2;
 use std::path::PathBuf;
 
 /// What to open and how.
-#[derive(Clone)]
 pub struct WindowJob {
     /// What people call it: a file or a built-in scene's name.
     pub name: String,
-    /// The scene or the session.
+    /// The scene, the session or the recording.
     pub opened: Opened,
     /// How it is run.
     pub options: Options,
@@ -26,12 +26,13 @@ pub struct WindowJob {
 }
 
 /// What a window opens with.
-#[derive(Clone)]
 pub enum Opened {
     /// A scene at its start.
     Scene(Box<Scene>),
     /// A session at the moment that was shown.
     Session(Box<Session>),
+    /// A recording at its start.
+    Recording(Box<Recording>),
 }
 
 impl Opened {
@@ -40,6 +41,7 @@ impl Opened {
         match self {
             Self::Scene(scene) => scene,
             Self::Session(session) => &session.record().scene,
+            Self::Recording(recording) => recording.scene(),
         }
     }
 
@@ -48,7 +50,23 @@ impl Opened {
         match self {
             Self::Scene(scene) => Simulation::open(*scene, options),
             Self::Session(session) => Simulation::resume(*session, options),
+            Self::Recording(recording) => Simulation::play_back(*recording, options),
         }
+    }
+}
+
+impl From<Kept> for Opened {
+    fn from(kept: Kept) -> Self {
+        match kept {
+            Kept::Session(session) => Self::Session(session),
+            Kept::Recording(recording) => Self::Recording(recording),
+        }
+    }
+}
+
+impl From<Recording> for Opened {
+    fn from(recording: Recording) -> Self {
+        Self::Recording(Box::new(recording))
     }
 }
 

@@ -53,31 +53,20 @@ fn stored_cells(scene: &Scene) -> Vec<Rounded> {
 /// As [`build`], with the grains `cells` that a [`Packing`] of the scene made where its grains are
 /// Voronoi cells.
 pub fn build_packed(scene: &Scene, time_step: f64, cells: Vec<Rounded>) -> World {
-    let (species, grains, polyhedra) = match &scene.grains {
-        SceneGrains::Fill { count, species, .. } => {
-            let (species, grains) = fill(scene, *count, species);
-            (species, grains, None)
-        }
+    let (grains, polyhedra) = match &scene.grains {
+        SceneGrains::Fill { count, species, .. } => (fill(scene, *count, species), None),
         SceneGrains::Voronoi(wanted) => packed(scene, wanted, cells),
         SceneGrains::List(list) => listed(scene, list),
     };
     let mut world = World {
-        clock: Clock::new(time_step),
         grains,
-        species,
-        materials: materials(scene),
-        container: container(scene),
-        gravity: scene.gravity,
-        liquid: scene.liquid,
-        law: scene.law,
-        contacts: Vec::new(),
         polyhedra: polyhedra.map(|polyhedra| {
             Box::new(Polyhedra {
                 integrator: scene.integrator,
                 ..polyhedra
             })
         }),
-        ledger: Ledger::default(),
+        ..build_without_grains(scene, time_step)
     };
     world.spread_liquid();
     if let SceneGrains::List(list) = &scene.grains {
@@ -87,6 +76,51 @@ pub fn build_packed(scene: &Scene, time_step: f64, cells: Vec<Rounded>) -> World
     }
     world.ledger = Ledger::starting_at(world.kinetic_energy(), world.potential_energy());
     world
+}
+
+/// The same with room for grains and none in it: what is around them.
+pub fn build_without_grains(scene: &Scene, time_step: f64) -> World {
+    let polyhedra = Polyhedra {
+        integrator: scene.integrator,
+        ..Polyhedra::default()
+    };
+    World {
+        clock: Clock::new(time_step),
+        grains: Grains::default(),
+        species: species(scene),
+        materials: materials(scene),
+        container: container(scene),
+        gravity: scene.gravity,
+        liquid: scene.liquid,
+        law: scene.law,
+        contacts: Vec::new(),
+        polyhedra: scene.is_polyhedral().then(|| Box::new(polyhedra)),
+        ledger: Ledger::default(),
+    }
+}
+
+/// What kinds of grain there are: of a list one for each material that a grain is made of, in the
+/// order of the materials.
+fn species(scene: &Scene) -> Vec<Species> {
+    let kind = |name: &str, material: &str| Species {
+        name: name.to_owned(),
+        material: material_id(scene, material),
+    };
+    match &scene.grains {
+        SceneGrains::Fill { species, .. } => {
+            let species = species.iter();
+            species.map(|own| kind(&own.name, &own.material)).collect()
+        }
+        SceneGrains::Voronoi(wanted) => {
+            let species = wanted.species.iter();
+            species.map(|own| kind(&own.name, &own.material)).collect()
+        }
+        SceneGrains::List(list) => {
+            let used = |name: &str| list.iter().any(|grain| grain.material == name);
+            let materials = scene.materials.iter().filter(|m| used(&m.name));
+            materials.map(|own| kind(&own.name, &own.name)).collect()
+        }
+    }
 }
 
 /// The materials of `scene` in its order, and how each pair of them meets.
@@ -265,28 +299,19 @@ fn wall(scene: &Scene, plane: &ScenePlane) -> Wall {
     }
 }
 
-/// One species for each material that a listed grain is made of, in the order of the materials, and
-/// the grains.
-fn listed(scene: &Scene, list: &[SceneGrain]) -> (Vec<Species>, Grains, Option<Polyhedra>) {
-    let used = |name: &str| list.iter().any(|grain| grain.material == name);
-    let materials = scene.materials.iter().filter(|m| used(&m.name));
-    let species: Vec<Species> = materials
-        .map(|material| Species {
-            name: material.name.clone(),
-            material: material_id(scene, &material.name),
-        })
-        .collect();
+/// The grains of a list.
+fn listed(scene: &Scene, list: &[SceneGrain]) -> (Grains, Option<Polyhedra>) {
+    let species = species(scene);
     let label = |grain: &SceneGrain| {
         let made_of = |kind: &Species| kind.name == grain.material;
         SpeciesId(species.iter().position(made_of).unwrap_or(0) as u16)
     };
-    let (grains, polyhedra) = if scene.is_polyhedral() {
+    if scene.is_polyhedral() {
         let (grains, polyhedra) = listed_polyhedra(scene, list, label);
         (grains, Some(polyhedra))
     } else {
         (listed_spheres(scene, list, label), None)
-    };
-    (species, grains, polyhedra)
+    }
 }
 
 fn listed_spheres(
@@ -353,11 +378,7 @@ fn shape_of(grain: &SceneGrain) -> (Polyhedron, DQuat) {
 }
 
 /// Voronoi cells as grains, each with a species of its own choice but exact in number.
-fn packed(
-    scene: &Scene,
-    wanted: &SceneCells,
-    cells: Vec<Rounded>,
-) -> (Vec<Species>, Grains, Option<Polyhedra>) {
+fn packed(scene: &Scene, wanted: &SceneCells, cells: Vec<Rounded>) -> (Grains, Option<Polyhedra>) {
     let shares: Vec<f64> = wanted.species.iter().map(|kind| kind.share).collect();
     let everyone: Vec<usize> = (0..cells.len()).collect();
     let counts = species_counts(cells.len(), &shares);
@@ -386,11 +407,7 @@ fn packed(
         .collect();
     let shapes: Vec<Polyhedron> = cells.into_iter().map(|cell| cell.shape).collect();
     let (grains, polyhedra) = placed(shapes, &bodies);
-    let species = wanted.species.iter().map(|kind| Species {
-        name: kind.name.clone(),
-        material: material_id(scene, &kind.material),
-    });
-    (species.collect(), grains, Some(polyhedra))
+    (grains, Some(polyhedra))
 }
 
 fn placed(shapes: Vec<Polyhedron>, bodies: &[PlacedPolyhedron]) -> (Grains, Polyhedra) {
@@ -408,7 +425,7 @@ fn density(scene: &Scene, name: &str) -> f64 {
 }
 
 /// The container filled from below.
-fn fill(scene: &Scene, count: usize, kinds: &[SceneSpecies]) -> (Vec<Species>, Grains) {
+fn fill(scene: &Scene, count: usize, kinds: &[SceneSpecies]) -> Grains {
     let classes = size_classes(count, kinds);
     let places = places(scene, &classes);
     let class_of: Vec<usize> = places.iter().map(|place| place.class).collect();
@@ -419,14 +436,7 @@ fn fill(scene: &Scene, count: usize, kinds: &[SceneSpecies]) -> (Vec<Species>, G
         let density = density(scene, &kind.material);
         grains.push_sphere(place.position, kind.radius, density, label);
     }
-    let species = kinds
-        .iter()
-        .map(|kind| Species {
-            name: kind.name.clone(),
-            material: material_id(scene, &kind.material),
-        })
-        .collect();
-    (species, grains)
+    grains
 }
 
 /// Where a grain of a filling begins.

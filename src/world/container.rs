@@ -106,6 +106,20 @@ impl Container {
         self.walls.first().map_or(0.0, |wall| wall.motion.spin.z)
     }
 
+    /// Lets the walls move on for `time` [s] as they do now: for states that another program, or
+    /// another run, came to. A solver moves them step by step, to other last bits.
+    pub fn carry(&mut self, time: f64) {
+        self.angle += self.drum_speed() * time;
+        for wall in &mut self.walls {
+            let way = wall.motion.velocity * time;
+            match &mut wall.surface {
+                Surface::Plane { point, .. } => *point += way,
+                Surface::Tube { rim, .. } => *rim += way.y,
+                Surface::Cylinder { .. } => {}
+            }
+        }
+    }
+
     /// Turns all walls of a drum as one body at `speed` [rad/s] about z.
     pub fn set_drum_speed(&mut self, speed: f64) {
         for wall in &mut self.walls {

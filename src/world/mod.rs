@@ -21,7 +21,7 @@ mod voronoi;
 mod wetting;
 
 pub use crate::geometry::{Polyhedron, Rounded};
-pub use build::{build, build_packed, materials};
+pub use build::{build, build_packed, build_without_grains, materials};
 pub use contact::{Contact, Partner};
 pub use container::{Container, Shape, Surface, Wall, WallMotion};
 pub use grain_column::GrainColumn;

@@ -16,6 +16,7 @@ mod measure;
 mod paper;
 mod parameters;
 mod recorder;
+mod recording;
 #[cfg(feature = "headless")]
 mod reliability;
 mod run;

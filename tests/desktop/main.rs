@@ -8,6 +8,7 @@
 mod comparison;
 mod lesson;
 mod panels;
+mod played;
 mod polyhedra;
 mod recording;
 mod session;

@@ -154,3 +154,8 @@ fn checkpoints() {
 fn records() {
     fuzz("record", targets::RecordFiles::new());
 }
+
+#[test]
+fn recordings() {
+    fuzz("recording", targets::Recordings::new());
+}

@@ -2,8 +2,10 @@
 //! of the tests, and files that runs of small scenes leave.
 
 use super::{byte_mutator, mutator};
+use grainfall::measure::sample;
 use grainfall::parameters::Settings;
-use grainfall::runner::{compared_value, read_commands};
+use grainfall::recording::Recording;
+use grainfall::runner::{Job, compared_value, read_commands, run};
 use grainfall::scene::{Scene, SceneGrains, StoredCells, built_in};
 use grainfall::simulation::{
     BedStore, Checkpoint, Command, Estimate, Parameter, Preparation, Prepared, Run, RunRecord,
@@ -540,4 +542,74 @@ impl Target for RecordFiles {
         }
         true
     }
+}
+
+/// Files of recordings, one of them mutated.
+pub struct Recordings {
+    place: Place,
+    /// Name and bytes of each file of each folder.
+    folders: Vec<Vec<(PathBuf, Vec<u8>)>>,
+}
+
+impl Recordings {
+    pub fn new() -> Self {
+        let place = Place::new();
+        let mut scenes = small_scenes();
+        scenes.truncate(2);
+        let folder = |(index, mut scene): (usize, Scene)| {
+            let times = [("duration", "4ms"), ("output-interval", "2ms")];
+            scene.set_all(&times).expect("they can be set");
+            let out = place.path(&index.to_string());
+            let job = Job {
+                threads: 1,
+                beds: BedStore::none(),
+                ..Job::new("a recording", scene, &out)
+            };
+            run(&job, &mut (), &|| false).expect("it runs");
+            let names = [
+                "summary.json",
+                "series.csv",
+                "grains.pvd",
+                "contacts.pvd",
+                "shapes.vtu",
+                "grains/grains_000000.vtp",
+                "grains/grains_000001.vtp",
+                "contacts/contacts_000001.vtp",
+            ];
+            let files = names.iter().map(|name| out.join(name));
+            let read = |path: PathBuf| Some((path.clone(), fs::read(&path).ok()?));
+            files.filter_map(read).collect()
+        };
+        let folders = scenes.into_iter().enumerate().map(folder).collect();
+        Self { place, folders }
+    }
+}
+
+impl Target for Recordings {
+    fn take(&mut self, rng: &mut ChaCha8Rng) -> bool {
+        let index = rng.random_range(0..self.folders.len());
+        let (path, whole) = one_of(&self.folders[index], rng);
+        let mutated = match std::str::from_utf8(whole) {
+            Ok(text) if rng.random() => mutator::text(text, rng).into_bytes(),
+            _ => byte_mutator::bytes(whole, rng),
+        };
+        fs::write(path, mutated).expect("it can be written");
+        let accepted = is_shown(&self.place.path(&index.to_string()));
+        fs::write(path, whole).expect("it can be written");
+        accepted
+    }
+}
+
+/// Whether the recording in `folder` opens, and all of its states are shown.
+fn is_shown(folder: &Path) -> bool {
+    let Ok(recording) = Recording::open(folder) else {
+        return false;
+    };
+    let mut states = (0..recording.moments().len().min(4)).map(|index| recording.state(index));
+    states.all(|state| {
+        state.is_ok_and(|state| {
+            let _ = sample(&state.world);
+            true
+        })
+    })
 }

@@ -5,6 +5,7 @@
 //! where a step is too long a button that shortens it.
 
 use crate::measure::{Measure, Sample};
+use crate::recording::RecordingFacts;
 use crate::simulation::{Command, Half, Parameter, RunView, Simulation, Status};
 use crate::solver::{Fault, TimeStepAdvice};
 use crate::ui::playback::allows;
@@ -156,6 +157,8 @@ impl Badge {
         ui.label(pace(simulation));
         if *simulation.status() == Status::Running {
             ui.weak("State hash: pause to see it");
+        } else if simulation.recording().is_some() {
+            ui.weak("State hash: none, as the files hold 32 bits of each number");
         } else if let Some(world) = simulation.world() {
             let hash = self.hash.get_or_insert_with(|| world.hash());
             ui.label(format!("State hash at step {}:", world.clock.step));
@@ -166,7 +169,7 @@ impl Badge {
 
 /// The button that goes on with the largest stable step, where the present one is longer.
 fn stable_step_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let Some(command) = stable_step(simulation) else {
+    let Some(command) = stable_step(simulation).filter(|_| simulation.recording().is_none()) else {
         return;
     };
     let Command::Set { value, .. } = command else {
@@ -209,6 +212,9 @@ fn pace(simulation: &Simulation) -> String {
 /// All that is looked at, for the state shown of each run; nothing before there is one.
 pub fn checks(simulation: &Simulation) -> Vec<Check> {
     let mut checks = checks_of(simulation);
+    if let Some(facts) = simulation.recording() {
+        checks.insert(0, recording(facts, simulation.warnings()));
+    }
     if let Some(comparison) = simulation.comparison() {
         let right = checks_of(comparison.right).into_iter().map(|check| Check {
             name: format!("{}, right", check.name).into(),
@@ -237,6 +243,33 @@ fn checks_of(simulation: &RunView) -> Vec<Check> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// What is shown was computed before, by whom, and whether its files are as they were written.
+fn recording(facts: &RecordingFacts, warnings: &[String]) -> Check {
+    let by = if facts.is_imported {
+        "an import of another program's run"
+    } else {
+        "a run"
+    };
+    let found = warnings.first().map_or_else(
+        || "the files read so far are as they were written".to_owned(),
+        |first| number::capitalised(first),
+    );
+    Check {
+        name: "recording".into(),
+        level: if warnings.is_empty() {
+            Level::Good
+        } else {
+            Level::Doubtful
+        },
+        value: format!(
+            "of {by} by Grainfall {}, in {}. {found}",
+            facts.version,
+            facts.folder.display()
+        ),
+        remedy: "The ⚠ under the picture tells all of it. `grainfall verify` computes the run again and compares every file.",
+    }
 }
 
 fn fault(fault: &Fault) -> Check {

@@ -4,6 +4,7 @@
 //! In: the simulation. Out: requests to show a moment, to undo and to redo. Changes are marked
 //! above the line, avalanches below it.
 
+use crate::recording::RecordingFacts;
 use crate::simulation::{Changed, Command, Simulation};
 use crate::ui::playback::allows;
 use crate::ui::request::Request;
@@ -21,10 +22,49 @@ pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Req
         return;
     }
     ui.horizontal(|ui| {
-        undo_ui(ui, simulation, out);
-        line_ui(ui, simulation, out);
-        place_ui(ui, simulation, out);
+        if let Some(recording) = simulation.recording() {
+            run_anew_ui(ui, out);
+            line_ui(ui, simulation, out);
+            state_ui(ui, simulation, recording);
+        } else {
+            undo_ui(ui, simulation, out);
+            line_ui(ui, simulation, out);
+            place_ui(ui, simulation, out);
+        }
     });
+}
+
+/// The way from a recording to a run.
+fn run_anew_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
+    let button = ui.button("Run anew").on_hover_text(
+        "A recording shows what was computed. This starts its scene at time zero, with the values of the moment shown, as a run \
+         that can be changed",
+    );
+    if button.clicked() {
+        out.push(Request::RunAnew);
+    }
+}
+
+/// `state 12 of 51 · 1.20 of 5.00 s`.
+fn state_in_words(recording: &RecordingFacts, step: u64) -> String {
+    let (index, states) = (recording.index_at(step), recording.moments.len());
+    let time = |index: usize| {
+        recording
+            .moments
+            .get(index)
+            .map_or(0.0, |moment| moment.time)
+    };
+    let place = place_in_words(time(index), time(states.saturating_sub(1)));
+    format!("state {} of {states} · {place}", index + 1)
+}
+
+/// Which state of a recording is shown.
+fn state_ui(ui: &mut egui::Ui, simulation: &Simulation, recording: &RecordingFacts) {
+    let text = state_in_words(recording, simulation.step());
+    ui.label(text).on_hover_text(
+        "A recording shows the states that were written, each as it is, until the next is due; nothing is made up between \
+         them",
+    );
 }
 
 /// Undo and redo.
@@ -84,7 +124,11 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
     let shown = simulation.step();
     let enabled = end.step > 0 && allows(simulation.status(), &Command::Seek(0));
     let mut time = times.time_at(shown.min(end.step));
-    ui.spacing_mut().slider_width = (ui.available_width() - room_for_place(ui, end.time)).max(80.0);
+    let room = match simulation.recording() {
+        Some(recording) => width(ui, &state_in_words(recording, end.step)) + 24.0,
+        None => room_for_place(ui, end.time),
+    };
+    ui.spacing_mut().slider_width = (ui.available_width() - room).max(80.0);
     let slider = egui::Slider::new(&mut time, 0.0..=end.time.max(time_step)).show_value(false);
     let response = ui.add_enabled(enabled, slider);
     let value = (time * 1e6).round() / 1e6;
@@ -96,9 +140,12 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         }
     }
     marks_ui(ui, response.rect, simulation, end.time);
-    response.on_hover_text(
-        "Drag to see any moment of the run. Change something there to begin another run from it.",
-    );
+    response.on_hover_text(match simulation.recording() {
+        Some(_) => "Drag to see any state of the recording.",
+        None => {
+            "Drag to see any moment of the run. Change something there to begin another run from it."
+        }
+    });
 }
 
 /// Changes above the line, avalanches below it.
@@ -143,15 +190,17 @@ fn place_in_words(time: f64, end: f64) -> String {
 /// Width of the text and the button right of the line. It does not depend on the moment shown, so
 /// the line does not jump.
 fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let width = |text: String| {
-        let words = (ui.painter()).layout_no_wrap(text, font.clone(), egui::Color32::WHITE);
-        words.size().x
-    };
     let spacing = ui.spacing();
-    let places = [end, end.min(0.1234)].map(|time| width(place_in_words(time, end)));
-    let texts = places[0].max(places[1]) + width(TO_THE_NEWEST.to_owned());
+    let places = [end, end.min(0.1234)].map(|time| width(ui, &place_in_words(time, end)));
+    let texts = places[0].max(places[1]) + width(ui, TO_THE_NEWEST);
     texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
+}
+
+/// Width of `text`.
+fn width(ui: &egui::Ui, text: &str) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let words = (ui.painter()).layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
+    words.size().x
 }
 
 /// The moment shown out of the whole run, and the way back to the newest.

@@ -3,7 +3,7 @@
 
 use crate::simulation::{Command, Simulation, Status};
 use crate::ui::bars::time_slider::timeline_ui;
-use crate::ui::playback::{SPEEDS, allows, go_to, play_or_pause, step_back};
+use crate::ui::playback::{SPEEDS, allows, go_to, play_or_pause, step_back, step_on};
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::field::Field;
@@ -60,28 +60,22 @@ fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>
         _ if simulation.looks_back() => ("▶", "Play", "See what followed (Space)"),
         _ => ("▶", "Play", "Play (Space)"),
     };
+    let [back_hint, on_hint, start_hint] = match simulation.recording() {
+        Some(_) => [
+            "The state before (, or ←)",
+            "The next state (. or →)",
+            "Back to the first state (R)",
+        ],
+        None => [
+            "The time step before (, or ←)",
+            "One time step (. or →)",
+            "Start afresh with the settled bed and the present parameters; the run is kept (R)",
+        ],
+    };
     button(ui, face, name, hint, play_or_pause(status));
-    button(
-        ui,
-        "⏴",
-        "Step back",
-        "The time step before (, or ←)",
-        step_back(simulation),
-    );
-    button(
-        ui,
-        "⏭",
-        "Single step",
-        "One time step (. or →)",
-        allowed(Command::Step(1)),
-    );
-    button(
-        ui,
-        "⏮",
-        "Reset",
-        "Start afresh with the settled bed and the present parameters; the run is kept (R)",
-        allowed(Command::Reset),
-    );
+    button(ui, "⏴", "Step back", back_hint, step_back(simulation));
+    button(ui, "⏭", "Single step", on_hint, step_on(simulation));
+    button(ui, "⏮", "Reset", start_hint, allowed(Command::Reset));
 }
 
 /// Why a button does nothing now.

@@ -89,10 +89,20 @@ impl Panel for Parameters {
             return;
         }
         let detail = Detail::ui(ui);
-        ui.weak("These act at once, also while it runs.");
-        for group in Group::ALL {
-            group_ui(ui, group, detail, simulation, out);
+        if simulation.recording().is_some() {
+            ui.weak("As they were in the recording.");
+            if ui.button("Run anew to change them").clicked() {
+                out.push(Request::RunAnew);
+            }
+        } else {
+            ui.weak("These act at once, also while it runs.");
         }
+        let is_live = simulation.recording().is_none();
+        ui.add_enabled_ui(is_live, |ui| {
+            for group in Group::ALL {
+                group_ui(ui, group, detail, simulation, out);
+            }
+        });
         ui.add_space(4.0);
         self.footer_ui(ui, detail, simulation, out);
     }
@@ -114,7 +124,7 @@ impl Parameters {
         let of_start = self.start.changed(simulation);
         let button = ui
             .add_enabled(
-                away().count() + of_start > 0,
+                away().count() + of_start > 0 && simulation.recording().is_none(),
                 egui::Button::new("Reset all"),
             )
             .on_hover_text("Every value back to the scene's; some of them act at the next start")

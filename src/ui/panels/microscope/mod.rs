@@ -29,7 +29,7 @@ use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 use egui_plot::{HoverPosition, Line, Points, VLine};
 use grain_rows::numbers;
 use law_curves::{curves, dot};
-use term_rows::term_rows;
+use term_rows::{recorded_rows, term_rows};
 
 /// Points kept of the dot's path.
 const LONGEST_WAY: usize = 400;
@@ -100,6 +100,11 @@ impl Panel for Microscope {
             }
             return;
         };
+        if simulation.recording().is_some() {
+            table_ui(ui, recorded_rows(world, contact).into_iter());
+            ui.weak("A recording holds the force of a contact as a whole, where it holds forces, and not its terms.");
+            return;
+        }
         let terms = force_terms(world, contact);
         table_ui(ui, term_rows(contact, &terms).into_iter());
         self.follow(contact, &terms, run.generation());
@@ -206,13 +211,17 @@ pub fn name(world: &World, contact: &Contact, grain: u32) -> String {
         Partner::Grain(j) => format!("Grain {j}"),
         Partner::Wall(w) => world.container.walls[w as usize].name.clone(),
     };
-    let force = number::with_prefix(contact.force.length(), "N");
+    // Another program's files may hold none.
+    let force = match contact.force.length() {
+        force if force.is_nan() => String::new(),
+        force => format!(" · {}", number::with_prefix(force, "N")),
+    };
     let kind = match (contact.touching, contact.bridge.is_some()) {
         (true, false) => "touches",
         (true, true) => "touches, wet",
         (false, _) => "bridge",
     };
-    format!("{} · {kind} · {force}", number::capitalised(&side))
+    format!("{} · {kind}{force}", number::capitalised(&side))
 }
 
 impl Microscope {

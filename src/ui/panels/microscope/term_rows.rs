@@ -5,7 +5,7 @@
 use crate::solver::ForceTerms;
 use crate::ui::widgets::value_table::TableRow;
 use crate::ui::words::number;
-use crate::world::Contact;
+use crate::world::{Contact, Partner, World};
 use glam::DVec3;
 
 /// How the two sides of `contact` stand and move, every term of its force, and the sum.
@@ -29,6 +29,62 @@ pub(super) fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<TableRow
     rows
 }
 
+/// What a recording holds of `contact`: how its two sides stand, and the parts of the whole force.
+pub(super) fn recorded_rows(world: &World, contact: &Contact) -> Vec<TableRow> {
+    let (grains, i) = (&world.grains, contact.grain as usize);
+    let mut rows = Vec::new();
+    if contact.force.is_finite() {
+        rows.push(TableRow::of(
+            "Force",
+            newtons(contact.force.length()),
+            "The whole force, as the solver applied it",
+        ));
+    }
+    if world.polyhedra.is_some() {
+        return rows;
+    }
+    let (gap, towards) = match contact.partner {
+        Partner::Grain(j) => {
+            let (j, way) = (j as usize, grains.position[j as usize] - grains.position[i]);
+            let gap = way.length() - grains.radius[i] - grains.radius[j];
+            (gap, way.normalize_or_zero())
+        }
+        Partner::Wall(w) => {
+            let surface = &world.container.walls[w as usize].surface;
+            let (distance, towards) = surface.distance(grains.position[i]);
+            (distance - grains.radius[i], towards)
+        }
+    };
+    rows.push(place_row(-gap));
+    if contact.force.is_finite() {
+        let along = contact.force.dot(towards);
+        let across = contact.force - along * towards;
+        rows.extend([
+            TableRow::of(
+                "Normal",
+                newtons(-along),
+                "Positive where it pushes apart; the bridge's part too",
+            ),
+            TableRow::of("Tangential", newtons(across.length()), "Across the normal"),
+        ]);
+    }
+    rows
+}
+
+/// How deep two sides overlap, or how far they are apart [m].
+fn place_row(overlap: f64) -> TableRow {
+    let (place, length) = if overlap > 0.0 {
+        ("Overlap δ", overlap)
+    } else {
+        ("Gap D", -overlap)
+    };
+    TableRow::of(
+        place,
+        number::with_prefix(length, "m"),
+        "At the deepest place where the two touch",
+    )
+}
+
 fn newtons(force: f64) -> String {
     number::with_prefix(force, "N")
 }
@@ -39,17 +95,9 @@ fn deepest(terms: &[ForceTerms]) -> f64 {
 
 fn motion_rows(terms: &[ForceTerms]) -> Vec<TableRow> {
     let (approach, slip) = (terms.first()).map_or((0.0, 0.0), |t| (t.approach, t.slip.length()));
-    let (place, length) = match deepest(terms) {
-        overlap if overlap > 0.0 => ("Overlap δ", overlap),
-        gap => ("Gap D", -gap),
-    };
     let speed = |v: f64| number::with_prefix(v, "m/s");
     let mut rows = vec![
-        TableRow::of(
-            place,
-            number::with_prefix(length, "m"),
-            "At the deepest place where the two touch",
-        ),
+        place_row(deepest(terms)),
         TableRow::of(
             "Approach",
             speed(approach),

@@ -1,0 +1,241 @@
+//! A recording that is played: which of its states is shown, and up to when.
+//!
+//! In: a [`Recording`], and steps to go to. Out: its states as they are, none between two of them:
+//! until the next is due, the last one stays. A state is read when it is shown; of those shown
+//! before, as many are kept as fit into the memory that was granted.
+
+use super::clock::{LabClock, Mode};
+use super::lab_command::LabCommand;
+use super::update::{RunNews, RunsNews};
+use crate::recording::Recording;
+use crate::run::{Command, CommandError, Past, Sampling};
+use crate::solver::Profile;
+use crate::world::{self, World};
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
+
+/// Most states kept, however small they are.
+const MOST_KEPT: usize = 256;
+
+/// A recording that is played.
+pub struct Playback {
+    recording: Recording,
+    /// The step that it has come to: that of a state, or one between two.
+    reached: u64,
+    /// The state shown and its index.
+    shown: (usize, Arc<World>),
+    /// States read lately, the last one at the end.
+    kept: VecDeque<(usize, Arc<World>)>,
+    /// Memory for them [bytes].
+    memory: usize,
+    /// What people should know and were not told yet.
+    notes: Vec<String>,
+    /// States that cannot be read.
+    damaged: BTreeSet<usize>,
+    /// States of whose files something was told.
+    noted: BTreeSet<usize>,
+}
+
+impl Playback {
+    /// `recording` at its first state that can be read, keeping states in `memory` bytes.
+    ///
+    /// # Errors
+    /// Why none of its states can be read.
+    pub fn new(recording: Recording, memory: usize) -> Result<Self, String> {
+        let mut notes = recording.notes().to_vec();
+        let mut damaged = BTreeSet::new();
+        for (index, moment) in recording.moments().iter().enumerate() {
+            match recording.state(index) {
+                Ok(state) => {
+                    notes.extend(state.notes);
+                    return Ok(Self {
+                        reached: moment.step,
+                        shown: (index, Arc::new(state.world)),
+                        kept: VecDeque::new(),
+                        memory,
+                        notes,
+                        damaged,
+                        noted: [index].into(),
+                        recording,
+                    });
+                }
+                Err(error) => notes.push(error.to_string()),
+            }
+            damaged.insert(index);
+        }
+        Err(notes.join("; "))
+    }
+
+    /// What people should know since this was last called, in sentences.
+    pub fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// The step that it has come to, and how long a step is there.
+    pub fn now(&self) -> world::Clock {
+        let mut now = world::Clock::new(self.shown.1.clock.time_step);
+        now.step = self.reached;
+        now
+    }
+
+    /// Steps of its last state.
+    fn end(&self) -> u64 {
+        self.recording.branch().end.step
+    }
+
+    /// Whether it is to go further.
+    pub fn has_work(&self, clock: &LabClock) -> bool {
+        self.reached < self.end() && clock.goal(None) > self.reached
+    }
+
+    /// Goes on to where `clock` lets it: at any speed as fast as the machine can, state by state.
+    /// At its end it holds.
+    pub fn advance(&mut self, clock: &mut LabClock) {
+        let goal = clock.goal(None);
+        let next = self.recording.index_at(self.reached) + 1;
+        let next = self.recording.moments().get(next).map(|next| next.step);
+        self.reached = match next {
+            Some(next) if goal == u64::MAX => next,
+            _ => goal.min(self.end()),
+        };
+        self.show(self.recording.index_at(self.reached));
+        if self.reached >= self.end() {
+            clock.stop();
+        }
+    }
+
+    /// Carries out what `command` asks for and holds or plays on by `clock`.
+    ///
+    /// # Errors
+    /// When it would change something, or compute.
+    pub fn take(&mut self, command: &LabCommand, clock: &mut LabClock) -> Result<(), CommandError> {
+        match command {
+            LabCommand::OpenChange | LabCommand::CloseChange | LabCommand::Threads(_) => {}
+            LabCommand::Hold(step) => clock.hold_at(*step),
+            LabCommand::All(command) => match command {
+                Command::Play => {
+                    self.begin_again();
+                    clock.set_mode(Mode::Running);
+                }
+                Command::Pause => clock.set_mode(Mode::Paused),
+                Command::Speed(speed) => clock.set_speed(*speed),
+                Command::Step(steps) => {
+                    self.step_on(*steps);
+                    clock.set_mode(Mode::Paused);
+                }
+                Command::Seek(step) => {
+                    self.seek(*step);
+                    clock.set_mode(Mode::Paused);
+                }
+                Command::Reset => {
+                    self.seek(0);
+                    clock.set_mode(Mode::Paused);
+                }
+                Command::Undo
+                | Command::Redo
+                | Command::Return(_)
+                | Command::Forget(_)
+                | Command::Set { .. } => return Err(CommandError::Recorded),
+            },
+            LabCommand::SetIn { .. }
+            | LabCommand::Compare { .. }
+            | LabCommand::EndComparison { .. }
+            | LabCommand::Save { .. } => return Err(CommandError::Recorded),
+        }
+        Ok(())
+    }
+
+    /// Goes back to the start, where it stands at its end.
+    fn begin_again(&mut self) {
+        if self.reached >= self.end() {
+            self.seek(0);
+        }
+    }
+
+    /// Shows the state nearest to `step`.
+    fn seek(&mut self, step: u64) {
+        let before = self.recording.index_at(step);
+        let steps = |index: usize| self.recording.moments().get(index).map(|m| m.step);
+        let after = steps(before + 1).is_some_and(|after| {
+            let own = steps(before).unwrap_or(0);
+            after.saturating_sub(step) < step.saturating_sub(own)
+        });
+        self.go_to(before + usize::from(after));
+    }
+
+    /// Shows the state after the one shown, or one that is `steps` later where that is further.
+    fn step_on(&mut self, steps: u64) {
+        let later = self.recording.index_at(self.reached.saturating_add(steps));
+        let last = self.recording.moments().len() - 1;
+        let next = self.recording.index_at(self.reached) + 1;
+        self.go_to(later.max(next).min(last));
+    }
+
+    /// What is shown.
+    pub fn news(&self) -> RunsNews {
+        let branch = self.recording.branch();
+        RunsNews {
+            comparison: None,
+            runs: vec![RunNews {
+                world: self.shown.1.clone(),
+                reached: self.reached,
+                parameters: self.recording.parameters().clone(),
+                branch: branch.clone(),
+                latest: None,
+                sampling: Sampling::default(),
+                past: Past {
+                    number: branch.number,
+                    end: branch.end,
+                    ..Past::default()
+                },
+                fault: None,
+                profile: Profile::default(),
+            }],
+        }
+    }
+
+    fn go_to(&mut self, index: usize) {
+        self.reached = self.recording.moments()[index].step;
+        self.show(index);
+    }
+
+    /// Shows the state of this `index`; where it cannot be read, that is told once and the state
+    /// shown stays.
+    fn show(&mut self, index: usize) {
+        if index == self.shown.0 || self.damaged.contains(&index) {
+            return;
+        }
+        let kept = self.kept.iter().find(|(kept, _)| *kept == index);
+        let state = match kept {
+            Some((_, world)) => world.clone(),
+            None => match self.recording.state(index) {
+                Ok(state) => {
+                    if self.noted.insert(index) {
+                        self.notes.extend(state.notes);
+                    }
+                    Arc::new(state.world)
+                }
+                Err(error) => {
+                    self.damaged.insert(index);
+                    let note = format!("{error}. The state shown before it stays in the picture");
+                    self.notes.push(note);
+                    return;
+                }
+            },
+        };
+        let before = std::mem::replace(&mut self.shown, (index, state));
+        self.keep(before);
+    }
+
+    /// Keeps a state that is shown no longer, in the place of those kept longest.
+    fn keep(&mut self, state: (usize, Arc<World>)) {
+        let memory = state.1.memory().max(1);
+        let most = (self.memory / memory).min(MOST_KEPT);
+        while !self.kept.is_empty() && self.kept.len() >= most {
+            self.kept.pop_front();
+        }
+        if most > 0 && !self.kept.iter().any(|(kept, _)| *kept == state.0) {
+            self.kept.push_back(state);
+        }
+    }
+}

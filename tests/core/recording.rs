@@ -1,0 +1,382 @@
+//! Claims about recordings: a run's folder shows the states that the run came to, and nothing that
+//! it does not hold.
+
+use crate::run::{friction, prepared, shared_beds};
+use grainfall::engines::{ImportSource, import};
+use grainfall::measure::GrainQuantity;
+use grainfall::recording::Recording;
+use grainfall::runner::{Job, run};
+use grainfall::scene::Scene;
+use grainfall::simulation::{
+    Command, DriverKind, Lab, LabCommand, Options, Parameter, Script, ScriptedCommand, Status,
+};
+use grainfall::world::World;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Half of the last of the 24 bits of a number in a file, relative to it.
+const PRECISION: f64 = 6e-8;
+/// Volume and moments of a solid that was a whole cell, relative to the cell's: corners that lie
+/// close together were made one in its core.
+const OF_SOLIDS: f64 = 0.01;
+
+fn scene(name: &str, settings: &[(&str, &str)]) -> Scene {
+    let mut scene = Scene::open(name).unwrap();
+    let steady = [("duration", "40ms"), ("output-interval", "10ms")];
+    for (key, value) in steady.iter().chain(settings) {
+        scene.set(key, value).unwrap();
+    }
+    scene
+}
+
+fn drum() -> Scene {
+    scene("small-drum", &[("count", "60")])
+}
+
+fn column() -> Scene {
+    scene("small-column", &[("radius", "8mm"), ("height", "8mm")])
+}
+
+/// The drum's speed is another from a step on.
+fn faster() -> Vec<ScriptedCommand> {
+    vec![ScriptedCommand {
+        step: Some(300),
+        time: None,
+        command: Command::Set {
+            parameter: Parameter::DrumSpeed,
+            value: 0.9.into(),
+        },
+    }]
+}
+
+/// The folder of a run of `scene` with this `script`.
+fn recorded(scene: &Scene, script: Vec<ScriptedCommand>) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let job = Job {
+        threads: 1,
+        beds: shared_beds(),
+        script,
+        ..Job::new("a-run", scene.clone(), &out)
+    };
+    run(&job, &mut (), &|| false).unwrap();
+    (folder, out)
+}
+
+/// The lab that plays the recording in `folder`.
+fn playing(folder: &Path) -> Lab {
+    let options = Options {
+        driver: DriverKind::Inline,
+        autoplay: false,
+        ..Options::window()
+    };
+    let mut lab = Lab::play_back(Recording::open(folder).unwrap(), options);
+    lab.tick(Duration::ZERO);
+    lab
+}
+
+fn send(lab: &mut Lab, command: impl Into<LabCommand>) {
+    lab.send(command);
+    lab.tick(Duration::ZERO);
+    assert!(lab.has_answered());
+}
+
+fn time(lab: &Lab) -> f64 {
+    lab.world().unwrap().time()
+}
+
+/// Whether each of the numbers is that of the run to the files' precision.
+fn are_same(recorded: &[glam::DVec3], own: &[glam::DVec3]) {
+    assert_eq!(recorded.len(), own.len());
+    for (a, b) in recorded.iter().zip(own) {
+        for (a, b) in a.to_array().into_iter().zip(b.to_array()) {
+            assert!((a - b).abs() <= PRECISION * b.abs() + 1e-40, "{a:e} {b:e}");
+        }
+    }
+}
+
+fn are_same_states(recorded: &World, own: &World) {
+    let (grains, own_grains) = (&recorded.grains, &own.grains);
+    are_same(&grains.position, &own_grains.position);
+    are_same(&grains.velocity, &own_grains.velocity);
+    are_same(&grains.spin, &own_grains.spin);
+    are_same(&grains.force, &own_grains.force);
+    assert_eq!(grains.species, own_grains.species);
+    let precision = if own.polyhedra.is_some() {
+        OF_SOLIDS
+    } else {
+        3.0 * PRECISION
+    };
+    for (a, b) in grains.mass.iter().zip(&own_grains.mass) {
+        assert!((a / b - 1.0).abs() < precision, "{a} {b}");
+    }
+    assert_eq!(recorded.clock, own.clock);
+    assert_eq!(recorded.materials, own.materials);
+    let turned = recorded.container.angle - own.container.angle;
+    assert!(turned.abs() < 1e-12, "{turned}");
+    let pairs = |world: &World| -> Vec<_> {
+        let contacts = world.contacts.iter();
+        contacts.map(|c| (c.grain, c.partner, c.touching)).collect()
+    };
+    assert_eq!(pairs(recorded), pairs(own));
+    // At time zero the drum begins to turn: the files tell the terms by which it does, the bed still
+    // has the forces by which it came to rest.
+    let moves = own.time() > 0.0;
+    for (a, b) in recorded
+        .contacts
+        .iter()
+        .zip(&own.contacts)
+        .filter(|_| moves)
+    {
+        // The parts of a force are rounded one by one, and so are the terms that they are sums of.
+        assert!((a.force - b.force).length() <= 1e-6 * b.force.length() + 1e-12);
+    }
+}
+
+#[test]
+fn every_state_is_that_of_the_run() {
+    let wet = scene("water-drum", &[("count", "60"), ("duration", "20ms")]);
+    for (scene, script) in [
+        (drum(), faster()),
+        (wet, Vec::new()),
+        (column(), Vec::new()),
+    ] {
+        let (_folder, out) = recorded(&scene, script.clone());
+        let recording = Recording::open(&out).unwrap();
+        assert_eq!(recording.notes(), [""; 0]);
+        let (mut run, _) = prepared(&scene, 1, shared_beds());
+        let script = Script::new(&script, &run.world().clock).unwrap();
+        run.schedule(script).unwrap();
+        let moments = recording.moments();
+        assert!(moments.len() >= 3, "{moments:?}");
+        for (index, moment) in moments.iter().enumerate() {
+            run.advance_to(moment.step).unwrap();
+            let state = recording.state(index).unwrap();
+            assert_eq!(state.notes, [""; 0]);
+            are_same_states(&state.world, run.world());
+        }
+        assert_eq!(recording.branch().series.steps(), run.series().steps());
+        assert_eq!(
+            recording.branch().series.last().unwrap().time,
+            run.series().last().unwrap().time
+        );
+        assert_eq!(recording.branch().end.step, run.world().clock.step);
+        assert_eq!(recording.branch().history.commands(), run.commands());
+    }
+}
+
+#[test]
+fn polyhedra_look_as_they_did_in_the_run() {
+    let scene = column();
+    let (_folder, out) = recorded(&scene, Vec::new());
+    let recording = Recording::open(&out.join("grains.pvd")).unwrap();
+    let shown = recording.state(2).unwrap().world;
+    let (run, _) = prepared(&scene, 1, shared_beds());
+    let (own, shown) = (
+        run.world().polyhedra.as_ref().unwrap(),
+        shown.polyhedra.unwrap(),
+    );
+    assert_eq!(own.shapes.len(), shown.shapes.len());
+    for (own, shown) in own.shapes.iter().zip(shown.shapes.iter()) {
+        assert_eq!((&own.faces, &own.edges), (&shown.faces, &shown.edges));
+        let size = own.bounding_radius();
+        assert!((own.volume / shown.volume - 1.0).abs() < OF_SOLIDS);
+        assert!((own.gyration / shown.gyration - 1.0).abs().max_element() < OF_SOLIDS);
+        for (a, b) in own.vertices.iter().zip(&shown.vertices) {
+            assert!(a.distance(*b) < 1e-6 * size, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_recording_plays_holds_and_pauses_at_its_end() {
+    let (_folder, out) = recorded(&drum(), Vec::new());
+    let mut lab = playing(&out.join("summary.json"));
+    assert_eq!((lab.status(), time(&lab)), (&Status::Paused, 0.0));
+    // Until a state is due, the one before it stays.
+    send(&mut lab, Command::Play);
+    lab.tick(Duration::from_millis(9));
+    assert_eq!(time(&lab), 0.0);
+    lab.tick(Duration::from_millis(2));
+    assert!((time(&lab) - 0.01).abs() < 1e-4, "{}", time(&lab));
+    assert_eq!(lab.status(), &Status::Running);
+    for _ in 0..10 {
+        lab.tick(Duration::from_millis(10));
+    }
+    assert_eq!(lab.status(), &Status::Paused);
+    assert_eq!(lab.step(), lab.past().end.step);
+    assert!(!lab.looks_back() && !lab.is_unsaved());
+    // Again from the start, and one by one.
+    send(&mut lab, Command::Play);
+    assert_eq!(time(&lab), 0.0);
+    send(&mut lab, Command::Step(1));
+    let moments = lab.recording().unwrap().moments.clone();
+    assert_eq!(
+        (lab.step(), lab.status()),
+        (moments[1].step, &Status::Paused)
+    );
+    let nearly_third = moments[2].step - 1;
+    send(&mut lab, Command::Seek(nearly_third));
+    assert_eq!(lab.step(), moments[2].step);
+    // As fast as it can, state by state.
+    send(&mut lab, Command::Reset);
+    send(&mut lab, Command::Speed(f64::INFINITY));
+    send(&mut lab, Command::Play);
+    lab.tick(Duration::from_millis(1));
+    assert_eq!(lab.step(), lab.past().end.step);
+    assert_eq!(lab.warnings(), [""; 0]);
+}
+
+#[test]
+fn what_takes_a_run_is_refused_with_the_way_out() {
+    let (_folder, out) = recorded(&drum(), Vec::new());
+    let mut lab = playing(&out);
+    let before = lab.world().unwrap().clone();
+    send(&mut lab, friction_command());
+    send(&mut lab, Command::Undo);
+    let path = out.join("session.grainfall");
+    let look = String::new();
+    send(
+        &mut lab,
+        LabCommand::Save {
+            path: path.clone(),
+            look,
+        },
+    );
+    assert_eq!(lab.warnings().len(), 3, "{:?}", lab.warnings());
+    assert!(lab.warnings().iter().all(|text| text.contains("Run anew")));
+    assert!(!path.exists() && !lab.is_saving() && !lab.can_compare());
+    assert!(Arc::ptr_eq(lab.world().unwrap(), &before));
+    let from = lab.provenance().unwrap().to_string();
+    assert!(from.contains("out of the files of a run"), "{from}");
+}
+
+fn friction_command() -> Command {
+    friction(0.1)
+}
+
+#[test]
+fn damaged_and_changed_files_are_named() {
+    let (_folder, out) = recorded(&drum(), Vec::new());
+    let frame = |index: usize| out.join(format!("grains/grains_{index:06}.vtp"));
+    let good = fs::read(frame(1)).unwrap();
+    fs::write(frame(1), &good[..good.len() / 2]).unwrap();
+    let text = fs::read_to_string(frame(2)).unwrap();
+    fs::write(frame(2), text.replace("Grainfall", "grainfall")).unwrap();
+    fs::remove_file(frame(3)).unwrap();
+    let mut lab = playing(&out);
+    let moments = lab.recording().unwrap().moments.clone();
+    send(&mut lab, Command::Step(1));
+    assert_eq!(lab.step(), 0, "the state before it stays");
+    send(&mut lab, Command::Step(1));
+    assert_eq!(lab.step(), moments[2].step);
+    send(&mut lab, Command::Seek(moments[3].step));
+    let said = lab.warnings().to_vec();
+    let [damaged, changed, missing] = &said[..] else {
+        panic!("{said:?}")
+    };
+    assert!(
+        damaged.contains("grains_000001.vtp: is no XML"),
+        "{damaged}"
+    );
+    assert!(
+        changed.contains("grains_000002.vtp is not as it was written"),
+        "{changed}"
+    );
+    assert!(
+        missing.contains("grains_000003.vtp: cannot be read"),
+        "{missing}"
+    );
+    // Each is told once.
+    for moment in moments.iter().rev() {
+        send(&mut lab, Command::Seek(moment.step));
+    }
+    assert_eq!(lab.warnings().len(), 3, "{:?}", lab.warnings());
+}
+
+#[test]
+fn folders_that_hold_no_states_are_refused_with_the_reason() {
+    let (folder, out) = recorded(&drum(), Vec::new());
+    let refused = |path: &Path| match Recording::open(path) {
+        Ok(_) => panic!("it opens"),
+        Err(error) => error.to_string(),
+    };
+    assert!(refused(folder.path()).contains("holds no summary.json"));
+    let list = fs::read_to_string(out.join("grains.pvd")).unwrap();
+    let with_list = |text: &str| {
+        fs::write(out.join("grains.pvd"), text).unwrap();
+        refused(&out)
+    };
+    let elsewhere = with_list(&list.replace("grains/grains_000000.vtp", "../../etc/passwd"));
+    assert!(
+        elsewhere.contains("is no name of a run's file"),
+        "{elsewhere}"
+    );
+    let twice = with_list(&list.replace("timestep=\"0.0\"", "timestep=\"9.0\""));
+    assert!(twice.contains("entry 2 is not later"), "{twice}");
+    assert!(with_list("<VTKFile/>").contains("lists no states"));
+    fs::remove_file(out.join("grains.pvd")).unwrap();
+    assert!(refused(&out).contains("wrote no states"));
+    fs::write(out.join("summary.json"), "{}").unwrap();
+    assert!(refused(&out).contains("cannot be played"));
+    assert!(Recording::is_at(out.to_str().unwrap()) && !Recording::is_at("small-drum"));
+}
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_are_not_followed() {
+    let (folder, out) = recorded(&drum(), Vec::new());
+    let frame = out.join("grains/grains_000001.vtp");
+    let elsewhere = folder.path().join("elsewhere.vtp");
+    fs::rename(&frame, &elsewhere).unwrap();
+    std::os::unix::fs::symlink(&elsewhere, &frame).unwrap();
+    let error = Recording::open(&out).unwrap().state(1).err().unwrap();
+    assert!(error.to_string().contains("is a link"), "{error}");
+}
+
+#[test]
+fn an_import_plays_without_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = drum();
+    let dump = folder.path().join("a.dump");
+    fs::write(&dump, dump_of(&scene)).unwrap();
+    let out = folder.path().join("imported");
+    let source = ImportSource::of_scene("drum", scene, Vec::new());
+    import(&[dump], &source, &out, false).unwrap();
+    let mut lab = playing(&out);
+    assert!(lab.recording().unwrap().is_imported);
+    assert_eq!(lab.world().unwrap().grains.len(), 60);
+    let world = lab.world().unwrap().clone();
+    assert!(!world.contacts.is_empty() && world.contacts[0].force.is_nan());
+    assert!(GrainQuantity::Speed.applies_to(&world));
+    assert!(!GrainQuantity::Pressure.applies_to(&world));
+    send(&mut lab, Command::Step(1));
+    assert_eq!(lab.step(), 200);
+    assert!(lab.sample().is_some());
+}
+
+/// A dump of two instants of a run of `scene`, as LIGGGHTS writes it.
+fn dump_of(scene: &Scene) -> String {
+    let (mut run, _) = prepared(scene, 1, shared_beds());
+    let mut text = String::new();
+    for step in [0, 200] {
+        run.advance_to(step).unwrap();
+        let grains = &run.world().grains;
+        text += &format!(
+            "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{}\n",
+            grains.len()
+        );
+        text += "ITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\n\
+                 ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius\n";
+        for i in 0..grains.len() {
+            let vectors = [grains.position[i], grains.velocity[i], grains.spin[i]];
+            let [x, v, w] = vectors.map(|v| format!("{:e} {:e} {:e}", v.x, v.y, v.z));
+            let kind = grains.species[i].0 + 1;
+            text += &format!("{} {kind} {x} {v} {w} {:e}\n", i + 1, grains.radius[i]);
+        }
+    }
+    text
+}
