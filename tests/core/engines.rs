@@ -2,7 +2,7 @@
 //! program is installed, its run beside ours.
 
 mod beside;
-mod import;
+pub mod import;
 mod scene_text;
 
 use glam::DVec3;

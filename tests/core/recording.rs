@@ -1,6 +1,7 @@
 //! Claims about recordings: a run's folder shows the states that the run came to, and nothing that
 //! it does not hold.
 
+use crate::engines::import::dump;
 use crate::run::{friction, prepared, shared_beds};
 use grainfall::engines::{ImportSource, import};
 use grainfall::measure::GrainQuantity;
@@ -358,25 +359,10 @@ fn an_import_plays_without_forces() {
     assert!(lab.sample().is_some());
 }
 
-/// A dump of two instants of a run of `scene`, as LIGGGHTS writes it.
+/// A dump of two instants of a run of `scene`.
 fn dump_of(scene: &Scene) -> String {
     let (mut run, _) = prepared(scene, 1, shared_beds());
-    let mut text = String::new();
-    for step in [0, 200] {
-        run.advance_to(step).unwrap();
-        let grains = &run.world().grains;
-        text += &format!(
-            "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{}\n",
-            grains.len()
-        );
-        text += "ITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\n\
-                 ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius\n";
-        for i in 0..grains.len() {
-            let vectors = [grains.position[i], grains.velocity[i], grains.spin[i]];
-            let [x, v, w] = vectors.map(|v| format!("{:e} {:e} {:e}", v.x, v.y, v.z));
-            let kind = grains.species[i].0 + 1;
-            text += &format!("{} {kind} {x} {v} {w} {:e}\n", i + 1, grains.radius[i]);
-        }
-    }
-    text
+    let first = dump(run.world());
+    run.advance_to(200).unwrap();
+    first + &dump(run.world())
 }

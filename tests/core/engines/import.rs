@@ -15,7 +15,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A dump of `world` as LIGGGHTS writes it, at its step.
-fn dump(world: &World) -> String {
+pub fn dump(world: &World) -> String {
     let grains = &world.grains;
     let mut text = format!(
         "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\n",
