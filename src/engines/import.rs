@@ -17,8 +17,8 @@ use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subje
 use crate::run::{Run, Sampling, Script, ScriptedCommand, StampedCommand};
 use crate::scene::{Scene, SceneGrain, SceneGrains, SceneShape};
 use crate::solver::advise;
-use crate::world::{SpeciesId, World, build};
-use glam::DQuat;
+use crate::world::{SpeciesId, Wall, World, build};
+use glam::{DQuat, DVec3};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -340,11 +340,34 @@ pub fn scene_from(scene: &Scene, world: &World) -> Scene {
             shape: SceneShape::Sphere,
             orientation: DQuat::IDENTITY,
             material: world.materials.get(species.material).name.clone(),
-            film: None,
+            film: world.wetting().map(|_| grains.film[i]),
         }
     };
     Scene {
         grains: SceneGrains::List((0..grains.len()).map(listed).collect()),
         ..scene.clone()
     }
+}
+
+/// The same, where that is a scene that can be run.
+///
+/// # Errors
+/// In words, why it is none.
+pub fn sound_scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
+    if world.polyhedra.is_some() {
+        return Err(
+            "A run goes on from a state of spheres alone: run this scene from its start".into(),
+        );
+    }
+    let moves = |wall: &Wall| wall.motion.velocity != DVec3::ZERO;
+    if world.time() > 0.0 && world.container.walls.iter().any(moves) {
+        return Err(
+            "Walls have moved since the start, and a scene begins with them where they were: run this scene from its start"
+                .into(),
+        );
+    }
+    let mut scene = scene_from(scene, world);
+    scene.title = format!("{}, from t = {:.3} s", scene.title, world.time());
+    scene.check().map_err(|error| error.to_string())?;
+    Ok(scene)
 }

@@ -46,6 +46,8 @@ pub use atoms_file::{DomainBox, write_atoms};
 pub use deck::Steps;
 pub use export::{Export, ExportError, ExportRecord, Exported, export};
 pub use frames::{FrameFile, read_frames};
-pub use import::{ImportError, ImportSource, Imported, import, named_files, scene_from};
+pub use import::{
+    ImportError, ImportSource, Imported, import, named_files, scene_from, sound_scene_from,
+};
 pub use mpi_engine::MpiEngine;
 pub use wall_mesh::WallMesh;

@@ -4,6 +4,7 @@
 //! In: requests in the order in which they were made. Out: the simulation, the dock and the view
 //! changed; orders for the screenshot job. What would lose work is asked about first.
 
+use crate::engines::sound_scene_from;
 use crate::parameters::{Parameter, Value};
 use crate::scene::Scene;
 use crate::simulation::{
@@ -121,6 +122,7 @@ fn fulfil(
         (Request::RunAnew, Some(recording)) => {
             opener.start_again(recording.scene().clone(), Some(recording), dock);
         }
+        (Request::RunOn, Some(recording)) => opener.run_on(recording, dock),
         (Request::Trail, _) => opener.trace_selected(),
         (Request::NoTrails, _) => opener.view.traced.clear(),
         (Request::Camera(request), _) => {
@@ -153,6 +155,7 @@ fn fulfil(
             | Request::SetIn(..)
             | Request::EndComparison(_)
             | Request::RunAnew
+            | Request::RunOn
             | Request::SaveSession(_)
             | Request::SaveChanges(_),
             None,
@@ -344,6 +347,21 @@ impl Opener<'_, '_> {
         let speed = simulation.map_or(1.0, |simulation| simulation.speed());
         self.start(scene, script, original, speed);
         dock.scene_changed();
+    }
+
+    /// Starts a run with the grains of `recording` as they are at the moment shown, or says why not.
+    fn run_on(&mut self, recording: &Simulation, dock: &mut Dock) {
+        let Some(world) = recording.world() else {
+            return;
+        };
+        match sound_scene_from(recording.scene(), world) {
+            Ok(scene) => {
+                let (script, speed) = (present(recording), recording.speed());
+                self.start(scene, script, None, speed);
+                dock.scene_changed();
+            }
+            Err(reason) => dock.notify(reason),
+        }
     }
 
     /// Starts a run of `scene`, made from the `original`, with `script`, at this `speed`.

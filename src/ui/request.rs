@@ -40,6 +40,8 @@ pub enum Request {
     Start(Box<Scene>),
     /// Start a run of the scene of the recording that is shown, with the values of that moment.
     RunAnew,
+    /// Start a run with the grains of the recording as they are at the moment shown.
+    RunOn,
     /// Write the whole session to the file it has, or let the person choose one.
     Save,
     /// Let the person choose where the whole session goes.

@@ -3,7 +3,7 @@
 
 use crate::engines::import::dump;
 use crate::run::{friction, prepared, shared_beds};
-use grainfall::engines::{ImportSource, import};
+use grainfall::engines::{ImportSource, import, sound_scene_from};
 use grainfall::measure::GrainQuantity;
 use grainfall::recording::Recording;
 use grainfall::runner::{Job, run};
@@ -365,4 +365,19 @@ fn dump_of(scene: &Scene) -> String {
     let first = dump(run.world());
     run.advance_to(200).unwrap();
     first + &dump(run.world())
+}
+
+#[test]
+fn a_scene_goes_on_from_a_state_where_that_is_one_of_spheres_between_walls_that_stand() {
+    let (_folder, out) = recorded(&drum(), Vec::new());
+    let state = Recording::open(&out).unwrap().state(2).unwrap().world;
+    let scene = sound_scene_from(&drum(), &state).unwrap();
+    assert_eq!(
+        (scene.grain_count(), scene.container),
+        (60, drum().container)
+    );
+    let (_folder, out) = recorded(&column(), Vec::new());
+    let state = Recording::open(&out).unwrap().state(1).unwrap().world;
+    let reason = sound_scene_from(&column(), &state).unwrap_err();
+    assert!(reason.contains("spheres alone"), "{reason}");
 }

@@ -1,7 +1,7 @@
 //! Claims about recordings in the app: a run's folder opens as a person opens it, plays to its end,
 //! pauses and draws its grains; what takes a run is answered with the way to one.
 
-use crate::view::studio;
+use crate::view::{laboratory, studio};
 use crate::window_of_panels::standing;
 use bevy::MinimalPlugins;
 use bevy::math::UVec2;
@@ -12,8 +12,10 @@ use grainfall::scene::Scene;
 use grainfall::simulation::{
     Command, DriverKind, Options, Parameter, Simulation, SimulationPlugin, Status,
 };
-use grainfall::ui::{Dock, DockPlugin, Request, Requests};
-use grainfall::window::{PictureJob, WindowJob, run};
+use grainfall::ui::{
+    Dock, DockPlugin, FilmState, Request, Requests, ScreenshotOrder, ScreenshotOrders,
+};
+use grainfall::window::{PictureJob, ScreenshotPlugin, WindowJob, run};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -90,15 +92,62 @@ fn a_runs_folder_plays_to_its_end_and_leads_to_a_run() {
     }
     assert_eq!(simulation(&app).warnings(), [""; 0]);
     ask(&mut app, Request::RunAnew);
-    until(&mut app, |app| {
-        let run = simulation(app);
-        run.recording().is_none() && run.world().is_some()
-    });
+    until(&mut app, is_run);
     assert_eq!(simulation(&app).step(), 0);
     assert_eq!(simulation(&app).parameters().len(), {
         let recording = Recording::open(&out).unwrap();
         recording.parameters().len()
     });
+}
+
+fn is_run(app: &App) -> bool {
+    let run = simulation(app);
+    run.recording().is_none() && run.world().is_some()
+}
+
+#[test]
+fn a_run_goes_on_from_a_moment_of_a_recording() {
+    let (_folder, out) = recorded();
+    let mut app = app(&out);
+    let end = simulation(&app).past().end.step;
+    ask(&mut app, Request::Command(Command::Seek(end)));
+    until(&mut app, |app| {
+        simulation(app).step() == end && simulation(app).has_answered()
+    });
+    let grains = simulation(&app).world().unwrap().grains.clone();
+    ask(&mut app, Request::RunOn);
+    until(&mut app, is_run);
+    let begun = simulation(&app).world().unwrap();
+    assert_eq!(begun.time(), 0.0);
+    assert_eq!(begun.grains.position, grains.position);
+    assert_eq!(begun.grains.velocity, grains.velocity);
+    assert!(simulation(&app).scene().title.contains("from t = 0.100 s"));
+}
+
+#[test]
+fn a_film_of_a_recording_keeps_its_time_and_ends_with_it() {
+    let Some(_studio) = studio("a_film_of_a_recording_keeps_its_time_and_ends_with_it") else {
+        return;
+    };
+    let (folder, out) = recorded();
+    let mut app = laboratory(UVec2::new(160, 120), standing(), ScreenshotPlugin);
+    let recording = Recording::open(&out).unwrap();
+    app.insert_resource(Simulation::play_back(recording, standing()));
+    until(&mut app, |app| simulation(app).world().is_some());
+    let film = folder.path().join("film");
+    let mut simulation = app.world_mut().resource_mut::<Simulation>();
+    simulation.send(Command::Speed(0.5));
+    (app.world_mut().resource_mut::<ScreenshotOrders>())
+        .asked
+        .push(ScreenshotOrder::Film(film.clone()));
+    let state = |app: &App| app.world().resource::<ScreenshotOrders>().film;
+    until(&mut app, |app| {
+        matches!(state(app), FilmState::Recording { pictures: 1, .. })
+    });
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Play);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    // One each 20 ms of 100 ms, the first and the last included.
+    assert_eq!(std::fs::read_dir(&film).unwrap().count(), 6);
 }
 
 #[test]

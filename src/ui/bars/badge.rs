@@ -117,11 +117,17 @@ impl Badge {
         };
         let level = worst.level;
         let colour = level.colour(Palette::of(ui.visuals()));
+        let is_recorded = simulation.recording().is_some();
         let text = match level {
+            Level::Good if is_recorded => format!("{} Recorded", level.mark()),
             Level::Good => format!("{} {}", level.mark(), level.word()),
             _ => format!("{} {}: {}", level.mark(), level.word(), worst.name),
         };
         let why = match level {
+            Level::Good if is_recorded => {
+                "A recording whose files, as far as they were read, are as they were written"
+                    .to_owned()
+            }
             Level::Good => {
                 "Time step, overlaps, energy and grains are as they should be".to_owned()
             }

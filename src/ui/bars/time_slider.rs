@@ -34,15 +34,30 @@ pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Req
     });
 }
 
-/// The way from a recording to a run.
+/// The ways from a recording to a run.
 fn run_anew_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
-    let button = ui.button("Run anew").on_hover_text(
-        "A recording shows what was computed. This starts its scene at time zero, with the values of the moment shown, as a run \
-         that can be changed",
-    );
-    if button.clicked() {
-        out.push(Request::RunAnew);
-    }
+    let ways = [
+        (
+            "The scene, from its start",
+            "Its bed is made again, and the parameters have the values of the moment shown",
+            Request::RunAnew,
+        ),
+        (
+            "On from this moment",
+            "The grains are where they are, with their velocities and films; contacts begin without springs and bridges",
+            Request::RunOn,
+        ),
+    ];
+    let menu = ui.menu_button("Run anew", |ui| {
+        for (name, hint, request) in ways {
+            if ui.button(name).on_hover_text(hint).clicked() {
+                out.push(request);
+                ui.close();
+            }
+        }
+    });
+    menu.response
+        .on_hover_text("A recording shows what was computed. A run can be changed");
 }
 
 /// `state 12 of 51 · 1.20 of 5.00 s`.

@@ -50,6 +50,10 @@ impl Panel for Compare {
         Self::TITLE
     }
 
+    fn applies_to(&self, simulation: &Simulation) -> bool {
+        simulation.recording().is_none()
+    }
+
     fn take_up(&mut self, parameter: &Parameter) {
         self.wanted = Some(parameter.clone());
     }

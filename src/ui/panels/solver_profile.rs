@@ -19,6 +19,10 @@ impl Panel for SolverProfile {
         "Solver"
     }
 
+    fn applies_to(&self, simulation: &Simulation) -> bool {
+        simulation.recording().is_none()
+    }
+
     fn describes_one_run(&self) -> bool {
         true
     }
