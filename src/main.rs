@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use grainfall::engines::MpiEngine;
 use grainfall::headless::terminal::{say, tell};
 use grainfall::headless::{
-    self, ImportTask, PaperTask, Report, Said, SweepTask, check_threads, interruption,
+    self, Allowed, ImportTask, PaperTask, Report, Said, SweepTask, check_threads, interruption,
 };
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
@@ -15,7 +15,7 @@ use grainfall::physics::units::seconds;
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
 use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
-use grainfall::scene::{Scene, built_in, take_packings_from_anywhere};
+use grainfall::scene::{Scene, built_in};
 #[cfg(feature = "desktop")]
 use grainfall::simulation::Options;
 use grainfall::simulation::{Estimate, Kept, ScriptedCommand};
@@ -52,33 +52,6 @@ struct Arguments {
     picture: PictureArguments,
     #[command(subcommand)]
     task: Option<Task>,
-}
-
-/// What a person allows that no file can.
-#[derive(Args)]
-struct Allowed {
-    /// Take packings from where a scene or a record says, not only from the folder that it is in
-    #[arg(long, global = true)]
-    packings_anywhere: bool,
-    /// Start what asks for more memory than is free, too
-    #[arg(long, global = true)]
-    beyond_memory: bool,
-}
-
-impl Allowed {
-    /// Says what `at_once` runs of `scene` take, before they begin.
-    ///
-    /// # Errors
-    /// When that is more memory than there is, and nobody asked for it.
-    fn begin(&self, scene: &Scene, at_once: usize, report: Report) -> Result<(), RunnerError> {
-        let estimate = Estimate::of(scene).side_by_side(at_once);
-        if !self.beyond_memory {
-            let fits = estimate.fits_into_memory();
-            fits.map_err(|error| RunnerError::Input(error.to_string()))?;
-        }
-        report.note(&estimate.to_string());
-        Ok(())
-    }
 }
 
 /// A picture that the program takes by itself.
@@ -248,17 +221,17 @@ fn main() -> ExitCode {
 
 fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     let allowed = arguments.allowed;
-    if allowed.packings_anywhere {
-        take_packings_from_anywhere();
-    }
+    allowed.take_effect();
     match arguments.task {
-        Some(Task::Bed { scene, out }) => return headless::write_bed(&scene, &out),
+        Some(Task::Bed { scene, out }) => return headless::write_bed(&scene, &allowed, &out),
         Some(Task::Verify { file, threads }) => {
             let threads = checked_threads(threads, Report::Text)?;
-            return headless::confirm(&file, threads, &*interruption()?);
+            return headless::confirm(&file, threads, &allowed, &*interruption()?);
         }
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
-        Some(Task::Pack { scene, set, out }) => return headless::write_packing(&scene, &set, &out),
+        Some(Task::Pack { scene, set, out }) => {
+            return headless::write_packing(&scene, &set, &allowed, &out);
+        }
         Some(Task::Sweep(task)) => return run_sweep(&task, &allowed),
         Some(Task::Import(task)) => return task.carry_out(),
         Some(Task::Export {
@@ -267,7 +240,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
             out,
             unsettled,
             said,
-        }) => return export_scene(&what, to, (out, !unsettled), said.report()),
+        }) => return export_scene(&what, to, (out, !unsettled), (&allowed, said.report())),
         Some(Task::Paper(task)) => return run_paper(&task, &allowed),
         None => {}
     }
@@ -286,6 +259,8 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     }
     let (scene, script) = changed_scene(&name, &what)?;
     if !arguments.no_render {
+        #[cfg(feature = "desktop")]
+        allowed.memory(&Estimate::of_start(&scene))?;
         #[cfg(feature = "desktop")]
         return open_window(
             name,
@@ -307,7 +282,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         restart: arguments.restart,
         ..Job::new(name, scene, out)
     };
-    allowed.begin(&job.scene, 1, report)?;
+    allowed.begin(&Estimate::of(&job.scene), &job.out, report)?;
     let ending = headless::run(&job, report, &interruption)?;
     Ok(ending.exit_code())
 }
@@ -439,7 +414,7 @@ fn export_scene(
     what: &What,
     engine: MpiEngine,
     (out, settles): (PathBuf, bool),
-    report: Report,
+    (allowed, report): (&Allowed, Report),
 ) -> Result<u8, RunnerError> {
     let name = what.scene.clone().unwrap_or_else(first_scene);
     let (scene, script) = changed_scene(&name, what)?;
@@ -448,6 +423,7 @@ fn export_scene(
         script,
         ..Job::new(short_name(&name), scene, out)
     };
+    allowed.begin(&Estimate::of_start(&job.scene), &job.out, report)?;
     let is_done = headless::hand_over(&job, engine, settles, report, &*interruption()?)?;
     Ok(if is_done {
         exit::DONE
@@ -461,7 +437,7 @@ fn run_sweep(task: &SweepTask, allowed: &Allowed) -> Result<u8, RunnerError> {
     let jobs = checked_threads(task.jobs, report)?;
     let sweep = task.sweep(&short_name(&task.scene), jobs)?;
     if let Some(at_once) = task.runs_at_once(jobs) {
-        allowed.begin(&sweep.scene, at_once, report)?;
+        allowed.begin(&task.estimate(&sweep, at_once)?, &sweep.out, report)?;
     }
     task.carry_out(&sweep, &*interruption()?)
 }
@@ -470,7 +446,8 @@ fn run_paper(task: &PaperTask, allowed: &Allowed) -> Result<u8, RunnerError> {
     let at_once = checked_threads(task.threads, task.report())?;
     let job = task.job(at_once)?;
     if task.computes() {
-        allowed.begin(job.largest(), at_once, Report::Quiet)?;
+        let estimate = job.estimate(at_once);
+        allowed.begin(&estimate, &job.sweep().out, Report::Quiet)?;
     }
     task.carry_out(&job, &*interruption()?)
 }

@@ -1,8 +1,8 @@
 //! `grainfall verify FILE`: computes again what a file states, and says what came out.
 
-use super::Progress;
 use super::terminal::{say, tell};
-use crate::run::{BedStore, RunRecord, VERSION};
+use super::{Allowed, Progress};
+use crate::run::{BedStore, Estimate, RunRecord, VERSION};
 use crate::runner::{RunnerError, Verdict, VouchedFiles, exit};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,9 +11,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// says whether it is as stated. Returns the exit code.
 ///
 /// # Errors
-/// When the file holds no record, or its run cannot be computed.
-pub fn confirm(file: &Path, threads: usize, interrupted: &AtomicBool) -> Result<u8, RunnerError> {
+/// When the file holds no record, or its run cannot be computed or asks for more memory than there
+/// is.
+pub fn confirm(
+    file: &Path,
+    threads: usize,
+    allowed: &Allowed,
+    interrupted: &AtomicBool,
+) -> Result<u8, RunnerError> {
     let record = RunRecord::read(file)?;
+    let mut asked = record.scene.clone();
+    asked.duration = record.time;
+    allowed.memory(&Estimate::of(&asked))?;
     let files = record.check_files(file.parent().unwrap_or(Path::new("")));
     let stop = || interrupted.load(Ordering::Relaxed);
     let mut progress = Progress::on_stderr();

@@ -4,6 +4,7 @@
 //! run is moved by the same system as in the window, inline and as fast as the machine can; the
 //! loop that moves it to its end, records it and stops it is the one of [`crate::runner`].
 
+mod allowed;
 mod confirm;
 mod export;
 mod import;
@@ -16,6 +17,7 @@ mod report;
 mod sweep_task;
 pub mod terminal;
 
+pub use allowed::Allowed;
 pub use confirm::confirm;
 pub use export::hand_over;
 pub use import::ImportTask;

@@ -1,9 +1,10 @@
 //! What a scene begins with, computed once and kept in a file: its settled bed, its grains cut from
 //! Voronoi cells.
 
-use super::Progress;
+use super::{Allowed, Progress};
 use crate::geometry::Rounded;
 use crate::output::write_file;
+use crate::run::Estimate;
 use crate::runner::{RunnerError, apply_settings, available_threads, exit};
 use crate::scene::{Scene, StoredCells};
 use crate::simulation::make_bed;
@@ -13,9 +14,10 @@ use std::path::Path;
 /// Settles the bed of the scene called `name` into a file. Returns the exit code.
 ///
 /// # Errors
-/// When there is no such scene, it has no bed, or the file cannot be written.
-pub fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
+/// When there is no such scene, it has no bed or asks for more memory than there is, or the file cannot be written.
+pub fn write_bed(name: &str, allowed: &Allowed, path: &Path) -> Result<u8, RunnerError> {
     let scene = Scene::open(name)?;
+    allowed.memory(&Estimate::of_start(&scene))?;
     let bed = make_bed(&scene, available_threads())
         .map_err(|error| RunnerError::Input(error.to_string()))?;
     write_file(path, |file| file.write_all(&bed))?;
@@ -26,9 +28,14 @@ pub fn write_bed(name: &str, path: &Path) -> Result<u8, RunnerError> {
 /// code.
 ///
 /// # Errors
-/// When there is no such scene, it cuts none, a setting changes nothing about them, or the file
-/// cannot be written.
-pub fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8, RunnerError> {
+/// When there is no such scene, it cuts none or asks for more memory than there is, a setting
+/// changes nothing about them, or the file cannot be written.
+pub fn write_packing(
+    name: &str,
+    settings: &[String],
+    allowed: &Allowed,
+    path: &Path,
+) -> Result<u8, RunnerError> {
     let mut scene = Scene::open(name)?;
     for setting in settings {
         if !apply_settings(&mut scene.clone(), std::slice::from_ref(setting))?.is_empty() {
@@ -38,6 +45,7 @@ pub fn write_packing(name: &str, settings: &[String], path: &Path) -> Result<u8,
         }
     }
     apply_settings(&mut scene, settings)?;
+    allowed.memory(&Estimate::of_start(&scene))?;
     let grains = pack(&scene)?;
     write_file(path, |file| file.write_all(&StoredCells::encode(&grains)?))?;
     Ok(exit::DONE)

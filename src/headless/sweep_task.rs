@@ -6,7 +6,7 @@
 use super::terminal::{say, tell};
 use super::{Progress, Report, Said};
 use crate::output::Ending;
-use crate::run::BedStore;
+use crate::run::{BedStore, Estimate};
 use crate::runner::{RunnerError, apply_settings, exit};
 use crate::scene::Scene;
 use crate::sweep::{self, Sweep, Variation};
@@ -97,6 +97,20 @@ impl SweepTask {
             beds: BedStore::user(),
             restart: self.restart,
         })
+    }
+
+    /// What the cases of `sweep` that are asked for take, `at_once` of them at the same time.
+    ///
+    /// # Errors
+    /// When a case cannot be.
+    pub fn estimate(&self, sweep: &Sweep, at_once: usize) -> Result<Estimate, RunnerError> {
+        let cases = sweep::cases(sweep)?;
+        let asked = |number: usize| self.case.is_none_or(|only| only == number);
+        let cases = (1..).zip(&cases).filter(|(number, _)| asked(*number));
+        Ok(Estimate::of_cases(
+            cases.map(|(_, case)| &case.scene),
+            at_once,
+        ))
     }
 
     /// Does what is asked for of `sweep`; prints progress to standard error and what came out to

@@ -6,7 +6,6 @@ use super::plan::{Paper, PaperTable, Row, Selection};
 use crate::output::write_file;
 use crate::run::{BedStore, Estimate, VERSION};
 use crate::runner::{RunnerError, Standing, Watch, standing};
-use crate::scene::Scene;
 use crate::sweep::{self, Case, CaseResult, Sweep, SweepEnding, SweepFolder};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -82,10 +81,9 @@ impl PaperJob {
         self
     }
 
-    /// The scene of the case that takes most.
-    pub fn largest(&self) -> &Scene {
-        let costliest = (self.cases.iter()).max_by(|a, b| a.cost().total_cmp(&b.cost()));
-        costliest.map_or(&self.sweep.scene, |case| &case.scene)
+    /// What its cases take, `at_once` of them at the same time.
+    pub fn estimate(&self, at_once: usize) -> Estimate {
+        Estimate::of_cases(self.cases.iter().map(|case| &case.scene), at_once)
     }
 
     /// The sweep that its cases are run by.

@@ -1,16 +1,17 @@
 //! What a scene asks of a machine, before any work is done.
 //!
 //! In: a scene that was checked. Out: an [`Estimate`] from counts alone (grains, cells, steps,
-//! samples, outputs), in words for people, and whether the machine's memory holds it. Times are
-//! those of the machine that `benches/README.md` tells of, a factor of a few from any other's.
+//! samples, outputs), in words for people, and whether the machine's memory and disk hold it. Times
+//! are those of the machine that `benches/README.md` tells of, a factor of a few from any other's.
 
-use crate::files::read_whole;
+use super::machine::{free_disk, free_memory};
 use crate::measure::Measure;
 use crate::scene::SAMPLE_INTERVAL;
 use crate::scene::{Scene, SceneGrains};
 use crate::solver::advise;
 use std::fmt;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// What a kind of grains takes.
 struct Cost {
@@ -48,8 +49,8 @@ const PROGRAM: f64 = 20e6;
 const TABLE_CELL: f64 = 14.0;
 /// Simulated time that settling takes, about, in `√(r/g)` of the mean radius.
 const SETTLING: f64 = 80.0;
-/// Part of the memory that is free which a run may take.
-const SHARE_OF_MEMORY: f64 = 0.9;
+/// Part of the memory, or of the disk, that is free which a run may take.
+const SHARE: f64 = 0.9;
 
 /// What a run of a scene takes, about.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,21 +63,41 @@ pub struct Estimate {
     pub memory: f64,
     /// Files of a run without a window [bytes].
     pub files: f64,
+    /// What of these is grains and contacts at each output [bytes].
+    frames: f64,
     /// Time of one thread, a settling where there is one included [s].
     pub time: f64,
 }
 
-/// More memory than there is.
+/// More than the machine has.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "it asks for {} of memory, and {} are free here: {asked}. Take fewer grains, a shorter duration or larger cells, \
-     or start it all the same with --beyond-memory",
-    bytes(.asked.memory), bytes(*.free)
-)]
-pub struct BeyondMemory {
-    asked: Box<Estimate>,
-    /// Memory that is free [bytes].
-    free: f64,
+pub enum BeyondMachine {
+    /// More memory than there is.
+    #[error(
+        "it asks for {} of memory, and {} are free here: {asked}. Take fewer grains, a shorter duration or larger \
+         cells, or start it all the same with --beyond-memory",
+        bytes(.asked.memory), bytes(*.free)
+    )]
+    Memory {
+        /// What is asked for.
+        asked: Box<Estimate>,
+        /// Memory that is free [bytes].
+        free: f64,
+    },
+    /// More files than the disk has room for.
+    #[error(
+        "its files will take {} or so, and the disk of {} has room for {}: {asked}. Take a longer --output-interval, \
+         fewer grains, a shorter duration or another --out, or start it all the same with --beyond-disk",
+        bytes(.asked.files), .out.display(), bytes(*.free)
+    )]
+    Disk {
+        /// What is asked for.
+        asked: Box<Estimate>,
+        /// Where the files go.
+        out: PathBuf,
+        /// What is free there, or taken by files of this run [bytes].
+        free: f64,
+    },
 }
 
 impl Estimate {
@@ -102,30 +123,40 @@ impl Estimate {
         let outputs = scene.duration / scene.output_interval + 1.0;
         let settling = settling_time(scene) / time_step;
         let grain = grains as f64;
+        let series = samples * columns;
+        let frames = outputs * (grain * cost.file + 2e3);
+        // A checkpoint is replaced by one that lies beside it until it is whole.
+        let checkpoints = 2.0 * grain * cost.file + 8.0 * series;
         Self {
             grains,
             steps,
             // The samples of a run are kept, in vectors that double.
-            memory: PROGRAM
-                + grain * cost.memory
-                + points * LATTICE_POINT
-                + 1.5 * 8.0 * columns * samples,
-            files: outputs * (grain * cost.file + 2e3) + samples * columns * TABLE_CELL,
+            memory: PROGRAM + grain * cost.memory + points * LATTICE_POINT + 1.5 * 8.0 * series,
+            files: frames + checkpoints + series * TABLE_CELL,
+            frames,
             time: (steps + settling) * grain * cost.time,
         }
+    }
+
+    /// What it takes to come to the first state of `scene` and to write it: nothing is run.
+    pub fn of_start(scene: &Scene) -> Self {
+        Self::of(&Scene {
+            duration: 0.0,
+            ..scene.clone()
+        })
     }
 
     /// Whether the memory that is free now holds it; where that is not known, it does.
     ///
     /// # Errors
     /// What it asks for and what there is.
-    pub fn fits_into_memory(&self) -> Result<(), BeyondMemory> {
+    pub fn fits_into_memory(&self) -> Result<(), BeyondMachine> {
         self.fits_into(free_memory())
     }
 
-    fn fits_into(&self, free: Option<f64>) -> Result<(), BeyondMemory> {
+    fn fits_into(&self, free: Option<f64>) -> Result<(), BeyondMachine> {
         match free {
-            Some(free) if self.memory > SHARE_OF_MEMORY * free => Err(BeyondMemory {
+            Some(free) if self.memory > SHARE * free => Err(BeyondMachine::Memory {
                 asked: Box::new(self.clone()),
                 free,
             }),
@@ -133,24 +164,69 @@ impl Estimate {
         }
     }
 
-    /// What `at_once` runs of it at the same time take at their peak.
-    #[must_use]
-    pub fn side_by_side(self, at_once: usize) -> Self {
+    /// Whether there is room for its files in the folder `out`; where that is not known, there is.
+    /// What lies in the folder already is a part of them, or gives way to them.
+    ///
+    /// # Errors
+    /// What it asks for and what there is.
+    pub fn fits_onto_disk(&self, out: &Path) -> Result<(), BeyondMachine> {
+        self.fits_onto(free_disk(out), out)
+    }
+
+    fn fits_onto(&self, free: Option<f64>, out: &Path) -> Result<(), BeyondMachine> {
+        let Some(free) = free.filter(|free| self.files > SHARE * free) else {
+            return Ok(());
+        };
+        let free = free + taken(out);
+        if self.files <= SHARE * free {
+            return Ok(());
+        }
+        Err(BeyondMachine::Disk {
+            asked: Box::new(self.clone()),
+            out: out.to_owned(),
+            free,
+        })
+    }
+
+    /// What runs of these `scenes` take together, `at_once` of them at the same time, without the
+    /// grains at each output.
+    pub fn of_cases<'a>(scenes: impl IntoIterator<Item = &'a Scene>, at_once: usize) -> Self {
+        let all: Vec<Self> = scenes.into_iter().map(Self::of).collect();
+        let sum = |of: fn(&Self) -> f64| all.iter().map(of).sum::<f64>();
+        let mut memory: Vec<f64> = all.iter().map(|case| case.memory).collect();
+        memory.sort_by(|a, b| b.total_cmp(a));
         Self {
-            memory: at_once as f64 * self.memory,
-            ..self
+            grains: all.iter().map(|case| case.grains).max().unwrap_or(0),
+            steps: sum(|case| case.steps),
+            memory: memory.iter().take(at_once).sum(),
+            files: sum(|case| case.files - case.frames),
+            frames: 0.0,
+            time: sum(|case| case.time),
         }
     }
+}
+
+/// What the files below `folder` take [bytes]; what cannot be read takes nothing.
+fn taken(folder: &Path) -> f64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let sizes = entries.map(|entry| match entry.metadata() {
+        Ok(found) if found.is_dir() => taken(&entry.path()),
+        Ok(found) => found.len() as f64,
+        Err(_) => 0.0,
+    });
+    sizes.sum()
 }
 
 impl fmt::Display for Estimate {
     /// `470 grains, 1.2 million steps: some 21 MB of memory, 14 MB of files, 25 s on one thread`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} grains", self.grains)?;
+        if self.steps > 0.0 {
+            write!(f, ", {} steps", many(self.steps))?;
+        }
         write!(
             f,
-            "{} grains, {} steps: some {} of memory, {} of files, {} on one thread",
-            self.grains,
-            many(self.steps),
+            ": some {} of memory, {} of files, {} on one thread",
             bytes(self.memory),
             bytes(self.files),
             duration(self.time)
@@ -199,37 +275,9 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Memory that a program can have now [bytes]; none where the system does not say.
-fn free_memory() -> Option<f64> {
-    let read = |path: &str| {
-        // A system without such a file says nothing.
-        let bytes = read_whole(Path::new(path), 1 << 20).ok()?;
-        String::from_utf8(bytes).ok()
-    };
-    let available = available(&read("/proc/meminfo")?)?;
-    let of_group = read("/sys/fs/cgroup/memory.max").and_then(|text| text.trim().parse().ok());
-    Some(of_group.map_or(available, |most: f64| available.min(most)))
-}
-
-/// What `/proc/meminfo` says is available [bytes].
-fn available(text: &str) -> Option<f64> {
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(1024.0 * kilobytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_the_system_says_is_read() {
-        let text = "MemTotal:       24103000 kB\nMemAvailable:    1000000 kB\nBuffers: 1 kB\n";
-        assert_eq!(available(text), Some(1.024e9));
-        assert_eq!(available("nothing"), None);
-    }
 
     #[test]
     fn a_run_that_asks_for_more_than_there_is_is_refused_and_told_why() {
@@ -247,5 +295,24 @@ mod tests {
             refusal.contains("--beyond-memory") && refusal.contains("8.0 GB"),
             "{refusal}"
         );
+    }
+    #[test]
+    fn files_that_no_disk_holds_are_refused_but_for_those_that_are_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let estimate = Estimate::of(&Scene::open("small-drum").unwrap());
+        let fits = |free| estimate.fits_onto(Some(free), folder.path());
+        assert_eq!(fits(2.0 * estimate.files), Ok(()));
+        let refusal = fits(0.5 * estimate.files).unwrap_err().to_string();
+        assert!(
+            refusal.contains("--beyond-disk") && refusal.contains("--output-interval"),
+            "{refusal}"
+        );
+        let whole = vec![0; estimate.files as usize];
+        std::fs::create_dir(folder.path().join("grains")).unwrap();
+        std::fs::write(folder.path().join("grains/a.vtp"), whole).unwrap();
+        assert_eq!(fits(0.5 * estimate.files), Ok(()));
+        let scene = Scene::open("small-drum").unwrap();
+        let cases = Estimate::of_cases(&vec![scene; 10], 4);
+        assert!(cases.files < 10.0 * estimate.files && cases.memory == 4.0 * estimate.memory);
     }
 }

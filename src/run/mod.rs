@@ -18,7 +18,7 @@
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `method` | which solver and measures computed a run |
-//! | `estimate` | what a scene asks of a machine, before any work |
+//! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
@@ -35,6 +35,7 @@ mod command;
 mod estimate;
 mod history;
 mod keyframes;
+mod machine;
 mod method;
 mod past;
 mod pieces;
@@ -59,12 +60,14 @@ pub use crate::parameters::{
 };
 pub use crate::physics::DisplayUnit;
 pub use crate::scene::SAMPLE_INTERVAL;
+#[cfg(test)]
+pub(crate) use bed::BedKey;
 pub use bed::BedStore;
 pub use branch::Branch;
 pub use check::CommandError;
 pub(crate) use check::accept;
 pub use command::{Command, StampedCommand};
-pub use estimate::{BeyondMemory, Estimate};
+pub use estimate::{BeyondMachine, Estimate};
 pub use history::{History, Moment};
 pub use method::method;
 pub use past::Past;
