@@ -10,10 +10,11 @@ use super::deck::{DUMPS, Deck, GRAINS, Handed, Steps};
 use super::lammps_deck::{self, lammps_deck};
 use super::liggghts_deck::{self, liggghts_deck};
 use super::mpi_engine::MpiEngine;
-use crate::files::{read_whole, write_whole};
+use crate::files::{holds_files, read_whole, write_whole};
 use crate::output::OutputError;
+use crate::physics::limits;
 use crate::run::{Provenance, ScriptedCommand, VERSION, printable};
-use crate::scene::Scene;
+use crate::scene::{Scene, within_folders};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -226,8 +227,7 @@ fn open(out: &Path) -> Result<(), ExportError> {
         Err(ExportError::Foreign { path, holds })
     };
     if out.exists() {
-        let is_empty = fs::read_dir(out).map_err(failed)?.next().is_none();
-        if !is_empty && ExportRecord::read(out).is_err() {
+        if holds_files(out).map_err(failed)? && ExportRecord::read(out).is_err() {
             return refuse("files that are not an export's");
         }
         let dumps = out.join(DUMPS);
@@ -248,17 +248,17 @@ impl ExportRecord {
         let refuse = |reason: String| format!("{}: {reason}", file.display());
         let bytes = read_whole(&file, LARGEST)
             .map_err(|error| refuse(format!("cannot be read: {error}")))?;
-        let record: Self =
-            serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
+        // What it names elsewhere is not opened.
+        let record: Result<Self, _> = within_folders(&[path], || serde_json::from_slice(&bytes));
+        let record = record.map_err(|error| refuse(error.to_string()))?;
         if record.program != PROGRAM {
             return Err(refuse("is no record of an export".to_owned()));
         }
         (record.scene.check())
             .map_err(|error| refuse(format!("states a scene that cannot be run: {error}")))?;
-        let is_time = record.time_step.is_finite() && record.time_step > 0.0;
-        if !is_time {
+        if !limits::TIME_STEP.accept(record.time_step) {
             return Err(refuse(format!(
-                "states a time step of {:?} s",
+                "states a time step of {:?} s; expected one between 1e-12 s and 1 s",
                 record.time_step
             )));
         }

@@ -44,6 +44,14 @@ impl FrameFile {
             Self::Data(frame) => Ok(frame.take()),
         }
     }
+
+    /// Bytes of a dump that were read until now; a data file is read as a whole.
+    pub fn taken(&self) -> u64 {
+        match self {
+            Self::Dump(lines) => lines.taken(),
+            Self::Data(_) => 0,
+        }
+    }
 }
 
 /// All instants in the file at `path`.

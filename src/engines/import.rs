@@ -15,6 +15,7 @@ use super::{AtomFrame, FrameError};
 use crate::measure::{FlowHistory, Series, Summary, sample_and_surface};
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
 use crate::run::{Run, Sampling, Script, ScriptedCommand, StampedCommand};
+use crate::runner::Watch;
 use crate::scene::{Scene, SceneGrain, SceneGrains, SceneShape};
 use crate::solver::advise;
 use crate::world::{SpeciesId, Wall, World, build};
@@ -197,7 +198,7 @@ fn in_order(files: &[PathBuf]) -> Result<Vec<PathBuf>, ImportError> {
 }
 
 /// Reads `files` of `source` and writes what they come to as a run to the folder `out`; an earlier
-/// run there is replaced only where `restart` says so.
+/// run there is replaced only where `restart` says so. `watch` hears how far it has come.
 ///
 /// # Errors
 /// When a file is not what it has to be, does not belong to the scene, or the folder cannot be
@@ -207,13 +208,13 @@ pub fn import(
     source: &ImportSource,
     out: &Path,
     restart: bool,
+    watch: &mut dyn Watch,
 ) -> Result<Imported, ImportError> {
     let (template, commands) = source.template()?;
     let types = source.types(&template);
     let files = in_order(files)?;
     let folder = OutputFolder::lock(out)?;
-    let is_taken = folder.summary().is_ok_and(|summary| summary.is_some());
-    if is_taken && !restart {
+    if !restart && !folder.is_begun_only()? {
         return Err(OutputError::OtherRun {
             path: out.to_owned(),
             reason: "an import begins anew".to_owned(),
@@ -237,13 +238,25 @@ pub fn import(
         last: None,
         frames: 0,
     };
+    let sizes = files.iter().map(|path| size(path));
+    let (all, mut read) = (sizes.sum::<u64>() as f64, 0);
     for path in &files {
         let mut file = FrameFile::open(path)?;
         while let Some(frame) = file.next_frame()? {
             recording.add(path, &frame)?;
+            let share = (read + file.taken()) as f64 / all;
+            watch.running(share.min(1.0), &|| {
+                format!("{} instants, step {}", recording.frames, frame.step)
+            });
         }
+        read += size(path);
     }
     recording.finish(source)
+}
+
+/// Bytes of the file at `path`; whoever opens it is told where it cannot be read.
+fn size(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |found| found.len())
 }
 
 /// An import on its way.

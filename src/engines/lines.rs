@@ -19,6 +19,8 @@ pub struct Lines {
     file: BufReader<File>,
     bytes: Vec<u8>,
     number: u64,
+    /// Bytes of the file that were read.
+    taken: u64,
     /// Whether the present line is to be read again.
     is_kept: bool,
 }
@@ -36,6 +38,7 @@ impl Lines {
             file: BufReader::with_capacity(1 << 16, file),
             bytes: Vec::new(),
             number: 0,
+            taken: 0,
             is_kept: false,
         })
     }
@@ -59,6 +62,7 @@ impl Lines {
                 return Ok(None);
             }
             self.number += 1;
+            self.taken += read as u64;
             if read as u64 == LONGEST && self.bytes.last() != Some(&b'\n') {
                 return Err(self.wrong(format!("a line of more than {LONGEST} bytes")));
             }
@@ -102,6 +106,11 @@ impl Lines {
     /// That something is wrong with the present line.
     pub fn wrong(&self, reason: impl Into<String>) -> FrameError {
         FrameError::at_line(&self.path, self.number, reason)
+    }
+
+    /// Bytes of the file that were read.
+    pub fn taken(&self) -> u64 {
+        self.taken
     }
 
     /// The file.

@@ -1,11 +1,11 @@
 //! The one place that every call about a file passes before it is made, so that tests can let the
-//! n-th of them fail.
+//! n-th of them fail, and see what is left where the program or the power stops there.
 //!
-//! In: the path that the call is about. Out: leave to make it; always, but in tests.
+//! In: the path that the call is about, and what was made durable. Out: leave to make it; always,
+//! but in tests.
 
 #[cfg(not(test))]
 use std::io;
-#[cfg(not(test))]
 use std::path::Path;
 
 /// Leave to make the next call about `path`.
@@ -17,6 +17,13 @@ use std::path::Path;
 #[inline]
 pub fn attempt(_path: &Path) -> io::Result<()> {
     Ok(())
+}
+
+/// Says that the bytes of the file, or the names in the folder, at `path` survive a power cut.
+pub fn became_durable(path: &Path) {
+    #[cfg(all(test, unix))]
+    super::power_cut::became_durable(path);
+    let _ = path;
 }
 
 #[cfg(test)]
@@ -74,6 +81,8 @@ mod failing {
     }
 
     pub fn attempt(path: &Path) -> io::Result<()> {
+        #[cfg(unix)]
+        super::super::power_cut::before_call(path);
         for plan in plans().iter_mut() {
             if path.starts_with(&plan.folder) {
                 let call = plan.calls;

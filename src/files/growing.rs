@@ -4,7 +4,7 @@
 //! file that is whole after each addition and costs what is added, not what is there. Where an
 //! addition fails, the file is as it was before it.
 
-use super::attempt::attempt;
+use super::attempt::{attempt, became_durable};
 use super::target::check_target;
 use super::whole::write_whole;
 use std::fs::{File, OpenOptions};
@@ -96,7 +96,9 @@ impl GrowingFile {
     /// When the disk fails.
     pub fn sync(&self) -> io::Result<()> {
         attempt(&self.path)?;
-        self.file.sync_data()
+        self.file.sync_data()?;
+        became_durable(&self.path);
+        Ok(())
     }
 
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {

@@ -15,10 +15,13 @@
 //! | `lock` | one program at a time in a folder |
 //! | `target` | what is never written over |
 //! | `attempt` | where tests let a call to the operating system fail |
+//! | `power_cut` | what is left where the program or the power stops; for tests |
 
 mod attempt;
 mod growing;
 mod lock;
+#[cfg(all(test, unix))]
+mod power_cut;
 mod reading;
 mod target;
 mod whole;
@@ -27,8 +30,11 @@ mod whole;
 pub(crate) use attempt::FailingCalls;
 pub use growing::GrowingFile;
 pub use lock::{FolderLock, LOCK, LockError};
+#[cfg(all(test, unix))]
+pub(crate) use power_cut::{PowerCuts, Stop};
 pub use reading::{open_regular, read_whole};
+pub use target::check_target;
 pub use whole::{
-    folder_beside, is_temporary, remove_file, sync_file, sync_folder, write_whole,
-    write_whole_unsynced,
+    folder_beside, holds_files, is_temporary, make_folder, remove_file, sync_file, sync_folder,
+    write_whole, write_whole_unsynced,
 };

@@ -3,7 +3,7 @@
 //! In: a path and what to write. Out: the file under that path as it was, or as it is to be, and
 //! nothing between, whenever the program or the machine stops.
 
-use super::attempt::attempt;
+use super::attempt::{attempt, became_durable};
 use super::target::check_target;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -25,9 +25,10 @@ pub fn write_whole(
     let file = fill_beside(path, fill)?;
     attempt(path)?;
     file.as_file().sync_all()?;
+    became_durable(file.path());
     attempt(path)?;
     file.persist(path)?;
-    sync_folder(folder_of(path)?)
+    sync_folder(above(path))
 }
 
 /// The same, and the system may keep it in memory for a while: whoever stops the program cannot
@@ -51,7 +52,9 @@ pub fn write_whole_unsynced(
 /// When the disk fails.
 pub fn sync_file(path: &Path) -> io::Result<()> {
     attempt(path)?;
-    File::open(path)?.sync_all()
+    File::open(path)?.sync_all()?;
+    became_durable(path);
+    Ok(())
 }
 
 /// A file that is to become the one at `path`, with what `fill` writes.
@@ -76,8 +79,9 @@ fn fill_beside(
 /// Removes the file at `path`, if there is one.
 ///
 /// # Errors
-/// When it cannot be removed.
+/// When it cannot be removed, or is no regular file.
 pub fn remove_file(path: &Path) -> io::Result<()> {
+    check_target(path)?;
     attempt(path)?;
     match fs::remove_file(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
@@ -92,25 +96,41 @@ pub fn remove_file(path: &Path) -> io::Result<()> {
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     attempt(folder)?;
     if cfg!(unix) {
-        // Some network file systems know no such thing.
-        return match File::open(folder)?.sync_all() {
-            Err(error)
-                if matches!(
-                    error.kind(),
-                    ErrorKind::Unsupported | ErrorKind::InvalidInput
-                ) =>
-            {
-                Ok(())
-            }
-            outcome => outcome,
-        };
+        let synced = File::open(folder).and_then(|folder| folder.sync_all());
+        // Some network file systems know no such thing, and of a folder that may not be read
+        // nobody can ask it.
+        let cannot = [
+            ErrorKind::Unsupported,
+            ErrorKind::InvalidInput,
+            ErrorKind::PermissionDenied,
+        ];
+        synced.or_else(|error| cannot.contains(&error.kind()).then_some(()).ok_or(error))?;
     }
+    became_durable(folder);
     Ok(())
 }
 
 /// Whether a file or folder of this name is one that was not whole yet when the program stopped.
 pub fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY)
+}
+
+/// Whether `folder` is there and holds anything, beside what was not whole yet when a program
+/// stopped.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn holds_files(folder: &Path) -> io::Result<bool> {
+    if !folder.exists() {
+        return Ok(false);
+    }
+    for entry in fs::read_dir(folder)? {
+        let name = entry?.file_name();
+        if !name.to_str().is_some_and(is_temporary) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// An empty folder under a name of its own beside `path`, in which to make what is then given that
@@ -132,11 +152,32 @@ pub fn folder_beside(path: &Path) -> io::Result<TempDir> {
 
 /// The folder that `path` is in, made where it is missing.
 fn folder_of(path: &Path) -> io::Result<&Path> {
-    let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let folder = folder.unwrap_or(Path::new("."));
-    attempt(path)?;
-    fs::create_dir_all(folder)?;
+    let folder = above(path);
+    make_folder(folder)?;
     Ok(folder)
+}
+
+/// The folder that `path` is in.
+fn above(path: &Path) -> &Path {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    folder.unwrap_or(Path::new("."))
+}
+
+/// Makes the folder at `path` and those above it where they are missing, their names durable.
+///
+/// # Errors
+/// When one of them cannot be made.
+pub fn make_folder(path: &Path) -> io::Result<()> {
+    if path.is_dir() {
+        return Ok(());
+    }
+    make_folder(above(path))?;
+    attempt(path)?;
+    match fs::create_dir(path) {
+        Err(_) if path.is_dir() => {}
+        outcome => outcome?,
+    }
+    sync_folder(above(path))
 }
 
 /// A file under a name of its own, readable for whom the user's mask allows.

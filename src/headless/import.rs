@@ -1,8 +1,7 @@
 //! `grainfall import DUMP…`: what another engine computed, as a run's folder.
 
-use super::Report;
-use super::Said;
 use super::terminal::say;
+use super::{Progress, Report, Said};
 use crate::engines::{ImportError, ImportSource, import, named_files, scene_from};
 use crate::measure::ResultKey;
 use crate::output::write_file;
@@ -48,7 +47,10 @@ impl ImportTask {
         let files = named_files(&self.files).map_err(refused)?;
         let out = self.out.clone();
         let out = out.unwrap_or_else(|| Path::new("out").join(&source.name));
-        let imported = import(&files, &source, &out, self.restart).map_err(refused)?;
+        let mut progress = Progress::of(self.said.report());
+        let imported = import(&files, &source, &out, self.restart, &mut progress);
+        progress.finish();
+        let imported = imported.map_err(refused)?;
         if let Some(path) = &self.start {
             let scene = scene_from(&imported.scene, &imported.last);
             let text = scene.to_text().map_err(RunnerError::Input)?;

@@ -7,9 +7,10 @@
 use super::OutputError;
 use super::digest::Digested;
 use crate::files::{
-    FolderLock, GrowingFile, LOCK, LockError, is_temporary, read_whole, remove_file, sync_file,
-    sync_folder, write_whole, write_whole_unsynced,
+    FolderLock, GrowingFile, LOCK, LockError, check_target, is_temporary, make_folder, read_whole,
+    remove_file, sync_file, sync_folder, write_whole, write_whole_unsynced,
 };
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
@@ -46,7 +47,7 @@ impl OutputFolder {
         if path.exists() && is_foreign(path).map_err(failed)? {
             return Err(OutputError::ForeignFolder(path.to_owned()));
         }
-        fs::create_dir_all(path).map_err(failed)?;
+        make_folder(path).map_err(failed)?;
         let lock = FolderLock::of(path).map_err(|error| match error {
             LockError::Taken(holder) => OutputError::Taken {
                 path: path.to_owned(),
@@ -75,17 +76,30 @@ impl OutputFolder {
         &self.path
     }
 
-    /// The text of the summary that is in it, if there is one.
+    /// What the summary in it states; nothing where there is none.
     ///
     /// # Errors
     /// When it cannot be read.
-    pub fn summary(&self) -> io::Result<Option<String>> {
+    pub fn summary(&self) -> Result<Value, OutputError> {
         let path = self.path.join(SUMMARY);
         if !path.exists() {
-            return Ok(None);
+            return Ok(Value::Null);
         }
-        let bytes = read_whole(&path, LARGEST)?;
-        Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
+        let bytes = read_whole(&path, LARGEST).map_err(|error| OutputError::write(&path, error))?;
+        // The folder was found to be a run's by this file, so a part of it was written elsewhere.
+        serde_json::from_slice(&bytes).map_err(|error| OutputError::OtherRun {
+            path: self.path.clone(),
+            reason: format!("its {SUMMARY} cannot be read: {error}"),
+        })
+    }
+
+    /// Whether the run in it, if there is one, has come to nothing yet.
+    ///
+    /// # Errors
+    /// When its summary cannot be read.
+    pub fn is_begun_only(&self) -> Result<bool, OutputError> {
+        let summary = self.summary()?;
+        Ok(summary.is_null() || summary["state_hash"].is_null())
     }
 
     /// Name of the frame number `index` of this `kind`, relative to the folder.
@@ -167,6 +181,15 @@ impl OutputFolder {
     /// That of the outcome.
     pub fn named<T>(&self, name: &str, outcome: io::Result<T>) -> Result<T, OutputError> {
         outcome.map_err(|source| OutputError::write(&self.path.join(name), source))
+    }
+
+    /// Whether files called `names` can be written.
+    ///
+    /// # Errors
+    /// When one of them is there and is no regular file.
+    pub fn check(&self, names: &[&str]) -> Result<(), OutputError> {
+        let mut names = names.iter();
+        names.try_for_each(|name| self.named(name, check_target(&self.path.join(name))))
     }
 
     /// Removes the file called `name`, if there is one.

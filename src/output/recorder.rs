@@ -109,6 +109,7 @@ impl Recorder {
     /// # Errors
     /// When the folder cannot be written.
     pub fn begin(subject: Subject, folder: OutputFolder) -> Result<Self, OutputError> {
+        folder.check(&own())?;
         // A checkpoint must not be taken for one of the run that the summary is of.
         folder.remove(CHECKPOINT)?;
         let mut recorder = Self::new(subject, folder, Written::default());
@@ -128,6 +129,7 @@ impl Recorder {
         folder: OutputFolder,
         written: Written,
     ) -> Result<Self, OutputError> {
+        folder.check(&own())?;
         let mut recorder = Self::new(subject, folder, written);
         recorder.mark()?;
         recorder.begin_frames()?;

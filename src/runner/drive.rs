@@ -9,7 +9,6 @@ use crate::measure::Summary;
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
 use crate::run::{Checkpoint, method};
 use crate::world::Clock;
-use serde_json::Value;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -316,7 +315,7 @@ fn find(
             Ok(Some(*kept))
         }
         CheckpointLookup::Unusable(reason) => refuse(reason),
-        CheckpointLookup::Nothing if is_begun_only(folder)? => Ok(None),
+        CheckpointLookup::Nothing if folder.is_begun_only()? => Ok(None),
         CheckpointLookup::Nothing => {
             refuse("it has results and no checkpoint to go on from".into())
         }
@@ -325,7 +324,7 @@ fn find(
 
 /// Refuses to go on in `folder` with a run that another solver computed: its end would be nobody's.
 fn check_method(folder: &OutputFolder) -> Result<(), RunnerError> {
-    match summary(folder)?["method"].as_str() {
+    match folder.summary()?["method"].as_str() {
         Some(other) if other != method() => Err(OutputError::OtherRun {
             path: folder.path().to_owned(),
             reason: format!(
@@ -338,36 +337,16 @@ fn check_method(folder: &OutputFolder) -> Result<(), RunnerError> {
     }
 }
 
-/// Whether the summary in `folder`, if there is one, is of a run that has come to nothing yet.
-fn is_begun_only(folder: &OutputFolder) -> Result<bool, RunnerError> {
-    let summary = summary(folder)?;
-    Ok(summary.is_null() || summary["state_hash"].is_null())
-}
-
 /// Whether `folder` holds all files of the run that is `kept`, which has come to its `duration`
 /// [s].
 fn is_done(kept: &Kept, folder: &OutputFolder, duration: f64) -> Result<bool, RunnerError> {
-    let (summary, world) = (summary(folder)?, kept.checkpoint.world());
+    let (summary, world) = (folder.summary()?, kept.checkpoint.world());
     let files = summary["files"].as_object();
     let is_there = |name: &String| folder.path().join(name).is_file();
     Ok(world.clock.step_at(duration) <= world.clock.step
         && summary["status"] == "done"
         && summary["state_hash"] == world.hash().to_string()
         && files.is_some_and(|files| files.keys().all(is_there)))
-}
-
-/// What the summary in `folder` states; nothing where there is none.
-fn summary(folder: &OutputFolder) -> Result<Value, RunnerError> {
-    let failed = |source| OutputError::write(folder.path(), source);
-    let Some(text) = folder.summary().map_err(failed)? else {
-        return Ok(Value::Null);
-    };
-    // The folder was found to be a run's by this file, so a part of it was written elsewhere.
-    serde_json::from_str(&text).map_err(|error| {
-        let reason = format!("its summary.json cannot be read: {error}");
-        let path = folder.path().to_owned();
-        OutputError::OtherRun { path, reason }.into()
-    })
 }
 
 /// Where a run ends.

@@ -7,13 +7,12 @@
 
 use super::case::{self, CaseResult};
 use super::{Case, Sweep};
-use crate::files::{is_temporary, read_whole, remove_file};
+use crate::files::{holds_files, read_whole, remove_file};
 use crate::output::{OutputError, digest_of_file, write_file};
 use crate::run::VERSION;
 use crate::runner::{RunnerError, look};
 use serde_json::{Map, Value, json};
-use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// The file that says a folder is a sweep's.
@@ -43,7 +42,7 @@ impl SweepFolder {
         let failed = |source| OutputError::write(&sweep.out, source);
         // Another sweep may have made the folder its own between one look and the next.
         let is_foreign = folder.record()?.is_none()
-            && folder.holds_files().map_err(failed)?
+            && holds_files(&folder.path).map_err(failed)?
             && folder.record()?.is_none();
         if is_foreign {
             return Err(RunnerError::Input(format!(
@@ -150,19 +149,5 @@ impl SweepFolder {
         // What is no JSON is no sweep's file either.
         let record: Value = serde_json::from_slice(&bytes).unwrap_or_default();
         Ok((record["program"] == "grainfall").then_some(record))
-    }
-
-    /// Whether it holds files, beside those that were not whole yet when a program stopped.
-    fn holds_files(&self) -> io::Result<bool> {
-        if !self.path.exists() {
-            return Ok(false);
-        }
-        for entry in fs::read_dir(&self.path)? {
-            let name = entry?.file_name();
-            if !name.to_str().is_some_and(is_temporary) {
-                return Ok(true);
-            }
-        }
-        Ok(false)
     }
 }

@@ -290,6 +290,7 @@ fn run_cases(
     let failed = AtomicBool::new(false);
     let stop = || interrupted.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed);
     let results = Mutex::new(Vec::new());
+    let follower = std::thread::current();
     std::thread::scope(|scope| {
         for _ in 0..sweep.jobs.clamp(1, cases.len().max(1)) {
             scope.spawn(|| {
@@ -312,6 +313,7 @@ fn run_cases(
                     failed.fetch_or(result.is_err(), Ordering::Relaxed);
                     let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
                     results.push((index, result));
+                    follower.unpark();
                 }
             });
         }
@@ -341,7 +343,8 @@ fn follow(
     };
     let mut before = None;
     while working() {
-        std::thread::sleep(LOOK_TIME);
+        // Until a case is over, or for so long.
+        std::thread::park_timeout(LOOK_TIME);
         let share = done();
         // What earlier calls had done took no time in this one.
         let before = *before.get_or_insert(share);

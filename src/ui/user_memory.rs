@@ -5,7 +5,7 @@
 //! file that is damaged or cannot be written is reported once; then less is remembered, and nothing
 //! else is lost. Scenes and sessions are not kept here.
 
-use crate::files::write_whole;
+use crate::files::{read_whole, write_whole};
 use crate::ui::detail::Detail;
 use crate::view::Background;
 use bevy::log::warn;
@@ -15,6 +15,8 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+/// Largest file that is read [bytes].
+const LARGEST: u64 = 1 << 20;
 /// Recent files kept.
 const RECENT: usize = 8;
 /// A speed that exceeds the one known by less than this share of it is not news.
@@ -67,8 +69,10 @@ impl UserMemory {
         })
     }
 
-    /// What the file at `path` holds, and from now on what is to be remembered.
+    /// What the file at `path` holds, and from now on what is to be remembered. A symbolic link is
+    /// followed: it is the user's own.
     pub fn at(path: PathBuf) -> Self {
+        let path = fs::canonicalize(&path).unwrap_or(path);
         let kept = read(&path).unwrap_or_else(|reason| {
             warn!("{} is not read: {reason}", path.display());
             Remembered::default()
@@ -170,8 +174,8 @@ impl UserMemory {
 /// # Errors
 /// Where it cannot be read or holds something else.
 fn read(path: &Path) -> io::Result<Remembered> {
-    match fs::read_to_string(path) {
-        Ok(text) => serde_json::from_str(&text).map_err(io::Error::other),
+    match read_whole(path, LARGEST) {
+        Ok(text) => serde_json::from_slice(&text).map_err(io::Error::other),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Remembered::default()),
         Err(error) => Err(error),
     }
@@ -217,5 +221,20 @@ mod tests {
         assert_eq!(UserMemory::at(path.clone()).look(), Look::default());
         fs::write(&path, "{\"recent\": 3").unwrap();
         assert_eq!(UserMemory::at(path).kept, Remembered::default());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_what_is_remembered_stays_one_and_a_device_is_neither_read_nor_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, link] = ["kept.json", "link.json"].map(|name| folder.path().join(name));
+        UserMemory::at(path.clone()).opened("first");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        UserMemory::at(link.clone()).opened("second");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(UserMemory::at(path).recent(), ["second", "first"]);
+        let mut memory = UserMemory::at("/dev/zero".into());
+        memory.opened("third");
+        assert_eq!(memory.file, None, "it is said once and left alone");
     }
 }

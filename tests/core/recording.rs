@@ -346,7 +346,7 @@ fn an_import_plays_without_forces() {
     fs::write(&dump, dump_of(&scene)).unwrap();
     let out = folder.path().join("imported");
     let source = ImportSource::of_scene("drum", scene, Vec::new());
-    import(&[dump], &source, &out, false).unwrap();
+    import(&[dump], &source, &out, false, &mut ()).unwrap();
     let mut lab = playing(&out);
     assert!(lab.recording().unwrap().is_imported);
     assert_eq!(lab.world().unwrap().grains.len(), 60);

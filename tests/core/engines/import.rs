@@ -248,7 +248,7 @@ fn imported_run_is_measured_as_ours() {
     let files = named_files(&[folder.path().to_owned()]).unwrap();
     assert_eq!(files.len(), 11);
     let out = folder.path().join("out");
-    let imported = import(&files, &source, &out, false).unwrap();
+    let imported = import(&files, &source, &out, false, &mut ()).unwrap();
     assert_eq!(imported.frames, 11);
 
     // Column by column, against the samples of the run itself.
@@ -307,14 +307,14 @@ fn import_says_that_it_is_one_and_takes_no_others_folder() {
     let source = ImportSource::of_scene("small-drum", job.scene, Vec::new());
     let files = named_files(&[folder.path().to_owned()]).unwrap();
     let out = folder.path().join("out");
-    import(&files, &source, &out, false).unwrap();
+    import(&files, &source, &out, false, &mut ()).unwrap();
     let summary = fs::read_to_string(out.join("summary.json")).unwrap();
     assert!(summary.contains("\"status\": \"imported\""));
     let refused = RunRecord::read(&out.join("summary.json"))
         .unwrap_err()
         .to_string();
     assert!(refused.contains("cannot be computed again"), "{refused}");
-    let refused = import(&files, &source, &out, false)
+    let refused = import(&files, &source, &out, false, &mut ())
         .unwrap_err()
         .to_string();
     assert!(refused.contains("--restart"), "{refused}");
@@ -322,7 +322,7 @@ fn import_says_that_it_is_one_and_takes_no_others_folder() {
         fs::read_to_string(out.join("summary.json")).unwrap(),
         summary
     );
-    import(&files[..3], &source, &out, true).unwrap();
+    import(&files[..3], &source, &out, true, &mut ()).unwrap();
     assert!(!out.join("grains/grains_000003.vtp").exists());
 }
 
@@ -337,7 +337,9 @@ fn files_that_do_not_fit_are_refused() {
     let mut refuse = |files: &[PathBuf], source: &ImportSource, expected: &str| {
         tried += 1;
         let out = folder.path().join(format!("out-{tried}"));
-        let error = import(files, source, &out, false).unwrap_err().to_string();
+        let error = import(files, source, &out, false, &mut ())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(expected), "{error}");
     };
     refuse(
@@ -376,7 +378,7 @@ fn last_state_begins_a_new_scene() {
     let (job, _) = dumped(folder.path());
     let source = ImportSource::of_scene("small-drum", job.scene, Vec::new());
     let files = named_files(&[folder.path().to_owned()]).unwrap();
-    let imported = import(&files, &source, &folder.path().join("out"), false).unwrap();
+    let imported = import(&files, &source, &folder.path().join("out"), false, &mut ()).unwrap();
     let scene = scene_from(&imported.scene, &imported.last);
     let text = scene.to_text().unwrap();
     let read = Scene::parse("start.ron", &text).unwrap();
@@ -404,7 +406,7 @@ fn export_knows_its_own_dumps() {
             (&scene, "test-lammps")
         );
         let to = folder.path().join("imported");
-        let imported = import(&dumps, &source, &to, true).unwrap();
+        let imported = import(&dumps, &source, &to, true, &mut ()).unwrap();
         assert_eq!(imported.last.grains.species, world.grains.species);
     }
     assert!(ImportSource::beside(folder.path()).unwrap().is_none());
