@@ -1,10 +1,12 @@
 //! Claims about files that somebody else made: what is read of them, what they may name, what they
 //! may ask for.
 
+use grainfall::engines::{Export, ExportRecord, MpiEngine, export};
 use grainfall::runner::read_commands;
 use grainfall::scene::{Scene, StoredCells, within_folders};
 use grainfall::simulation::{RunRecord, Session};
-use grainfall::world::Packing;
+use grainfall::solver::advise;
+use grainfall::world::{Packing, build};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -147,4 +149,30 @@ fn a_record_opens_packings_in_the_folders_of_its_reader_alone() {
     assert!(refusal(read(&[])).contains("--packings-anywhere"));
     // Who asks for nothing of the kind reads what is there.
     assert!(serde_json::from_str::<Scene>(&text).is_ok());
+}
+
+#[test]
+fn the_record_of_an_export_opens_no_packing_elsewhere() {
+    let (_folder, scenes, other) = packing();
+    let mut scene = Scene::open("small-drum").unwrap();
+    scene.set("count", "3").unwrap();
+    let world = build(&scene, advise(&scene).time_step);
+    let handed = Export {
+        name: "drum",
+        scene: &scene,
+        commands: &[],
+        world: &world,
+        is_settled: false,
+    };
+    let deck = scenes.join("deck");
+    export(handed, MpiEngine::Liggghts, &deck).unwrap();
+    fs::copy(other.join("cells.pack"), scenes.join("cells.pack")).unwrap();
+    fs::write(scenes.join("scene.ron"), scene_of("cells.pack")).unwrap();
+    let forged = Scene::load(scenes.join("scene.ron")).unwrap();
+    let text = fs::read_to_string(deck.join("export.json")).unwrap();
+    let mut record: serde_json::Value = serde_json::from_str(&text).unwrap();
+    record["scene"] = serde_json::to_value(forged).unwrap();
+    fs::write(deck.join("export.json"), record.to_string()).unwrap();
+    let message = refusal(ExportRecord::read(&deck));
+    assert!(message.contains("--packings-anywhere"), "{message}");
 }

@@ -13,6 +13,8 @@ mod engines;
 #[cfg(feature = "headless")]
 mod headless;
 mod measure;
+#[cfg(all(feature = "headless", unix))]
+mod outputs;
 mod paper;
 mod parameters;
 mod recorder;
@@ -20,6 +22,7 @@ mod recording;
 #[cfg(feature = "headless")]
 mod reliability;
 mod run;
+mod same_bits;
 mod scene;
 mod session;
 mod solver;

@@ -89,9 +89,14 @@ impl Explored {
 
     /// A run to place 12 that is changed on the way, with the hash at each place.
     pub fn recorded(&self, memory: usize) -> (Timeline, Vec<StateHash>) {
+        self.recorded_to(12, memory)
+    }
+
+    /// The same to the `last` place.
+    pub fn recorded_to(&self, last: u64, memory: usize) -> (Timeline, Vec<StateHash>) {
         let mut timeline = Timeline::new(self.run(), memory);
         let mut hashes = vec![hash(&timeline)];
-        for index in 1..=12 {
+        for index in 1..=last {
             go_on(&mut timeline, self.unit * index);
             let due = self.changes.iter().filter(|(place, _)| *place == index);
             for (_, command) in due {

@@ -14,6 +14,7 @@
 #[path = "../common/allocator.rs"]
 mod allocator;
 mod byte_mutator;
+mod engines;
 mod mutator;
 mod targets;
 
@@ -158,4 +159,14 @@ fn records() {
 #[test]
 fn recordings() {
     fuzz("recording", targets::Recordings::new());
+}
+
+#[test]
+fn files_of_engines() {
+    fuzz("dump", engines::EngineFiles::new());
+}
+
+#[test]
+fn records_of_exports() {
+    fuzz("export.json", engines::ExportRecords::new());
 }

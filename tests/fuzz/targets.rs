@@ -31,13 +31,13 @@ pub trait Target {
     fn take(&mut self, rng: &mut ChaCha8Rng) -> bool;
 }
 
-/// A file in memory where the system has such a place.
-struct Place {
+/// A folder in memory where the system has such a place.
+pub struct Place {
     folder: TempDir,
 }
 
 impl Place {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let in_memory = Path::new("/dev/shm");
         let folder = if in_memory.is_dir() {
             tempfile::tempdir_in(in_memory)
@@ -49,18 +49,18 @@ impl Place {
         }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
         let path = self.path(name);
         fs::write(&path, bytes).expect("a file can be written");
         path
     }
 }
 
-fn one_of<'a, T>(list: &'a [T], rng: &mut ChaCha8Rng) -> &'a T {
+pub fn one_of<'a, T>(list: &'a [T], rng: &mut ChaCha8Rng) -> &'a T {
     &list[rng.random_range(0..list.len())]
 }
 

@@ -17,32 +17,32 @@ fn scene(name: &str, values: &[(&str, &str)]) -> Scene {
     scene
 }
 
-/// Asserts that `scene`, `before` steps after its start by one thread, has the hash `golden` after
+/// Asserts that `scene`, called `name`, `before` steps after its start by one thread, has the hash `golden` after
 /// 300 more by any number of threads.
 #[track_caller]
-fn assert_golden(scene: &Scene, before: u64, golden: &str) {
+fn assert_golden(name: &str, scene: &Scene, before: u64, golden: &str) {
     let mut start = build(scene, advise(scene).time_step);
     Solver::new(1).advance(&mut start, before).unwrap();
     let held = start.contacts.iter().filter(|c| c.bridge.is_some());
+    let [grains, contacts] = [start.grains.len(), start.contacts.len()];
     println!(
-        "{}: {} grains, {} contacts, {} bridges",
-        scene.title,
-        start.grains.len(),
-        start.contacts.len(),
+        "{grains} grains, {contacts} contacts, {} bridges",
         held.count()
     );
-    assert!(start.contacts.len() > start.grains.len(), "grains touch");
+    assert!(contacts > grains, "grains touch");
     for threads in [1, 2, 3, 8] {
         let mut world = start.clone();
         Solver::new(threads).advance(&mut world, 300).unwrap();
         let found = world.hash().to_string();
-        assert_eq!(found, golden, "{}, {threads} threads", scene.title);
+        crate::same_bits::note(name, &format!("golden, threads: {threads}"), &found);
+        assert_eq!(found, golden, "{name}, {threads} threads");
     }
 }
 
 #[test]
 fn dry_drum_has_the_bits_it_always_had() {
     assert_golden(
+        "dry drum",
         &scene("dry-r3", &[]),
         10_000,
         "e303353cbbcd4227b6c487f85be746de",
@@ -57,6 +57,7 @@ fn wet_drum_with_bridges_as_printed_has_the_bits_it_always_had() {
         ("bridge-law", "as-printed"),
     ];
     assert_golden(
+        "wet drum, bridges as printed",
         &scene("wet", &values),
         10_000,
         "ceff0b6a9a3697808bab092190de618d",
@@ -71,6 +72,7 @@ fn wet_drum_with_bridges_as_coded_has_the_bits_it_always_had() {
         ("bridge-law", "as-coded"),
     ];
     assert_golden(
+        "wet drum, bridges as coded",
         &scene("wet", &values),
         10_000,
         "c51d144585f77feb47303ca3e92be48e",
@@ -80,6 +82,7 @@ fn wet_drum_with_bridges_as_coded_has_the_bits_it_always_had() {
 #[test]
 fn wet_drum_of_two_sizes_has_the_bits_it_always_had() {
     assert_golden(
+        "wet drum of two sizes",
         &scene("two-sizes-wet-drum", &[]),
         10_000,
         "cdfb19399c9a0c22ca897c3d3ca7c99f",
@@ -89,20 +92,35 @@ fn wet_drum_of_two_sizes_has_the_bits_it_always_had() {
 #[test]
 fn polyhedra_whose_features_are_full_contacts_have_the_bits_they_always_had() {
     let scene = polyhedra("Full");
-    assert_golden(&scene, 2000, "293bdd870839428e0f82fb9498de6c33");
+    assert_golden(
+        "polyhedra, features in full",
+        &scene,
+        2000,
+        "293bdd870839428e0f82fb9498de6c33",
+    );
 }
 
 #[test]
 fn polyhedra_whose_features_share_their_stiffness_have_the_bits_they_always_had() {
     let scene = polyhedra("Shared");
-    assert_golden(&scene, 2000, "b2b1927e686c147ffaec63859d284f9d");
+    assert_golden(
+        "polyhedra, features share",
+        &scene,
+        2000,
+        "b2b1927e686c147ffaec63859d284f9d",
+    );
 }
 
 #[test]
 fn polyhedra_whose_dashpots_are_implicit_have_the_bits_they_always_had() {
     let mut scene = polyhedra("Full");
     scene.set("integrator", "imex").unwrap();
-    assert_golden(&scene, 1000, "11eae710fe5a95d5cd84741910ed1f1b");
+    assert_golden(
+        "polyhedra, implicit dashpots (IMEX)",
+        &scene,
+        1000,
+        "11eae710fe5a95d5cd84741910ed1f1b",
+    );
 }
 
 /// A drum of cells.
