@@ -34,6 +34,22 @@ pub struct Deposit {
     grains: Vec<Extent>,
 }
 
+/// Where a heap ends and how high it is, for a picture of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepositOutline {
+    /// Distance of the farthest point of a grain from the axis in each sector, NaN where there is
+    /// none [m]. The first sector begins opposite to the x axis, the next ones follow from x to z.
+    pub sectors: [f64; SECTORS],
+    /// Their mean over the sectors that hold a grain, as [`Deposit::front_radius`] [m].
+    pub front: f64,
+    /// Height of the highest grain about the axis, as [`Deposit::height`] [m].
+    pub height: f64,
+    /// Distance from the axis within which that grain is looked for [m].
+    pub middle: f64,
+    /// Radius of the column at the start [m].
+    pub initial_radius: f64,
+}
+
 /// How far one grain reaches.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
@@ -144,7 +160,52 @@ impl Deposit {
     }
 }
 
+impl DepositOutline {
+    /// That of the heap in `world`; none where no column stood, or without grains. Grains that
+    /// another one surely hides are passed over, so that it can be taken for every frame.
+    pub fn of(world: &World) -> Option<Self> {
+        let Shape::Column { radius, .. } = world.container.shape else {
+            return None;
+        };
+        let middle = MIDDLE * radius;
+        let mut sectors = [f64::NAN; SECTORS];
+        // The front is nowhere nearer than this.
+        let (mut nearest, mut height) = (f64::NEG_INFINITY, 0.0_f64);
+        for (i, (centre, bound)) in
+            (world.grains.position.iter().zip(&world.grains.radius)).enumerate()
+        {
+            let distance = from_axis(*centre);
+            let is_inside = distance <= middle;
+            if distance + bound <= nearest && !(is_inside && centre.y + bound > height) {
+                continue;
+            }
+            let extent = Extent::of(world, i);
+            if is_inside {
+                height = height.max(extent.top);
+            }
+            let front = &mut sectors[extent.sector()];
+            if front.is_nan() || extent.reach > *front {
+                *front = extent.reach;
+                let known = |r: &f64| if r.is_nan() { f64::NEG_INFINITY } else { *r };
+                nearest = sectors.iter().map(known).fold(f64::INFINITY, f64::min);
+            }
+        }
+        (!world.grains.is_empty()).then(|| Self {
+            sectors,
+            front: mean_front(&sectors),
+            height,
+            middle,
+            initial_radius: radius,
+        })
+    }
+}
+
 impl Extent {
+    /// Which of the sectors its centre lies in.
+    fn sector(&self) -> usize {
+        ((self.turn * SECTORS as f64) as usize).min(SECTORS - 1)
+    }
+
     fn of(world: &World, i: usize) -> Self {
         let centre = world.grains.position[i];
         let (mut reach, mut top, mut rounding) =
@@ -206,11 +267,17 @@ fn from_axis(x: DVec3) -> f64 {
 fn front_radius<'a>(grains: impl Iterator<Item = &'a Extent>) -> f64 {
     let mut farthest = [f64::NAN; SECTORS];
     for grain in grains {
-        let sector = (grain.turn * SECTORS as f64) as usize;
-        let front = &mut farthest[sector.min(SECTORS - 1)];
+        let front = &mut farthest[grain.sector()];
         *front = front.max(grain.reach);
     }
-    let held: Vec<f64> = farthest.into_iter().filter(|r| r.is_finite()).collect();
+    mean_front(&farthest)
+}
+
+/// Mean over the sectors that hold a grain; NaN without any.
+fn mean_front(sectors: &[f64; SECTORS]) -> f64 {
+    let held: Vec<f64> = (sectors.iter().copied())
+        .filter(|r| r.is_finite())
+        .collect();
     mean(&held)
 }
 

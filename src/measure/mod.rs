@@ -89,7 +89,7 @@ pub use column::{
 pub use contact_network::{
     contact_shares, coordination_number, coordinations, largest_overlap, walls_touched,
 };
-pub use deposit::{Deposit, DepositShape, HeightProfile};
+pub use deposit::{Deposit, DepositOutline, DepositShape, HeightProfile};
 pub use difference::{Difference, difference_in_words};
 pub use drum_torque::drum_torque;
 pub use dry_drum::{DryDrum, beyond_kasper, dry_drum};

@@ -31,6 +31,8 @@ pub struct Quantity {
     pub description: &'static str,
     /// The equation it comes from, empty where there is none: `Eq. 1.1 of Man et al. 2023`.
     pub source: &'static str,
+    /// That equation in symbols, empty where words tell more: `Tg = Σ |u − ū|² / 3N`.
+    pub equation: &'static str,
 }
 
 /// How the values of a quantity are written for people.
@@ -89,6 +91,7 @@ impl Quantity {
         scope: Scope::Everywhere,
         description: "",
         source: "",
+        equation: "",
     };
 
     /// Key and symbol, which some keys hold already: `surface angle θ`.

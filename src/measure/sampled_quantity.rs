@@ -22,6 +22,7 @@ quantities! {
             unit: units::ANGLE,
             format: Format::Fixed(2),
             scope: Scope::Beds,
+            equation: "y = y₀ + x tan θ, with the least Σ (y_k − y₀ − x_k tan θ)²",
         }
         GranularTemperature {
             key: "granular temperature",
@@ -32,6 +33,7 @@ quantities! {
             format: Format::Scientific,
             scope: Scope::Beds,
             source: "Eqs. 21 and 22 of Kasper et al. 2021",
+            equation: "Tg = Σ |u_i − ū_i|² / 3N",
         }
         CorotatingTemperature {
             key: "co-rotating temperature",
@@ -194,6 +196,7 @@ quantities! {
             unit: units::LENGTH,
             format: Format::Fixed(2),
             scope: Scope::Columns,
+            equation: "R = Σ R_k / 72",
         }
         FrontRadius99 {
             key: "99 % radius",

@@ -159,6 +159,7 @@ impl Dock {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
+        view.lit_by_plot = None;
         self.remember_look(root.ctx(), view);
         theme::show(root.ctx(), view.background);
         self.remember_ui(root.ctx(), simulation);

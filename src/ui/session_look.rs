@@ -34,6 +34,9 @@ pub struct SessionLook {
     show_axes: bool,
     show_container: bool,
     show_overlay: bool,
+    /// Not known to sessions saved before it was drawn.
+    #[serde(default = "yes")]
+    show_measured: bool,
     container_opacity: f32,
     projection: ProjectionKind,
     selected: Option<usize>,
@@ -50,6 +53,10 @@ struct PanelLook {
     title: String,
     is_open: bool,
     choices: String,
+}
+
+fn yes() -> bool {
+    true
 }
 
 impl SessionLook {
@@ -76,6 +83,7 @@ impl SessionLook {
             show_axes: view.show_axes,
             show_container: view.show_container,
             show_overlay: view.show_overlay,
+            show_measured: view.show_measured,
             container_opacity: view.container_opacity,
             projection: view.projection,
             selected: view.selected,
@@ -118,6 +126,7 @@ impl SessionLook {
         view.show_axes = self.show_axes;
         view.show_container = self.show_container;
         view.show_overlay = self.show_overlay;
+        view.show_measured = self.show_measured;
         view.container_opacity = self.container_opacity.clamp(0.0, 1.0);
         view.projection = self.projection;
         (view.selected, view.beside) = (self.selected, self.beside);

@@ -3,7 +3,7 @@
 //! In: dark or light. Out: egui's style for the whole window, and a [`Palette`] for what the panels
 //! paint themselves. The picture has its own colours in `view`.
 
-use crate::view::Background;
+use crate::view::{Background, MEASURED_ON_DARK, MEASURED_ON_LIGHT};
 use bevy_egui::egui::style::WidgetVisuals;
 use bevy_egui::egui::{
     self, Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, TextStyle, Theme,
@@ -53,8 +53,12 @@ impl Palette {
     }
 }
 
+const fn rgb([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
 const DARK: Palette = Palette {
-    angle: Color32::from_rgb(0x6C, 0xB8, 0xF6),
+    angle: rgb(MEASURED_ON_DARK),
     temperature: Color32::from_rgb(0xF4, 0xA2, 0x5B),
     threshold: Color32::from_rgb(0x9A, 0xA5, 0xB4),
     maximum: Color32::from_rgb(0xFF, 0xD5, 0x7A),
@@ -76,7 +80,7 @@ const DARK: Palette = Palette {
 };
 
 const LIGHT: Palette = Palette {
-    angle: Color32::from_rgb(0x0B, 0x6B, 0xB8),
+    angle: rgb(MEASURED_ON_LIGHT),
     temperature: Color32::from_rgb(0xB8, 0x55, 0x0A),
     threshold: Color32::from_rgb(0x5D, 0x67, 0x74),
     maximum: Color32::from_rgb(0xA8, 0x6B, 0x00),

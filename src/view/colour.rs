@@ -24,6 +24,11 @@ pub fn species_colour(species: usize) -> [u8; 3] {
     SPECIES[species % SPECIES.len()]
 }
 
+/// sRGB colour of the surface angle and of the front, in the picture as on the plot.
+pub(crate) const MEASURED_ON_DARK: [u8; 3] = [0x6C, 0xB8, 0xF6];
+/// The same on a light ground.
+pub(crate) const MEASURED_ON_LIGHT: [u8; 3] = [0x0B, 0x6B, 0xB8];
+
 /// The colours of everything that is no grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scheme {
@@ -37,6 +42,8 @@ pub struct Scheme {
     pub mark: Color,
     /// The hoops of a drum, the edges of a box.
     pub frame: Color,
+    /// What is measured, as its curve on the plot, sRGB.
+    pub measured: [u8; 3],
     /// Text and scale bar, sRGB.
     pub text: [u8; 3],
     /// Text of less weight, sRGB.
@@ -53,6 +60,7 @@ impl Scheme {
                 line: Color::srgb_u8(0x9F, 0xB0, 0xC6),
                 mark: Color::srgb_u8(0xF2, 0x7D, 0x52),
                 frame: Color::srgb_u8(0x7C, 0x8B, 0x9F),
+                measured: MEASURED_ON_DARK,
                 text: [0xEC, 0xEF, 0xF4],
                 faint_text: [0x9A, 0xA5, 0xB4],
             },
@@ -62,6 +70,7 @@ impl Scheme {
                 line: Color::srgb_u8(0x3F, 0x50, 0x66),
                 mark: Color::srgb_u8(0xD4, 0x55, 0x2A),
                 frame: Color::srgb_u8(0x7C, 0x8C, 0xA0),
+                measured: MEASURED_ON_LIGHT,
                 text: [0x1E, 0x24, 0x2C],
                 faint_text: [0x5D, 0x67, 0x74],
             },

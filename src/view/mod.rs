@@ -15,9 +15,10 @@
 //! | `plugin` | what is set up, and what runs in which order |
 //! | `viewport` | the pointer over the picture |
 //! | `overlay` | scale bar, clock, legend in the picture |
+//! | `measured_marks` | lines and numbers where something is measured |
 //! | `pick` | which grain a point of the picture shows |
 //! | `rig` | Bevy's cameras, which follow the orbiting eye |
-//! | `trace` | follows the grains that are traced |
+//! | `trace` | follows the grains that are traced, and what is measured |
 //! | `container_walls`, `wall_material`, `wall_meshes` | drum, box and planes as one-sided panes |
 //! | `links` | force chains, liquid bridges, velocity arrows |
 //! | `spheres` | spheres as one draw, exact |
@@ -27,9 +28,11 @@
 //! | `quads` | what spheres and links are drawn on |
 //! | `framing` | what of a scene a picture should hold |
 //! | `camera` | the orbiting eye, without Bevy's entities |
+//! | `ink` | text and lines into the picture |
 //! | `colour` | every colour, the legend |
 //! | `shown_worlds` | the worlds in the picture |
-//! | `view_settings`, `trail` | what a person chose to see; the ways of chosen grains |
+//! | `view_settings` | what a person chose to see |
+//! | `trail`, `measured` | the ways of chosen grains; what is measured of a world |
 //! | `halves`, `scale` | the picture in parts; lengths and numbers in it |
 //! | `film`, `png` | films and pictures as files |
 
@@ -41,7 +44,10 @@ mod film;
 mod framing;
 mod grain_buffer;
 mod halves;
+mod ink;
 mod links;
+mod measured;
+mod measured_marks;
 mod occlusion;
 mod overlay;
 mod pick;
@@ -63,10 +69,12 @@ mod wall_material;
 mod wall_meshes;
 
 pub use camera::{CameraPose, OrbitCamera, apply_response};
-pub(crate) use colour::round_up;
+pub(crate) use colour::{MEASURED_ON_DARK, MEASURED_ON_LIGHT, round_up};
 pub use colour::{species_colour, trail_colour};
 pub use film::{FILM_RATE, FilmKind, FilmWriter};
 pub use grain_buffer::GrainBuffer;
+pub use measured::Measured;
+pub use measured_marks::Protractor;
 pub use overlay::Caption;
 pub use plugin::ViewPlugin;
 pub use png::{save_drawing, save_png};

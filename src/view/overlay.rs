@@ -7,15 +7,15 @@
 use crate::measure::numeral;
 use crate::simulation::Half;
 use crate::view::camera::OrbitCamera;
-use crate::view::colour::{SELECTED, Scheme, species_colour, stride, trail_colour};
+use crate::view::colour::{SELECTED, species_colour, stride, trail_colour};
 use crate::view::framing::ring_distance;
 use crate::view::grain_buffer::CutPlanes;
 use crate::view::halves::BETWEEN;
+use crate::view::ink::{Ink, rgb};
 use crate::view::links::LinkKind;
 use crate::view::scale::{Prefixed, ScaleBar, length, short_number, with_unit};
 use crate::view::view_settings::{ColourMap, CoordinateAxis, Legend, ViewSettings};
 use crate::world::{self, World};
-use bevy::color::{Color, ColorToPacked};
 use bevy::math::{Vec2, Vec3};
 use bevy_egui::egui::{
     Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, StrokeKind,
@@ -60,13 +60,7 @@ pub(super) fn overlay(
     settings: &ViewSettings,
     camera: &OrbitCamera,
 ) {
-    let scheme = Scheme::of(settings.background);
-    let ink = Ink {
-        painter,
-        text: rgb(scheme.text),
-        faint: rgb(scheme.faint_text),
-        veil: rgb(srgb(scheme.background)).gamma_multiply(0.75),
-    };
+    let ink = Ink::new(painter, settings.background);
     let mut inner = rect.shrink(INSET);
     if let Some(title) = &caption.title {
         let is_described = part.half == settings.focus;
@@ -151,20 +145,6 @@ fn heading(ink: &Ink, rect: Rect, title: &str, is_described: bool) -> Rect {
     }
     ink.painter.galley(place.min, text, ink.text);
     ground
-}
-
-struct Ink<'a> {
-    painter: &'a Painter,
-    text: Color32,
-    faint: Color32,
-    veil: Color32,
-}
-
-impl Ink<'_> {
-    fn write(&self, at: Pos2, anchor: Align2, text: impl ToString, size: f32, colour: Color32) {
-        self.painter
-            .text(at, anchor, text, FontId::proportional(size), colour);
-    }
 }
 
 fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
@@ -288,7 +268,7 @@ fn selection(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, setting
         if named {
             let is_cut = CutPlanes::of(settings.cut).take_away(centre);
             let text = format!("grain {grain}{}", if is_cut { ", cut away" } else { "" });
-            outlined(ink, at - vec2(0.0, radius + 4.0), &text, rgb(SELECTED));
+            ink.outlined(at - vec2(0.0, radius + 4.0), &text, rgb(SELECTED));
         }
     }
 }
@@ -312,23 +292,9 @@ fn trails(ink: &Ink, rect: Rect, camera: &OrbitCamera, half: Half, settings: &Vi
         ink.painter
             .add(Shape::line(points, Stroke::new(2.0, colour)));
         if settings.selected != Some(trail.grain) {
-            outlined(ink, head - vec2(0.0, 6.0), &trail.grain.to_string(), colour);
+            ink.outlined(head - vec2(0.0, 6.0), &trail.grain.to_string(), colour);
         }
     }
-}
-
-/// Light text over its `at` that stands out from any grain: on a dark ground.
-fn outlined(ink: &Ink, at: Pos2, text: &str, colour: Color32) {
-    let font = FontId::proportional(13.0);
-    let text = ink.painter.layout_no_wrap(text.to_owned(), font, colour);
-    let place = Align2::CENTER_BOTTOM.anchor_size(at, text.size());
-    let ground = place.expand2(vec2(4.0, 0.0));
-    ink.painter.rect_filled(
-        ground,
-        CornerRadius::same(4),
-        Color32::from_black_alpha(190),
-    );
-    ink.painter.galley(place.min, text, colour);
 }
 
 /// The directions of the axes.
@@ -410,13 +376,4 @@ fn gradient(rect: Rect, map: ColourMap) -> Mesh {
         mesh.add_triangle(2 * i + 1, 2 * i + 3, 2 * i + 2);
     }
     mesh
-}
-
-fn srgb(colour: Color) -> [u8; 3] {
-    let [r, g, b, _] = colour.to_srgba().to_u8_array();
-    [r, g, b]
-}
-
-fn rgb([r, g, b]: [u8; 3]) -> Color32 {
-    Color32::from_rgb(r, g, b)
 }

@@ -41,7 +41,7 @@ impl Plugin for ViewPlugin {
             .add_systems(Startup, rig::spawn)
             .add_systems(
                 Update,
-                (take_newest, trace::follow)
+                (take_newest, (trace::follow, trace::measure))
                     .chain()
                     .in_set(ViewSystems::Take),
             )

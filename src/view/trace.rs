@@ -1,8 +1,10 @@
-//! Follows the grains that are traced.
+//! Follows the grains that are traced, and what is measured.
 //!
-//! In: the worlds shown, which grains are traced. Out: their trails, in the view's settings.
+//! In: the worlds shown, which grains are traced. Out: their trails and what is measured of the
+//! worlds, in the view's settings.
 
 use crate::simulation::Half;
+use crate::view::measured::Measured;
 use crate::view::shown_worlds::ShownWorlds;
 use crate::view::trail::Trail;
 use crate::view::view_settings::ViewSettings;
@@ -42,6 +44,19 @@ pub(super) fn follow(shown: Res<ShownWorlds>, mut settings: ResMut<ViewSettings>
             trails.len() - 1
         });
         trails[own].add(world.time(), place.as_vec3());
+    }
+}
+
+/// Measures the worlds that are shown, where that is to be seen.
+pub(super) fn measure(shown: Res<ShownWorlds>, mut settings: ResMut<ViewSettings>) {
+    let is_known = settings.measured != [const { Measured::NOTHING }; 2];
+    if !settings.show_measured {
+        if is_known {
+            settings.measured = [const { Measured::NOTHING }; 2];
+        }
+    } else if shown.is_changed() || !is_known {
+        let of = |half| shown.half(half).map_or(Measured::NOTHING, Measured::of);
+        settings.measured = Half::ALL.map(of);
     }
 }
 

@@ -2,8 +2,9 @@
 //!
 //! In: choices made in panels. Out: plain data that the view reads every frame. Nothing here draws.
 
-use crate::measure::GrainQuantity;
+use crate::measure::{GrainQuantity, Measure};
 use crate::simulation::Half;
+use crate::view::measured::Measured;
 use crate::view::trail::Trail;
 use crate::world::World;
 use bevy::prelude::Resource;
@@ -50,6 +51,8 @@ pub struct ViewSettings {
     pub container_opacity: f32,
     /// Whether the scale bar, the clock and the legend are drawn into the picture.
     pub show_overlay: bool,
+    /// Whether what is measured is drawn where it is measured.
+    pub show_measured: bool,
     /// How depth is shown.
     pub projection: ProjectionKind,
     /// The background.
@@ -69,6 +72,12 @@ pub struct ViewSettings {
     pub link_scales: LinkScales,
     /// Out: where the traced grains have been.
     pub trails: Vec<Trail>,
+    /// Out: what is measured of the worlds shown, in each half; nothing where it is not drawn.
+    pub measured: [Measured; 2],
+    /// In: the measure whose curve is under the pointer.
+    pub lit_by_plot: Option<Measure>,
+    /// Out: the measure whose mark in the picture is under the pointer.
+    pub lit_by_picture: Option<Measure>,
 }
 
 impl Default for ViewSettings {
@@ -91,6 +100,7 @@ impl Default for ViewSettings {
             show_container: true,
             container_opacity: 0.5,
             show_overlay: true,
+            show_measured: true,
             projection: ProjectionKind::Perspective,
             background: Background::Dark,
             camera_request: None,
@@ -100,6 +110,9 @@ impl Default for ViewSettings {
             legend: None,
             link_scales: LinkScales::default(),
             trails: Vec::new(),
+            measured: [const { Measured::NOTHING }; 2],
+            lit_by_plot: None,
+            lit_by_picture: None,
         }
     }
 }

@@ -7,6 +7,8 @@
 use crate::simulation::Half;
 use crate::view::camera::{OrbitCamera, apply_response};
 use crate::view::halves::parts;
+use crate::view::ink::Ink;
+use crate::view::measured_marks;
 use crate::view::overlay::{Caption, PicturePart, overlay};
 use crate::view::pick::pick;
 use crate::view::view_settings::ViewSettings;
@@ -25,6 +27,7 @@ pub fn viewport_ui(
     let free = ui.available_rect_before_wrap();
     settings.free_rect = Some(free);
     settings.pixels_per_point = ui.ctx().pixels_per_point();
+    settings.lit_by_picture = None;
     let halves = Half::ALL.into_iter().zip(captions);
     for (rect, (half, caption)) in parts(free, captions.len()).zip(halves) {
         let response = ui.interact(rect, Id::new(("picture", half)), Sense::click_and_drag());
@@ -37,6 +40,7 @@ pub fn viewport_ui(
         });
         apply_response(&response, camera);
         click(&response, half, caption, settings, camera);
+        measured(&response, half, caption, settings, camera);
         if settings.show_overlay {
             let part = PicturePart {
                 half,
@@ -45,6 +49,41 @@ pub fn viewport_ui(
             };
             overlay(&ui.painter_at(rect), rect, caption, part, settings, camera);
         }
+    }
+}
+
+/// Draws what is measured where it is measured; the pointer there is told how.
+fn measured(
+    response: &Response,
+    half: Half,
+    caption: &Caption,
+    settings: &mut ViewSettings,
+    camera: &OrbitCamera,
+) {
+    let Some(world) = caption.world.filter(|_| settings.show_measured) else {
+        return;
+    };
+    let rect = response.rect;
+    let painter = response
+        .ctx
+        .layer_painter(response.layer_id)
+        .with_clip_rect(rect);
+    let ink = Ink::new(&painter, settings.background);
+    let shown = &settings.measured[half.index()];
+    let marks = measured_marks::draw(&ink, rect, camera, (world, shown), settings.lit_by_plot);
+    let pointer = response.hover_pos().filter(|_| !response.dragged());
+    let lit = pointer.and_then(|pointer| measured_marks::under(&marks, pointer));
+    if let Some(measure) = lit {
+        settings.lit_by_picture = lit;
+        let quantity = measure.quantity();
+        let text = [
+            quantity.label(),
+            quantity.explanation(),
+            quantity.equation.into(),
+        ];
+        let text = text.into_iter().filter(|line| !line.is_empty());
+        let text = text.collect::<Vec<String>>().join("\n");
+        response.clone().on_hover_text_at_pointer(text);
     }
 }
 

@@ -67,13 +67,15 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         )),
         picture => app.add_plugins(window_plugins(title, picture.as_ref())),
     };
+    let is_plain = job.picture.as_ref().is_some_and(|picture| picture.plain);
     app.add_plugins(EguiPlugin::default())
         .insert_resource(EguiGlobalSettings {
             auto_create_primary_context: false,
             ..default()
         })
         .insert_resource(ViewSettings {
-            show_overlay: !job.picture.as_ref().is_some_and(|picture| picture.plain),
+            show_overlay: !is_plain,
+            show_measured: !is_plain,
             // Several samples a pixel are the processor's work where there is no graphics card.
             smooth_edges: !software || job.picture.is_some(),
             ..default()
@@ -100,7 +102,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         Opened::Scene(_) | Opened::Recording(_) => None,
         Opened::Session(session) => SessionLook::read(session.look()),
     };
-    dock.is_hidden = job.picture.as_ref().is_some_and(|picture| picture.plain);
+    dock.is_hidden = is_plain;
     if let Some(look) = look {
         take_up(look, app.world_mut());
     }

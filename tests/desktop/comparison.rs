@@ -172,7 +172,7 @@ fn plots_of_two(samples: u32, size: [f32; 2]) -> Harness<'static> {
             kept: &[],
             shown: None,
         };
-        plots.curves_ui(ui, &curves);
+        plots.curves_ui(ui, &curves, &mut ViewSettings::default());
     });
     harness.run_steps(3);
     harness

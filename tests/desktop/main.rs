@@ -7,6 +7,7 @@
 
 mod comparison;
 mod lesson;
+mod measured;
 mod panels;
 mod played;
 mod polyhedra;

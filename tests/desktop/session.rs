@@ -235,14 +235,15 @@ fn a_session_looks_as_it_did() {
     work(&mut app);
     let chosen = |app: &App| {
         let view = app.world().resource::<ViewSettings>();
-        let shown = (view.colour_by, view.cut, view.show_axes, view.selected);
+        let marks = (view.show_axes, view.show_measured);
+        let shown = (view.colour_by, view.cut, marks, view.selected);
         (shown, app.world().resource::<OrbitCamera>().pose())
     };
     let first = chosen(&app);
     let mut view = app.world_mut().resource_mut::<ViewSettings>();
     view.colour_by = ColourBy::Quantity(GrainQuantity::Spin);
     view.cut = Some(Cut::Quarter { x: 0.01, z: 0.0 });
-    view.show_axes = true;
+    (view.show_axes, view.show_measured) = (true, false);
     view.selected = Some(2);
     let mut camera = app.world_mut().resource_mut::<OrbitCamera>();
     camera.orbit(Vec2::new(40.0, 10.0));

@@ -11,6 +11,7 @@ use grainfall::physics::LIQUID_CASES;
 use grainfall::scene::{SceneGrains, TimeStep};
 use grainfall::simulation::{Branch, Command, Parameter, SAMPLE_INTERVAL, Simulation, Status};
 use grainfall::ui::{AvalanchePlots, Curves, Level, Request, checks, stable_step};
+use grainfall::view::ViewSettings;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -73,7 +74,7 @@ fn the_numbers_beside_a_plot_are_those_of_the_moment_shown() {
             kept: &[],
             shown: Some(0.01),
         };
-        plots.curves_ui(ui, &curves);
+        plots.curves_ui(ui, &curves, &mut ViewSettings::default());
     });
     harness.run_steps(3);
     harness.get_by_label("28.65");
@@ -244,7 +245,7 @@ fn clickable_plots() -> Harness<'static, Vec<f64>> {
                 kept: &kept,
                 shown: Some(4.0),
             };
-            clicked.extend(plots.curves_ui(ui, &curves));
+            clicked.extend(plots.curves_ui(ui, &curves, &mut ViewSettings::default()));
         },
         Vec::new(),
     )

@@ -66,7 +66,7 @@ impl Photograph {
     }
 
     /// How far the pixel is from the background.
-    fn contrast(&self, place: Vec2) -> u8 {
+    pub fn contrast(&self, place: Vec2) -> u8 {
         let background = self.at(Vec2::new(2.0, 2.0));
         let seen = self.at(place);
         (0..3)
@@ -425,7 +425,7 @@ fn nearer_grains_hide_farther_ones_where_they_intersect() {
 }
 
 /// A drum part filled with a lattice of grains.
-fn drum_of_grains() -> World {
+pub fn drum_of_grains() -> World {
     let mut world = world(
         Shape::Drum {
             radius: 0.0605,

@@ -7,6 +7,7 @@ use crate::scene::built_in;
 use crate::simulation::{Command, Half, Simulation};
 use crate::ui::bars::sides::{OpenSides, why_not_both};
 use crate::ui::bars::time_slider::why_no_undo;
+use crate::ui::panels::picture_settings::MEASURED_HINT;
 use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::SHORTCUTS;
 use crate::ui::widgets::button::button_unless_ui;
@@ -131,6 +132,8 @@ fn view_ui(
             Background::Dark
         };
     }
+    ui.checkbox(&mut view.show_measured, "Show what is measured")
+        .on_hover_text(MEASURED_HINT);
     ui.separator();
     ui.checkbox(&mut shown.left, "Controls on the left");
     ui.checkbox(&mut shown.right, "Plots and results on the right");

@@ -96,14 +96,14 @@ impl Panel for AvalanchePlots {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
         let (changes, kept) = (change_times(simulation), kept_runs(simulation));
         let curves = Curves::of(simulation, &changes, &kept);
         halves_ui(ui, simulation);
         avalanches_ui(ui, simulation, out);
-        let clicked = self.curves_ui(ui, &curves);
+        let clicked = self.curves_ui(ui, &curves, view);
         out.extend(clicked.and_then(|time| seek(simulation, time)));
     }
 }
@@ -139,17 +139,22 @@ fn avalanches_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Reque
 impl AvalanchePlots {
     /// Draws `curves` and the choice of what part of them is in view; returns the time that was
     /// clicked on [s].
-    pub fn curves_ui(&mut self, ui: &mut egui::Ui, curves: &Curves) -> Option<f64> {
+    pub fn curves_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        curves: &Curves,
+        view: &mut ViewSettings,
+    ) -> Option<f64> {
         self.choice_ui(ui);
         let (height, columns) = size_of_plots(ui);
         let palette = Palette::of(ui.visuals());
         let window = self.window.window(curves.series.time(), curves.shown);
         let marks = AvalancheMarks::within(curves, &window, columns, palette);
         let angle = angle_curve(curves, &window, columns, palette);
-        let first = angle.ui(ui, &window, height, |plot| marks.angle_ui(plot));
+        let first = angle.ui(ui, &window, height, view, |plot| marks.angle_ui(plot));
         let temperature = self.temperature_curve(curves, &window, columns, palette);
         let decades = self.logarithmic;
-        let second = temperature.ui(ui, &window, height, |plot| {
+        let second = temperature.ui(ui, &window, height, view, |plot| {
             marks.temperature_ui(plot, decades);
         });
         let mut clicked = None;
@@ -199,6 +204,7 @@ impl AvalanchePlots {
             lines,
             decades,
             unit: "m²/s²",
+            measure,
         }
     }
 
@@ -232,6 +238,7 @@ fn angle_curve(
         lines,
         decades: false,
         unit: "°",
+        measure: Measure::SurfaceAngle,
     }
 }
 

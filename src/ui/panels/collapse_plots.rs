@@ -55,7 +55,7 @@ impl Panel for CollapsePlots {
         &mut self,
         ui: &mut egui::Ui,
         simulation: &Simulation,
-        _view: &mut ViewSettings,
+        view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
         let (changes, kept) = (change_times(simulation), kept_runs(simulation));
@@ -71,7 +71,7 @@ impl Panel for CollapsePlots {
             energy(&all, &window, columns, palette),
         ];
         for plot in plots {
-            let response = plot.ui(ui, &window, height, |plot| marks.ui(plot));
+            let response = plot.ui(ui, &window, height, view, |plot| marks.ui(plot));
             let clicked = clicked_time(&response, &window);
             out.extend(clicked.and_then(|time| seek(simulation, time)));
             self.window.follow_pointer(&response, &window);
@@ -96,6 +96,7 @@ fn front(
         lines,
         decades: false,
         unit: "mm",
+        measure: Measure::FrontRadius,
     }
 }
 
@@ -119,6 +120,7 @@ fn energy(
         lines,
         decades: false,
         unit: "µJ",
+        measure: Measure::TranslationalEnergy,
     }
 }
 

@@ -21,6 +21,10 @@ const MILLIMETRES: f64 = 1e3;
 /// Size of the grains in the picture at which one sees what lies between their centres.
 const LOOK_BETWEEN: f32 = 0.4;
 
+/// What is drawn as measured.
+pub const MEASURED_HINT: &str = "The line whose slope is the surface angle θ; the front R and the height H of a heap. Each is \
+                                 drawn where it is measured, with the number that goes into the plot.";
+
 /// The panel of the picture's settings.
 #[derive(Default)]
 pub struct PictureSettings;
@@ -53,6 +57,8 @@ impl Panel for PictureSettings {
             response.on_hover_text("How strongly the drum or box is drawn");
         });
         ui.checkbox(&mut view.show_overlay, "Scale bar, clock and legend");
+        ui.checkbox(&mut view.show_measured, "What is measured")
+            .on_hover_text(MEASURED_HINT);
         ui.checkbox(&mut view.show_axes, "Axes");
         choices_ui(
             ui,

@@ -2,10 +2,12 @@
 //!
 //! In: the curves and the part of the run in view. Out: the plot, and what the pointer did on it.
 
+use crate::measure::Measure;
 use crate::ui::plots::axes::{SPARSE_X, SPARSE_Y, round_marks, tick, tidy};
 use crate::ui::plots::run_curves::{Lines, compared_line};
 use crate::ui::theme::{Palette, dash};
 use crate::ui::words::number;
+use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
 use egui_plot::{
     AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotUi, Text, VLine,
@@ -16,6 +18,8 @@ use std::ops::RangeInclusive;
 const ROOM_AT_THE_RIGHT: f32 = 14.0;
 /// Width and height of the name of a kept run, as shares of the plot.
 const LABEL_SIZE: [f64; 2] = [0.14, 0.1];
+/// Width of the line whose mark in the picture is under the pointer, in points.
+const LIT_WIDTH: f32 = 3.4;
 /// Room for the value of a run beside the title, in points.
 const ROOM_FOR_VALUE: f32 = 92.0;
 
@@ -37,6 +41,8 @@ pub struct TimePlot {
     pub decades: bool,
     /// The unit behind a number of the vertical axis.
     pub unit: &'static str,
+    /// What its line shows.
+    pub measure: Measure,
 }
 
 /// Height of a plot and number of its columns of pixels in `ui`.
@@ -48,17 +54,21 @@ pub fn size_of_plots(ui: &egui::Ui) -> (f32, usize) {
 
 impl TimePlot {
     /// Draws the plot with `marks` over its lines, for the part of the run in `window` [s],
-    /// `height` points high. The response tells what the pointer did.
+    /// `height` points high. The response tells what the pointer did. The picture is told which
+    /// measure is under the pointer, and the line of that under the pointer there stands out.
     pub fn ui<'a>(
         self,
         ui: &mut egui::Ui,
         window: &RangeInclusive<f64>,
         height: f32,
+        view: &mut ViewSettings,
         marks: impl FnOnce(&mut PlotUi<'a>) + 'a,
     ) -> egui::Response {
         let palette = Palette::of(ui.visuals());
         let colours = [self.colour, palette.compared];
-        head_ui(ui, self.title, &self.present, colours);
+        head_ui(ui, (self.title, self.measure), &self.present, colours);
+        let measure = self.measure;
+        let is_lit = view.lit_by_picture == Some(measure);
         let bounds = PlotBounds::from_min_max(
             [*window.start(), *self.height.start()],
             [*window.end(), *self.height.end()],
@@ -75,7 +85,8 @@ impl TimePlot {
         } else {
             self.title
         };
-        let line = Line::new(name, own).color(self.colour).width(1.7);
+        let width = if is_lit { LIT_WIDTH } else { 1.7 };
+        let line = Line::new(name, own).color(self.colour).width(width);
         let compared = compared.map(|points| compared_line("right", points, palette));
         let shown = plot.show(ui, move |plot| {
             plot.set_plot_bounds(bounds);
@@ -89,6 +100,9 @@ impl TimePlot {
             }
             marks(plot);
         });
+        if shown.response.hovered() {
+            view.lit_by_plot = Some(measure);
+        }
         shown.response
     }
 
@@ -96,6 +110,7 @@ impl TimePlot {
     /// window does.
     fn empty_plot<'a>(&self, room: egui::Vec2, palette: Palette) -> Plot<'a> {
         let (decades, unit) = (self.decades, self.unit);
+        let equation = self.measure.quantity().equation;
         Plot::new(self.id)
             .height(room.y)
             .width(room.x)
@@ -125,18 +140,28 @@ impl TimePlot {
                     .label_spacing(SPARSE_Y * 6.0..=SPARSE_Y * 8.0)
                     .formatter(move |mark, _| tick(mark.value, decades)),
             ])
-            .label_formatter(move |hover| Some(hover_label(hover, decades, unit)))
+            .label_formatter(move |hover| Some(hover_label(hover, decades, unit, equation)))
     }
 }
 
 /// The heading and the value of each run at the moment shown, in one line where there is room.
-fn head_ui(ui: &mut egui::Ui, title: &str, values: &[String], colours: [Color32; 2]) {
+fn head_ui(
+    ui: &mut egui::Ui,
+    (title, measure): (&str, Measure),
+    values: &[String],
+    colours: [Color32; 2],
+) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let words = ui
         .painter()
         .layout_no_wrap(title.to_owned(), font, Color32::WHITE);
     let needed = words.size().x + ROOM_FOR_VALUE * values.len() as f32;
-    let title_ui = |ui: &mut egui::Ui| ui.label(RichText::new(title).strong());
+    let title_ui = |ui: &mut egui::Ui| {
+        let quantity = measure.quantity();
+        let text = format!("{}\n{}", quantity.explanation(), quantity.equation);
+        ui.label(RichText::new(title).strong())
+            .on_hover_text(text.trim_end())
+    };
     let values_ui = |ui: &mut egui::Ui| {
         // From right to left.
         for (index, (text, colour)) in values.iter().zip(colours).enumerate().rev() {
@@ -206,7 +231,7 @@ pub fn moment_ui(plot: &mut PlotUi, time: f64, palette: Palette) {
     );
 }
 
-fn hover_label(hover: &HoverPosition, decades: bool, unit: &str) -> String {
+fn hover_label(hover: &HoverPosition, decades: bool, unit: &str, equation: &str) -> String {
     let (name, position) = match hover {
         HoverPosition::NearDataPoint {
             plot_name,
@@ -228,7 +253,7 @@ fn hover_label(hover: &HoverPosition, decades: bool, unit: &str) -> String {
     if name.is_empty() {
         place
     } else {
-        format!("{name}\n{place}")
+        format!("{name}\n{place}\n{equation}").trim_end().to_owned()
     }
 }
 

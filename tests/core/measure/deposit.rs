@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::DQuat;
-use grainfall::measure::{Deposit, DepositShape, InitialColumn};
+use grainfall::measure::{Deposit, DepositOutline, DepositShape, InitialColumn};
 use grainfall::world::{Polyhedra, Polyhedron};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -59,6 +59,30 @@ fn front_is_the_mean_over_the_sectors_of_their_farthest_grains() {
         put(&mut world, in_sector(sector, 0.03, 1e-3), 1e-3, 1);
     }
     assert_close(Deposit::of(&world).unwrap().front_radius(), 0.081, 1e-15);
+}
+
+#[test]
+fn the_outline_in_the_picture_has_the_front_and_the_height_of_the_samples() {
+    let cone = heap(|distance, height| height < 0.05 - distance);
+    let spheres = [ring(|sector| 0.06 + 0.001 * f64::from(sector)), cone];
+    let mut cubes = spheres[1].clone();
+    let shape = cube_shape(0.9e-3 / 3.0_f64.sqrt());
+    let turned = |i: usize| (0, DQuat::from_rotation_z(i as f64));
+    let bodies: Vec<_> = (0..cubes.grains.len()).map(turned).collect();
+    let polyhedra = Polyhedra::of_grains(&cubes.grains, [shape], &bodies);
+    cubes.polyhedra = Some(Box::new(polyhedra));
+    for world in spheres.iter().chain([&cubes]) {
+        let (deposit, outline) = (Deposit::of(world), DepositOutline::of(world));
+        let (deposit, outline) = (deposit.unwrap(), outline.unwrap());
+        assert_close(outline.front, deposit.front_radius(), 1e-15);
+        assert_close(outline.height, deposit.height(), 1e-15);
+    }
+    let outline = DepositOutline::of(&spheres[0]).unwrap();
+    // The third of those that begin opposite to x is the 39th of those that begin there.
+    assert_close(outline.sectors[3], 0.06 + 0.039 + 1e-3, 1e-15);
+    let mut hole = spheres[0].clone();
+    hole.grains = Default::default();
+    assert_eq!(DepositOutline::of(&hole), None);
 }
 
 #[test]
@@ -149,20 +173,25 @@ fn standing_column_and_truncated_cone_are_frustums() {
     assert_eq!(profile.shape(0.08), DepositShape::Frustum);
 }
 
-/// A cube of edge 2a with a rounding of 0.1 mm, turned by `turn`.
-fn cube(half: f64, turn: DQuat, position: DVec3) -> World {
+/// A cube of edge 2a with a rounding of 0.1 mm.
+fn cube_shape(half: f64) -> Polyhedron {
     let corner = |k: i32| {
         let side = |bit: i32| if k & bit == 0 { -half } else { half };
         DVec3::new(side(1), side(2), side(4))
     };
-    let shape = Polyhedron {
+    Polyhedron {
         vertices: (0..8).map(corner).collect(),
         edges: Vec::new(),
         faces: Vec::new(),
         rounding: 1e-4,
         volume: 8.0 * half.powi(3),
         gyration: DVec3::splat(2.0 / 3.0 * half * half),
-    };
+    }
+}
+
+/// Such a cube, turned by `turn`.
+fn cube(half: f64, turn: DQuat, position: DVec3) -> World {
+    let shape = cube_shape(half);
     let mut world = column(0.025, 0.05, [0.1, 0.4]);
     put(&mut world, position, shape.bounding_radius(), 0);
     let polyhedra = Polyhedra::of_grains(&world.grains, [shape], &[(0, turn)]);

@@ -10,6 +10,7 @@ use grainfall::measure::{Avalanche, Series};
 use grainfall::scene::Scene;
 use grainfall::simulation::{Command, Simulation};
 use grainfall::ui::{AvalanchePlots, Curves, Request};
+use grainfall::view::ViewSettings;
 
 /// Ten thousand samples of a sawtooth, with its avalanches.
 struct Sawtooth {
@@ -56,7 +57,12 @@ fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
     let mut plots = AvalanchePlots::default();
     let mut harness = Harness::builder()
         .with_size([width, 500.0])
-        .build_ui(move |ui| assert_eq!(plots.curves_ui(ui, &data.curves()), None));
+        .build_ui(move |ui| {
+            assert_eq!(
+                plots.curves_ui(ui, &data.curves(), &mut ViewSettings::default()),
+                None
+            )
+        });
     harness.run_steps(2);
     harness.get_by_label("All").click();
     harness.run_steps(3);
@@ -81,7 +87,10 @@ fn plots_without_samples_draw_nothing_and_do_not_fail() {
             kept: &[],
             shown: None,
         };
-        assert_eq!(plots.curves_ui(ui, &empty), None);
+        assert_eq!(
+            plots.curves_ui(ui, &empty, &mut ViewSettings::default()),
+            None
+        );
     });
     harness.run_steps(3);
     harness.get_by_label("Surface angle θ [°]");
