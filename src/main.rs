@@ -16,9 +16,9 @@ use grainfall::physics::units::seconds;
 use grainfall::runner::compared_value;
 use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
 use grainfall::scene::{Scene, built_in};
-#[cfg(feature = "desktop")]
-use grainfall::simulation::Options;
 use grainfall::simulation::{Estimate, Kept, ScriptedCommand};
+#[cfg(feature = "desktop")]
+use grainfall::simulation::{OPENING_SCENE, Options, Session, opening};
 #[cfg(feature = "desktop")]
 use grainfall::window::Opened;
 use std::error::Error;
@@ -202,6 +202,13 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
+    /// Compute the run that the window opens with and write it to a file
+    #[command(hide = true)]
+    Opening {
+        /// The file
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written or the machine gives too little, 2 bad input, \
@@ -224,6 +231,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     allowed.take_effect();
     match arguments.task {
         Some(Task::Bed { scene, out }) => return headless::write_bed(&scene, &allowed, &out),
+        Some(Task::Opening { out }) => return headless::write_opening(&out),
         Some(Task::Verify { file, threads }) => {
             let threads = checked_threads(threads, Report::Text)?;
             return headless::confirm(&file, threads, &allowed, &*interruption()?);
@@ -245,6 +253,17 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         None => {}
     }
     let what = arguments.what;
+    #[cfg(feature = "desktop")]
+    if let Some(session) = opening_session(&what, &arguments.picture, arguments.no_render) {
+        let options = window_options(&what, Vec::new());
+        let name = OPENING_SCENE.to_owned();
+        return open_window(
+            name,
+            Opened::Shipped(session.into()),
+            options,
+            arguments.picture,
+        );
+    }
     let name = what.scene.clone().unwrap_or_else(first_scene);
     #[cfg(feature = "desktop")]
     if Kept::is_at(&name) && !arguments.no_render {
@@ -329,6 +348,23 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
         script.extend(read_commands(path)?);
     }
     Ok((scene, script))
+}
+
+/// The run that the window opens with where nothing is asked for but a window.
+#[cfg(feature = "desktop")]
+fn opening_session(what: &What, picture: &PictureArguments, no_render: bool) -> Option<Session> {
+    let values = [
+        &what.scene,
+        &what.duration,
+        &what.output_interval,
+        &what.sample_interval,
+        &what.time_step,
+        &what.seed,
+        &picture.compare,
+    ];
+    let asks = values.into_iter().any(Option::is_some) || !what.set.is_empty();
+    let takes_files = what.commands.is_some() || picture.screenshot.is_some();
+    (!asks && !takes_files && !no_render).then(opening)?
 }
 
 /// The session or the recording called `name`, which opens as it was.

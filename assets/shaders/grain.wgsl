@@ -17,7 +17,7 @@ struct Grain {
     hidden_xy: f32,
     hidden_yz: f32,
     hidden_zx: f32,
-    // From body axes to the world's.
+    // From body axes to the world's; zeros of a sphere without a pattern.
     orientation: vec4<f32>,
 }
 
@@ -93,6 +93,25 @@ fn skin(colour: vec3<f32>, sky_open: f32, normal: vec3<f32>, to_eye: vec3<f32>) 
     let sky = mix(0.16, 1.0, sky_open);
     let shine = 0.18 * sky * gloss(normal, to_eye);
     return colour * matt_light(normal) * sky + vec3<f32>(shine);
+}
+
+// The vector `v` of the world in the axes of a body that is turned by `q`.
+fn to_body(q: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
+    let t = 2.0 * cross(v, q.xyz);
+    return v + q.w * t + cross(t, q.xyz);
+}
+
+// How a sphere is painted at this unit vector from its centre, so that one sees it turn: its half towards its own x axis
+// dark, a pale band round its y axis. `pixel` is that of the picture in its radii. x: share of the colour that is kept,
+// y: share of the band.
+fn pattern(turned: vec4<f32>, normal: vec3<f32>, pixel: f32) -> vec2<f32> {
+    let own = to_body(turned, normal);
+    let soft = max(pixel, 0.01);
+    let is_dark = smoothstep(-soft, soft, own.x);
+    let is_band = 1.0 - smoothstep(0.13 - soft, 0.13 + soft, abs(own.y));
+    // Nothing where there is no rotation.
+    return vec2<f32>(1.0 - 0.62 * is_dark, 0.85 * is_band) * dot(turned, turned)
+        + vec2<f32>(1.0 - dot(turned, turned), 0.0);
 }
 
 // A flat section of this normal, `from_rim` inside its rim, which is darker over `breadth`.

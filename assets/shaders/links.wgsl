@@ -1,4 +1,5 @@
-// Links between points: round bars that get thicker or thinner towards their end, as bands that face the viewer.
+// Links between points: round bars that get thicker or thinner towards their end, or have a waist, as bands that face
+// the viewer.
 
 #import bevy_pbr::mesh_view_bindings::view
 #import grainfall::grain::ray_through
@@ -9,11 +10,12 @@ struct Link {
     // The larger of the radii at both ends.
     radius: f32,
     to_point: vec3<f32>,
-    // Bytes: the radius at each end in 255ths of the larger one, the place in the palette.
+    // Bytes: the radius at each end in 255ths of the larger one, the place in the palette, how much thinner the middle is.
     shape: u32,
 }
 
 struct Palette {
+    // The fourth number tells how it shines.
     colours: array<vec4<f32>, 4>,
 }
 
@@ -31,7 +33,10 @@ struct Covered {
     // From one edge of the band (−1) to the other (1).
     @location(1) across: f32,
     @location(2) side: vec3<f32>,
-    @location(3) @interpolate(flat) colour: vec3<f32>,
+    @location(3) @interpolate(flat) colour: vec4<f32>,
+    // From one end (−1) to the other (1).
+    @location(4) along: f32,
+    @location(5) @interpolate(flat) waist: f32,
 }
 
 @vertex
@@ -46,18 +51,24 @@ fn vertex(corner: Corner) -> Covered {
     // A link that is seen from its end, or has no length, shows nothing.
     covered.side = sideways * inverseSqrt(max(dot(sideways, sideways), 1e-30));
     covered.across = corner.place.x;
-    let shares = unpack4x8unorm(link.shape).xy;
+    let unpacked = unpack4x8unorm(link.shape);
+    let shares = unpacked.xy;
+    covered.along = corner.place.y;
+    covered.waist = unpacked.w;
     covered.world = middle + corner.place.x * link.radius * mix(shares.x, shares.y, end) * covered.side;
-    covered.colour = palette.colours[(link.shape >> 16u) & 3u].rgb;
+    covered.colour = palette.colours[(link.shape >> 16u) & 3u];
     covered.position = view.clip_from_world * vec4<f32>(covered.world, 1.0);
     return covered;
 }
 
 @fragment
 fn fragment(covered: Covered) -> @location(0) vec4<f32> {
+    let across = covered.across / (1.0 - covered.waist * (1.0 - covered.along * covered.along));
+    if abs(across) > 1.0 { discard; }
     let to_eye = -ray_through(covered.world).direction;
-    let upward = sqrt(max(1.0 - covered.across * covered.across, 0.0));
-    let normal = normalize(covered.across * covered.side + upward * to_eye);
-    let light = covered.colour * matt_light(normal) * mix(0.6, 1.0, upward) + vec3<f32>(0.12 * gloss(normal, to_eye));
+    let upward = sqrt(max(1.0 - across * across, 0.0));
+    let normal = normalize(across * covered.side + upward * to_eye);
+    let light = covered.colour.rgb * matt_light(normal) * mix(0.6, 1.0, upward)
+        + vec3<f32>(covered.colour.a * gloss(normal, to_eye));
     return vec4<f32>(light, 1.0);
 }

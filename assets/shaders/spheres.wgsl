@@ -2,7 +2,7 @@
 
 #import bevy_pbr::mesh_view_bindings::view
 #import grainfall::grain::{
-    Grain, Cut, orthographic, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section,
+    Grain, Cut, orthographic, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section, pattern,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> grains: array<Grain>;
@@ -25,6 +25,7 @@ struct Covered {
     @location(4) @interpolate(flat) colour: vec4<f32>,
     @location(5) @interpolate(flat) hidden_a: vec4<f32>,
     @location(6) @interpolate(flat) hidden_b: vec4<f32>,
+    @location(7) @interpolate(flat) turned: vec4<f32>,
 }
 
 struct Painted {
@@ -41,6 +42,8 @@ fn vertex(corner: Corner) -> Covered {
     covered.colour = vec4<f32>(grain.colour, grain.hidden_mean);
     covered.hidden_a = vec4<f32>(grain.hidden_gradient, grain.hidden_xx);
     covered.hidden_b = vec4<f32>(grain.hidden_yy, grain.hidden_xy, grain.hidden_yz, grain.hidden_zx);
+
+    covered.turned = grain.orientation;
 
     // Selected, not branched to, as in `ray_through`.
     let parallel = orthographic();
@@ -72,7 +75,7 @@ fn handed_over(covered: Covered) -> Grain {
         covered.colour.xyz, covered.colour.w,
         covered.hidden_a.xyz, covered.hidden_a.w,
         covered.hidden_b.x, covered.hidden_b.y, covered.hidden_b.z, covered.hidden_b.w,
-        vec4<f32>(0.0, 0.0, 0.0, 1.0),
+        covered.turned,
     );
 }
 
@@ -103,7 +106,7 @@ fn fragment(covered: Covered) -> Painted {
         hit = ray.origin + exit.t * ray.direction;
         light = section_of(grain, hit, exit.plane, covered.pixel * grain.radius);
     } else {
-        light = surface(grain, normal, -ray.direction);
+        light = surface(grain, normal, -ray.direction, covered.pixel);
     }
 
     let clip = view.clip_from_world * vec4<f32>(hit, 1.0);
@@ -111,10 +114,12 @@ fn fragment(covered: Covered) -> Painted {
 }
 
 // The skin, a little darker where it turns away.
-fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>, pixel: f32) -> vec3<f32> {
     let facing = max(dot(normal, to_eye), 0.0);
-    let turned = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
-    return skin(grain.colour * turned, open_sky(grain, normal), normal, to_eye);
+    let turned_away = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
+    let painted = pattern(grain.orientation, normal, pixel);
+    let colour = mix(grain.colour * painted.x, vec3<f32>(0.9), painted.y);
+    return skin(colour * turned_away, open_sky(grain, normal), normal, to_eye);
 }
 
 // The section by a plane: a disc.

@@ -22,7 +22,7 @@ pub use confirm::confirm;
 pub use export::hand_over;
 pub use import::ImportTask;
 pub use interruption::{check_threads, interruption};
-pub use pack::{write_bed, write_packing};
+pub use pack::{write_bed, write_opening, write_packing};
 pub use paper_task::PaperTask;
 pub use program::run;
 pub use progress::Progress;

@@ -1,5 +1,5 @@
 //! What a scene begins with, computed once and kept in a file: its settled bed, its grains cut from
-//! Voronoi cells.
+//! Voronoi cells; and the run that the window opens with.
 
 use super::{Allowed, Progress};
 use crate::geometry::Rounded;
@@ -7,7 +7,7 @@ use crate::output::write_file;
 use crate::run::Estimate;
 use crate::runner::{RunnerError, apply_settings, available_threads, exit};
 use crate::scene::{Scene, StoredCells};
-use crate::simulation::make_bed;
+use crate::simulation::{make_bed, make_opening};
 use crate::world::Packing;
 use std::path::Path;
 
@@ -21,6 +21,19 @@ pub fn write_bed(name: &str, allowed: &Allowed, path: &Path) -> Result<u8, Runne
     let bed = make_bed(&scene, available_threads())
         .map_err(|error| RunnerError::Input(error.to_string()))?;
     write_file(path, |file| file.write_all(&bed))?;
+    Ok(exit::DONE)
+}
+
+/// Computes the run that the window opens with into a file. Returns the exit code.
+///
+/// # Errors
+/// When it cannot be run or the file cannot be written.
+pub fn write_opening(path: &Path) -> Result<u8, RunnerError> {
+    let session =
+        make_opening(available_threads()).map_err(|error| RunnerError::Input(error.to_string()))?;
+    session
+        .write(path)
+        .map_err(|error| RunnerError::Input(error.to_string()))?;
     Ok(exit::DONE)
 }
 

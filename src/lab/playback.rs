@@ -178,6 +178,7 @@ impl Playback {
             comparison: None,
             runs: vec![RunNews {
                 world: self.shown.1.clone(),
+                turned: None,
                 reached: self.reached,
                 parameters: self.recording.parameters().clone(),
                 branch: branch.clone(),

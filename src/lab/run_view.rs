@@ -7,8 +7,8 @@
 use super::update::RunNews;
 use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
 use crate::run::{
-    Branch, Command, Parameter, ParameterInfo, Past, Sampling, StampedCommand, StepTimes, Value,
-    time_step,
+    Branch, Command, Parameter, ParameterInfo, Past, Sampling, StampedCommand, StepTimes, Turned,
+    Value, time_step,
 };
 use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
@@ -79,6 +79,11 @@ impl RunView {
     /// The newest state; none while the run is prepared.
     pub fn world(&self) -> Option<&Arc<World>> {
         self.news.as_ref().map(|news| &news.world)
+    }
+
+    /// How far each sphere of that state has turned since time zero; none of polyhedra.
+    pub fn orientations(&self) -> Option<&Turned> {
+        self.news.as_ref()?.turned.as_ref()
     }
 
     /// What tells it from every other run that was ever shown.

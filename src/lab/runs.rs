@@ -12,7 +12,7 @@
 use super::Half;
 use super::clock::LabClock;
 use super::update::{RunNews, RunsNews};
-use crate::run::{Branch, Command, CommandError, Parameter, Run, Session, Timeline, Value};
+use crate::run::{Branch, Command, CommandError, Parameter, Run, Session, Timeline, Turned, Value};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::{self, World};
@@ -45,6 +45,8 @@ struct LabRun {
     fault: Option<Fault>,
     profile: Profile,
     shown: Arc<World>,
+    /// How far its spheres have turned.
+    turned: Option<Turned>,
     /// Steps and commands carried out in the state shown.
     shown_at: (u64, usize),
     /// The branch as it is shared with the outside, and since when.
@@ -62,8 +64,10 @@ pub struct Piece {
 }
 
 impl LabRun {
-    fn new(timeline: Timeline) -> Self {
+    fn new(mut timeline: Timeline) -> Self {
+        timeline.follow_orientations();
         Self {
+            turned: timeline.run().orientations(),
             shown: Arc::new(timeline.run().world().clone()),
             shown_at: timeline.steps_and_commands(),
             branch: Arc::new(timeline.branch().clone()),
@@ -81,12 +85,14 @@ impl LabRun {
     fn news(&mut self, is_renewed: bool, rests: bool) -> RunNews {
         if is_renewed {
             self.shown = Arc::new(self.timeline.run().world().clone());
+            self.turned = self.timeline.run().orientations();
             self.shown_at = self.timeline.steps_and_commands();
         }
         self.share_branch(rests);
         RunNews {
             world: self.shown.clone(),
             reached: self.shown.clock.step,
+            turned: self.turned.clone(),
             parameters: self.timeline.run().parameters().clone(),
             branch: self.branch.clone(),
             latest: self.timeline.branch().series.last(),

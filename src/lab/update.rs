@@ -6,7 +6,7 @@
 
 use super::Status;
 use crate::measure::Sample;
-use crate::run::{Branch, Parameter, ParameterInfo, Past, Sampling};
+use crate::run::{Branch, Parameter, ParameterInfo, Past, Sampling, Turned};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
 use std::path::PathBuf;
@@ -44,6 +44,8 @@ pub struct RunNews {
     /// The step that was come to: that of the state, or a later one where only some states of a
     /// run are known.
     pub reached: u64,
+    /// How far each of its spheres has turned since time zero; none of polyhedra.
+    pub turned: Option<Turned>,
     /// The parameters that can change while it goes on.
     pub parameters: Arc<[ParameterInfo]>,
     /// What was changed and measured, up to its end or to a little before it.

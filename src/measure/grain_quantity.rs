@@ -4,6 +4,7 @@
 
 use super::contact_network::coordinations;
 use super::quantity::{Format, Scope, quantities};
+use super::temperature::fluctuations;
 use crate::geometry::sphere_volume;
 use crate::physics::{Unit, units};
 use crate::world::{Partner, World};
@@ -63,6 +64,56 @@ quantities! {
             format: Format::Prefixed,
             scope: Scope::Liquids,
         }
+        Radius {
+            key: "radius",
+            description: "Radius; of a polyhedron that of the sphere round it.",
+            short_label: "Radius",
+            unit: Unit::same("m"),
+            format: Format::Prefixed,
+        }
+        Number {
+            key: "number",
+            description: "Its number, in the order in which the grains were placed.",
+            short_label: "Number",
+            format: Format::Count,
+        }
+        LargestOverlap {
+            key: "largest overlap of grain",
+            description: "Largest overlap with another sphere, in units of its radius.",
+            short_label: "Largest overlap",
+            format: Format::Scientific,
+        }
+        Fluctuation {
+            key: "fluctuation",
+            description: "Mean square, per direction, of its velocity relative to the mean of its \
+                          neighbours within 7r/3, in the drum's frame: its part of the granular \
+                          temperature.",
+            short_label: "Granular temperature",
+            unit: Unit::same("m²/s²"),
+            format: Format::Scientific,
+            source: "Eqs. 21 and 22 of Kasper et al. 2021",
+        }
+        VelocityX {
+            key: "velocity x",
+            description: "Velocity of the centre to the right.",
+            short_label: "Velocity along x",
+            unit: Unit::same("m/s"),
+            format: Format::Prefixed,
+        }
+        VelocityY {
+            key: "velocity y",
+            description: "Velocity of the centre upwards.",
+            short_label: "Velocity along y",
+            unit: Unit::same("m/s"),
+            format: Format::Prefixed,
+        }
+        VelocityZ {
+            key: "velocity z",
+            description: "Velocity of the centre towards the front.",
+            short_label: "Velocity along z",
+            unit: Unit::same("m/s"),
+            format: Format::Prefixed,
+        }
     }
 }
 
@@ -84,8 +135,15 @@ impl GrainQuantity {
             Self::LargestForce | Self::Pressure => {
                 (world.contacts.first()).is_none_or(|contact| contact.force.is_finite())
             }
+            Self::LargestOverlap => world.polyhedra.is_none(),
             _ => true,
         }
+    }
+
+    /// Whether it has a sign.
+    pub fn is_signed(self) -> bool {
+        let signed = [Self::VelocityX, Self::VelocityY, Self::VelocityZ];
+        signed.contains(&self)
     }
 
     /// That of each grain of `world` in the shown unit, appended to `values`.
@@ -108,6 +166,13 @@ impl GrainQuantity {
             Self::LargestForce => append_largest_forces(world, values),
             Self::Pressure => append_pressures(world, values),
             Self::Liquid => values.extend(grains.film.iter().map(|film| litres * film)),
+            Self::Radius => values.extend(grains.radius.iter()),
+            Self::Number => values.extend((0..grains.len()).map(|i| i as f64)),
+            Self::LargestOverlap => append_largest_overlaps(world, values),
+            Self::Fluctuation => values.extend(fluctuations(world)),
+            Self::VelocityX => values.extend(grains.velocity.iter().map(|v| v.x)),
+            Self::VelocityY => values.extend(grains.velocity.iter().map(|v| v.y)),
+            Self::VelocityZ => values.extend(grains.velocity.iter().map(|v| v.z)),
         }
     }
 }
@@ -125,6 +190,23 @@ fn append_largest_forces(world: &World, values: &mut Vec<f64>) {
         meet(contact.grain);
         if let Partner::Grain(other) = contact.partner {
             meet(other);
+        }
+    }
+}
+
+fn append_largest_overlaps(world: &World, values: &mut Vec<f64>) {
+    let first = values.len();
+    let grains = &world.grains;
+    values.resize(first + grains.len(), 0.0);
+    let largest = &mut values[first..];
+    for contact in world.contacts.iter().filter(|contact| contact.touching) {
+        if let Partner::Grain(other) = contact.partner {
+            let pair = [contact.grain as usize, other as usize];
+            let [a, b] = pair.map(|i| (grains.position[i], grains.radius[i]));
+            let overlap = a.1 + b.1 - a.0.distance(b.0);
+            for i in pair {
+                largest[i] = largest[i].max(overlap / grains.radius[i]);
+            }
         }
     }
 }

@@ -80,6 +80,25 @@ pub fn granular_temperatures(world: &World) -> Temperatures {
     }
 }
 
+/// The part of each grain in the temperature of the drum's frame, `|U_i|²/3`, zero without a
+/// neighbour [m²/s²].
+pub(super) fn fluctuations(world: &World) -> Vec<f64> {
+    let drum_spin = DVec3::new(0.0, 0.0, world.container.drum_speed());
+    let around = neighbourhoods(world);
+    let grains = world.grains.velocity.iter().zip(around);
+    let part = |(own, around): (&DVec3, Around)| {
+        let neighbours = f64::from(around.count.max(1));
+        let turning = drum_spin.cross(around.offset / neighbours);
+        let fluctuation = *own - around.velocity / neighbours + turning;
+        if around.count > 0 {
+            fluctuation.length_squared() / 3.0
+        } else {
+            0.0
+        }
+    };
+    grains.map(part).collect()
+}
+
 fn neighbourhoods(world: &World) -> Vec<Around> {
     let grains = &world.grains;
     let mut around = vec![Around::default(); grains.len()];

@@ -11,6 +11,7 @@ use super::history::Moment;
 use super::sampling::Sampling;
 use super::undo::{Changed, Destination, UndoEntry};
 use crate::world::World;
+use glam::Quat;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -140,6 +141,24 @@ impl Archive {
     pub fn set_samplings(&mut self, samplings: &[Sampling]) {
         for (state, sampling) in self.states.iter_mut().zip(samplings) {
             state.snapshot.sampling = *sampling;
+        }
+    }
+
+    /// How far spheres have turned in each state, nothing where that is not known.
+    pub fn orientations(&self) -> impl Iterator<Item = Vec<Quat>> {
+        let turned = |state: &ArchivedState| state.snapshot.turned.as_deref().map(<[Quat]>::to_vec);
+        self.states
+            .iter()
+            .map(move |state| turned(state).unwrap_or_default())
+    }
+
+    /// Turns the spheres of each state so, as far as there are `orientations` of all its grains.
+    pub fn set_orientations(&mut self, orientations: Vec<Vec<Quat>>) {
+        for (state, turned) in self.states.iter_mut().zip(orientations) {
+            let is_rotation = |turn: &Quat| turn.is_finite() && turn.length_squared() > 0.5;
+            let fits = turned.len() == state.snapshot.world.grains.len();
+            let is_known = fits && !turned.is_empty() && turned.iter().all(is_rotation);
+            state.snapshot.turned = is_known.then(|| turned.into());
         }
     }
 

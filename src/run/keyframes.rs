@@ -48,6 +48,11 @@ impl Keyframes {
         }
     }
 
+    /// Whether any are kept.
+    pub fn are_kept(&self) -> bool {
+        self.budget > 0
+    }
+
     /// Memory that they take [bytes].
     pub fn memory(&self) -> usize {
         self.memory

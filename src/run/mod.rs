@@ -8,6 +8,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `opening` | the run that the window opens with |
 //! | `session` | all branches of a run in one file |
 //! | `timeline` | all branches of a run: seek, branch, undo |
 //! | `soundness` | whether what a file kept of a run is what a run can be |
@@ -17,6 +18,7 @@
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
 //! | `snapshot` | where a run stood, in memory or in a file |
+//! | `orientations` | how far spheres have turned, for pictures |
 //! | `method` | which solver and measures computed a run |
 //! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left |
 //! | `tables` | what the columns of tables hold, for programs that read them |
@@ -37,6 +39,8 @@ mod history;
 mod keyframes;
 mod machine;
 mod method;
+mod opening;
+mod orientations;
 mod past;
 mod pieces;
 mod preparation;
@@ -70,6 +74,8 @@ pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMachine, Estimate};
 pub use history::{History, Moment};
 pub use method::method;
+pub use opening::{OPENING_SCENE, OpeningError, make_opening, opening};
+pub use orientations::Turned;
 pub use past::Past;
 pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};

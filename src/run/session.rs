@@ -15,6 +15,7 @@ use super::timeline::Timeline;
 use crate::files::{open_regular, read_whole, write_whole};
 use crate::geometry::Rounded;
 use crate::scene::{HeldCells, Scene, StoredCells, within_folders};
+use glam::Quat;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read};
@@ -23,7 +24,9 @@ use std::path::{Path, PathBuf};
 /// What the first line begins with.
 const MARK: &str = "grainfall session";
 /// Raised whenever what follows the second line is laid out otherwise.
-const LAYOUT: &str = "4";
+const LAYOUT: &str = "5";
+/// The layout that ends where the orientations begin; it is read, too.
+const WITHOUT_ORIENTATIONS: &str = "4";
 /// The layout that ends where [`Tail`] begins; it is read, too.
 const WITHOUT_TAIL: &str = "3";
 
@@ -153,6 +156,14 @@ impl Session {
         })
     }
 
+    /// The session in the `bytes` of a file that is shipped with the program.
+    pub(super) fn of_bytes(bytes: &[u8]) -> Result<Self, SessionError> {
+        Self::decode(bytes).map_err(|reason| SessionError {
+            path: "the session shipped with the program".into(),
+            reason,
+        })
+    }
+
     /// Writes it to the file at `path`, whole or not at all.
     ///
     /// # Errors
@@ -176,6 +187,8 @@ impl Session {
         };
         let body = postcard::to_extend(&rest, body).map_err(io::Error::other)?;
         let body = postcard::to_extend(&tail, body).map_err(io::Error::other)?;
+        let orientations: Vec<Vec<Quat>> = self.archive.orientations().collect();
+        let body = postcard::to_extend(&orientations, body).map_err(io::Error::other)?;
         write_whole(path, |file| {
             let checksum = blake3::hash(&body).to_hex();
             writeln!(file, "{MARK} {LAYOUT} {VERSION} {checksum}")?;
@@ -210,7 +223,7 @@ impl Session {
         else {
             return Err(Reason::Damaged("its first line is not whole"));
         };
-        if ![LAYOUT, WITHOUT_TAIL].contains(&layout) || version != VERSION {
+        if ![LAYOUT, WITHOUT_ORIENTATIONS, WITHOUT_TAIL].contains(&layout) || version != VERSION {
             let build = if version == VERSION {
                 " of another build"
             } else {
@@ -228,10 +241,10 @@ impl Session {
         // A value that no parameter takes stands in the list of changes too, where it has a name.
         let (rest, tail): (Rest<Archive, Vec<Rounded>>, &[u8]) = postcard::take_from_bytes(rest)
             .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
-        let tail = if layout == WITHOUT_TAIL {
-            Tail::default()
-        } else {
-            postcard::from_bytes(tail).map_err(|_| Reason::Damaged(foreign))?
+        let (tail, orientations) = match layout {
+            WITHOUT_TAIL => (Tail::default(), Vec::new()),
+            WITHOUT_ORIENTATIONS => (whole(tail, foreign)?, Vec::new()),
+            _ => whole(tail, foreign)?,
         };
         let _held = rest.cells.and_then(HeldCells::hold);
         // The grains of its scene are in it: no other file is opened.
@@ -246,6 +259,7 @@ impl Session {
         }
         let mut archive = rest.archive;
         archive.set_samplings(&tail.samplings);
+        archive.set_orientations(orientations);
         archive.check(&record.scene).map_err(Reason::Unsound)?;
         let hash = archive.shown().map(|world| world.hash().to_string());
         if !record.is_genuine() || hash != record.state_hash {
@@ -260,6 +274,11 @@ impl Session {
             look: tail.look,
         })
     }
+}
+
+/// What `bytes` hold to their end.
+fn whole<T: DeserializeOwned>(bytes: &[u8], foreign: &'static str) -> Result<T, Reason> {
+    postcard::from_bytes(bytes).map_err(|_| Reason::Damaged(foreign))
 }
 
 /// Why the list of changes in the claim `text` cannot be used, where it cannot.

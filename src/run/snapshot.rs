@@ -5,6 +5,7 @@
 //! the run's work.
 
 use super::StampedCommand;
+use super::orientations::Turned;
 use super::sampling::Sampling;
 use crate::measure::{FlowHistory, Series};
 use crate::world::World;
@@ -23,6 +24,9 @@ pub struct Snapshot {
     /// In a file as it was before samples followed what happens; the rest stands apart there.
     #[serde(with = "on_grid")]
     pub(super) sampling: Sampling,
+    /// How far spheres have turned, where that is followed; stands apart in a file, too.
+    #[serde(skip)]
+    pub(super) turned: Option<Turned>,
 }
 
 impl Snapshot {
@@ -52,7 +56,8 @@ impl Snapshot {
 
     /// Memory that it takes [bytes].
     pub fn memory(&self) -> usize {
-        self.world.memory() + self.flow.memory()
+        let turned = self.turned.as_deref().map_or(0, size_of_val);
+        self.world.memory() + self.flow.memory() + turned
     }
 }
 

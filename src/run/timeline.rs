@@ -127,6 +127,13 @@ impl Timeline {
         self.run.schedule(plan)
     }
 
+    /// Follows how far spheres turn, where keyframes are kept: somebody looks at such a run.
+    pub(crate) fn follow_orientations(&mut self) {
+        if self.keyframes.are_kept() {
+            self.run.follow_orientations();
+        }
+    }
+
     /// The run at the moment shown.
     pub fn run(&self) -> &Run {
         &self.run

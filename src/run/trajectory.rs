@@ -8,6 +8,7 @@
 use super::branch::Branch;
 use super::check::accept;
 use super::history::Moment;
+use super::orientations::{Orientations, Turned};
 use super::sampling::{Pace, Sampling};
 use super::script::Script;
 use super::snapshot::{Checkpoint, Snapshot};
@@ -60,6 +61,7 @@ pub struct Run {
     script: Script,
     /// How many of the script's commands are recorded already, with what the time step became.
     recorded: usize,
+    orientations: Orientations,
     /// Whether the time step stays where the scene lets it follow its limit.
     keeps_step: bool,
     extremes: Extremes,
@@ -86,6 +88,7 @@ impl Run {
             sampling: Sampling::default(),
             script: Script::default(),
             recorded: 0,
+            orientations: Orientations::default(),
             keeps_step: false,
         };
         run.take_due_sample();
@@ -152,6 +155,15 @@ impl Run {
     /// Goes on with `threads` threads, to the same bits.
     pub(crate) fn use_threads(&mut self, threads: usize) {
         self.solver = Solver::new(threads);
+    }
+
+    /// How far each sphere has turned since time zero, from [`Run::follow_orientations`] on.
+    pub fn orientations(&self) -> Option<Turned> {
+        self.orientations.shared()
+    }
+
+    pub(crate) fn follow_orientations(&mut self) {
+        self.orientations.begin(&self.world);
     }
 
     /// Where the solver's time went since this was last called.
@@ -239,12 +251,14 @@ impl Run {
             let sample_step = self.sampling.due(&self.pace, &self.world.clock);
             let script_step = self.script.next_step().unwrap_or(u64::MAX);
             let now = self.world.clock.step;
-            let stop = step.min(sample_step.max(now + 1)).min(script_step);
+            let due = sample_step.max(now + 1).min(script_step);
+            let stop = (self.orientations).before(step.min(due), &self.world);
             if self.before.is_some() {
                 self.step_and_look()?;
             } else {
                 self.solver.advance(&mut self.world, stop - now)?;
             }
+            self.orientations.follow(&self.world);
             self.take_due_sample();
             self.apply_due(false);
         }
@@ -306,6 +320,7 @@ impl Run {
             samples: self.samples,
             flow: self.flow().clone(),
             sampling: self.sampling,
+            turned: self.orientations(),
         }
     }
 
@@ -323,6 +338,7 @@ impl Run {
         self.samples = snapshot.samples.min(self.branch.series.len());
         self.flow = Some(snapshot.flow.clone());
         self.sampling = snapshot.sampling;
+        (self.orientations).jump(&self.world, snapshot.turned.as_deref());
         self.forget_script();
         self.note_end();
     }
@@ -332,6 +348,7 @@ impl Run {
     pub(crate) fn rewind(&mut self) {
         self.world.clone_from(&self.bed);
         (self.commands, self.samples) = (0, 0);
+        self.orientations.jump(&self.world, None);
         self.sampling = Sampling::default();
         self.flow = Some(Arc::default());
         self.forget_script();

@@ -5,7 +5,7 @@
 //! picture. Needs no Bevy app.
 
 use crate::scene::built_in;
-use crate::simulation::{Command, Parameter, Simulation, Status};
+use crate::simulation::{Parameter, Simulation, Status};
 use crate::ui::bars::badge::Badge;
 use crate::ui::bars::menu::menu_ui;
 use crate::ui::bars::sides::{OpenSides, ROOM_FOR_BOTH, ROOM_FOR_ONE};
@@ -39,7 +39,7 @@ use crate::ui::words::run_names::title_in_words;
 use crate::ui::{shortcuts, theme};
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
-use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -121,7 +121,7 @@ impl Default for Dock {
         Self {
             left: left(),
             right: right(),
-            transport: Transport,
+            transport: Transport::default(),
             badge: Badge::default(),
             shown: OpenSides {
                 left: true,
@@ -171,9 +171,6 @@ impl Dock {
             self.sides_ui(root, simulation, view, out);
             let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
             bar.show(root, |ui| self.transport.ui(ui, simulation, out));
-        }
-        if let Some(simulation) = simulation.filter(|simulation| is_untouched(simulation)) {
-            first_play_ui(root, simulation, out);
         }
         self.windows_ui(root.ctx(), out);
         focus_ui(root.ctx(), Palette::of(root.visuals()));
@@ -317,6 +314,11 @@ impl Dock {
         }
     }
 
+    /// Whether the panels say which moment is shown: then the picture need not.
+    pub fn shows_time(&self) -> bool {
+        !self.is_hidden && self.transport.shows_time()
+    }
+
     /// Shows a sheet.
     pub fn show_sheet(&mut self, sheet: Sheet) {
         self.sheet = Some(sheet);
@@ -356,6 +358,7 @@ impl Dock {
             .find(|known| *known == name);
         self.session = None;
         (self.left, self.right) = (left(), right());
+        self.transport = Transport::default();
     }
 
     /// Resets the panels for a scene made from the present one.
@@ -363,6 +366,7 @@ impl Dock {
         self.session = None;
         self.scene = None;
         (self.left, self.right) = (left(), right());
+        self.transport = Transport::default();
     }
 
     /// Does the same for the session in the file called `name`, where it will be saved again.
@@ -454,39 +458,6 @@ impl Dock {
             });
         ctx.request_repaint_after(NOTICE_TIME);
     }
-}
-
-/// Whether the run is at its start and has not been played.
-fn is_untouched(simulation: &Simulation) -> bool {
-    *simulation.status() == Status::Paused && simulation.past().end.step == 0
-}
-
-/// A large Play button over the picture of a scene that has not been played.
-fn first_play_ui(root: &egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let free = root.available_rect_before_wrap();
-    egui::Area::new(Id::new("first play"))
-        .pivot(Align2::CENTER_BOTTOM)
-        .fixed_pos(free.center_bottom() - egui::vec2(0.0, 24.0))
-        .order(egui::Order::Middle)
-        .show(root.ctx(), |ui| {
-            ui.set_width(200.0);
-            ui.vertical_centered(|ui| {
-                let face = RichText::new("▶  Play").size(30.0).strong();
-                let button = ui.add(egui::Button::new(face).min_size(egui::vec2(190.0, 64.0)));
-                let label = format!("Play {}", title_in_words(simulation));
-                button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &label));
-                if button.on_hover_text("Play (Space)").clicked() {
-                    out.push(Request::Command(Command::Play));
-                }
-                if ui
-                    .button("Other scenes…")
-                    .on_hover_text("Scenes with their pictures (Ctrl+G)")
-                    .clicked()
-                {
-                    out.push(Request::ShowScenes);
-                }
-            });
-        });
 }
 
 fn bar_frame(ui: &egui::Ui) -> egui::Frame {

@@ -109,7 +109,8 @@ fn draw_panels(
     }
     // A film runs at its own speed, however long its pictures take.
     let is_filmed = orders.film != FilmState::Idle;
-    let captions = captions(simulation, is_filmed);
+    let has_clock = is_filmed || !dock.shows_time();
+    let captions = captions(simulation, is_filmed, has_clock);
     viewport_ui(&mut root, &captions, &mut view, &mut camera);
     if !dock.is_hidden {
         dock.over_picture_ui(&root, simulation);
@@ -119,13 +120,13 @@ fn draw_panels(
 
 /// What stands in the picture: once, or in each of its halves; how fast it goes, only where it is
 /// not filmed.
-fn captions(simulation: Option<&Simulation>, is_filmed: bool) -> Vec<Caption<'_>> {
+fn captions(simulation: Option<&Simulation>, is_filmed: bool, has_clock: bool) -> Vec<Caption<'_>> {
     let factor = match simulation {
         Some(simulation) if !is_filmed => simulation.real_time_factor(),
         _ => 0.0,
     };
     let is_pair = |simulation: &&Simulation| simulation.comparison().is_some();
-    match simulation.filter(is_pair) {
+    let captions = match simulation.filter(is_pair) {
         None => {
             let run = simulation.map(|simulation| simulation.half(Half::Left));
             vec![caption(run, factor, None)]
@@ -133,7 +134,12 @@ fn captions(simulation: Option<&Simulation>, is_filmed: bool) -> Vec<Caption<'_>
         Some(pair) => Half::ALL
             .map(|half| caption(Some(pair.half(half)), factor, Some(half_title(pair, half))))
             .into(),
-    }
+    };
+    let with_clock = |caption| Caption {
+        has_clock,
+        ..caption
+    };
+    captions.into_iter().map(with_clock).collect()
 }
 
 fn caption(run: Option<&RunView>, factor: f64, title: Option<String>) -> Caption<'_> {
@@ -141,6 +147,7 @@ fn caption(run: Option<&RunView>, factor: f64, title: Option<String>) -> Caption
         world: run.and_then(|run| run.world().map(AsRef::as_ref)),
         real_time_factor: (factor > 0.0).then_some(factor),
         title,
+        has_clock: true,
     }
 }
 

@@ -26,8 +26,10 @@ pub struct SessionLook {
     colour_by: String,
     colour_map: ColourMap,
     range: ColourRange,
+    log_colours: bool,
     cut: Option<Cut>,
     grain_size: f32,
+    show_turning: Option<bool>,
     show_forces: bool,
     show_bridges: bool,
     show_velocities: bool,
@@ -75,8 +77,10 @@ impl SessionLook {
             colour_by: colour_by.into(),
             colour_map: view.colour_map,
             range: view.range,
+            log_colours: view.log_colours,
             cut: view.cut,
             grain_size: view.grain_size,
+            show_turning: view.show_turning,
             show_forces: view.show_forces,
             show_bridges: view.show_bridges,
             show_velocities: view.show_velocities,
@@ -118,8 +122,10 @@ impl SessionLook {
         view.colour_by = quantity.map_or(ColourBy::Species, ColourBy::Quantity);
         view.colour_map = self.colour_map;
         view.range = self.range;
+        view.log_colours = self.log_colours;
         view.cut = self.cut;
         view.grain_size = self.grain_size.clamp(SMALLEST, 1.0);
+        view.show_turning = self.show_turning;
         view.show_forces = self.show_forces;
         view.show_bridges = self.show_bridges;
         view.show_velocities = self.show_velocities;

@@ -84,7 +84,7 @@ impl Scheme {
 pub fn legend(
     worlds: &[&World],
     colour_by: ColourBy,
-    range: ColourRange,
+    (range, is_log): (ColourRange, bool),
     before: Option<&Legend>,
 ) -> Option<Legend> {
     let ColourBy::Quantity(quantity) = colour_by else {
@@ -94,19 +94,33 @@ pub fn legend(
         return None;
     }
     let title = quantity.name();
-    let before = before.filter(|before| before.title == title && before.min == 0.0);
+    let automatic = |before: &&Legend| before.min <= 0.0 || before.is_log;
+    let before = before.filter(|before| before.title == title && automatic(before));
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
         ColourRange::Percentiles(low, high) => percentiles(worlds, quantity, low, high),
-        ColourRange::Automatic => (0.0, automatic_maximum(worlds, quantity, before)),
+        ColourRange::Automatic => {
+            let max = automatic_maximum(worlds, quantity, before);
+            (if quantity.is_signed() { -max } else { 0.0 }, max)
+        }
     };
+    // What has a sign has no logarithm.
+    let is_log = is_log && max > 0.0 && !quantity.is_signed();
     Some(Legend {
         title,
-        min,
+        min: if is_log && min <= 0.0 {
+            max / DECADES
+        } else {
+            min
+        },
         max,
         unit: quantity.unit(),
+        is_log,
     })
 }
+
+/// Largest over smallest number of an automatic range whose steps are factors.
+const DECADES: f64 = 1e4;
 
 /// Calls `paint` with the linear colour of each grain in turn.
 pub fn colours(
@@ -127,14 +141,9 @@ pub fn colours(
     let table: Vec<[f32; 3]> = (0..=255)
         .map(|t| linear(map.colour(f64::from(t) / 255.0)))
         .collect();
-    let scale = if legend.max > legend.min {
-        255.0 / (legend.max - legend.min)
-    } else {
-        0.0
-    };
     for value in values(&[world], quantity) {
-        let place = (value - legend.min) * scale;
-        paint(table[place.round().clamp(0.0, 255.0) as usize]);
+        let place = 255.0 * legend.share(value).min(1.0);
+        paint(table[place.round() as usize]);
     }
 }
 
@@ -180,7 +189,16 @@ fn sampled_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
 /// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four,
 /// at least 8.
 fn automatic_maximum(worlds: &[&World], quantity: GrainQuantity, before: Option<&Legend>) -> f64 {
-    let Some(most) = quantile(&mut sampled_values(worlds, quantity), 0.98) else {
+    let mut values = sampled_values(worlds, quantity);
+    if quantity.is_signed() {
+        for value in &mut values {
+            *value = value.abs();
+        }
+    }
+    if quantity == GrainQuantity::Number {
+        return values.into_iter().fold(1.0, f64::max);
+    }
+    let Some(most) = quantile(&mut values, 0.98) else {
         return 1.0;
     };
     if let Some(before) = before
@@ -297,7 +315,7 @@ mod tests {
             shown = legend(
                 &[&world],
                 ColourBy::Quantity(GrainQuantity::Speed),
-                ColourRange::Automatic,
+                (ColourRange::Automatic, false),
                 shown.as_ref(),
             );
             assert_eq!(
@@ -310,12 +328,15 @@ mod tests {
         let shown = legend(
             &[&world],
             ColourBy::Quantity(GrainQuantity::Speed),
-            fixed,
+            (fixed, false),
             shown.as_ref(),
         )
         .unwrap();
         assert_eq!((shown.min, shown.max), (0.1, 0.7));
-        assert_eq!(legend(&[&world], ColourBy::Species, fixed, None), None);
+        assert_eq!(
+            legend(&[&world], ColourBy::Species, (fixed, false), None),
+            None
+        );
     }
 
     #[test]
@@ -328,7 +349,7 @@ mod tests {
             let legend = legend(
                 worlds,
                 ColourBy::Quantity(GrainQuantity::Speed),
-                range,
+                (range, false),
                 None,
             )
             .unwrap();
@@ -338,5 +359,35 @@ mod tests {
         assert_eq!(range(all, &[&slow, &fast]), (0.01, 0.3));
         assert_eq!(range(ColourRange::Automatic, &[&slow, &fast]), (0.0, 0.4));
         assert_eq!(range(ColourRange::Automatic, &[&slow]).1, 0.01);
+    }
+
+    #[test]
+    fn a_factor_is_a_step_and_a_sign_has_its_zero_in_the_middle() {
+        let mut world = crate::view::test_worlds::grains_in_a_row(5);
+        for (i, velocity) in (0..).zip(&mut world.grains.velocity) {
+            velocity.x = -(10.0_f64.powi(i - 4));
+        }
+        let of = |quantity, range, is_log| {
+            legend(
+                &[&world],
+                ColourBy::Quantity(quantity),
+                (range, is_log),
+                None,
+            )
+            .unwrap()
+        };
+        let fixed = ColourRange::Fixed(1e-4, 1.0);
+        let log = of(GrainQuantity::Speed, fixed, true);
+        for i in 0..5 {
+            let share = log.share(10.0_f64.powi(i - 4));
+            assert!((share - 0.25 * f64::from(i)).abs() < 1e-12, "{share}");
+            assert!((log.value(share) / 10.0_f64.powi(i - 4) - 1.0).abs() < 1e-9);
+        }
+        assert_eq!(log.share(0.0), 0.0);
+        let automatic = of(GrainQuantity::Speed, ColourRange::Automatic, true);
+        assert!(automatic.is_log && automatic.min > 0.0, "{automatic:?}");
+        let signed = of(GrainQuantity::VelocityX, ColourRange::Automatic, true);
+        assert_eq!((signed.min, signed.is_log), (-signed.max, false));
+        assert_eq!(signed.share(0.0), 0.5);
     }
 }

@@ -60,7 +60,7 @@ struct DrawnGrain {
     hidden_mean: f32,
     hidden_gradient: [f32; 3],
     hidden_quadrupole: [f32; 5],
-    /// From body axes to the world's: x, y, z, w.
+    /// From body axes to the world's: x, y, z, w; zeros of a sphere without a pattern.
     orientation: [f32; 4],
 }
 
@@ -100,7 +100,14 @@ pub(super) fn polyhedron(polyhedra: Option<&Polyhedra>, i: usize) -> Option<&Pol
 }
 
 /// What decides the grains' colours and shadows beside the world.
-type Colouring = (ColourBy, ColourMap, ColourRange, Option<Cut>, f32);
+type Colouring = (
+    ColourBy,
+    ColourMap,
+    (ColourRange, bool),
+    Option<Cut>,
+    f32,
+    Option<bool>,
+);
 
 /// What is kept from one frame to the next, so that a frame needs no new room per grain.
 #[derive(Default)]
@@ -138,9 +145,10 @@ fn fill(
     let colouring = (
         settings.colour_by,
         settings.colour_map,
-        settings.range,
+        (settings.range, settings.log_colours),
         settings.cut,
         settings.grain_size,
+        settings.show_turning,
     );
     let moved = shown.is_changed();
     let recoloured = kept.colouring != Some(colouring);
@@ -151,9 +159,11 @@ fn fill(
         kept.colouring = Some(colouring);
         let worlds: Vec<&World> = shown.worlds().collect();
         let before = settings.legend.as_ref();
-        settings.legend = colour::legend(&worlds, settings.colour_by, settings.range, before);
+        let range = (settings.range, settings.log_colours);
+        settings.legend = colour::legend(&worlds, settings.colour_by, range, before);
         for half in Half::ALL {
-            kept.halves[half.index()].redraw(shown.half(half), &settings);
+            let turned = shown.turned(half);
+            kept.halves[half.index()].redraw(shown.half(half), turned, &settings);
         }
     }
     let cut = CutPlanes::of(settings.cut);
@@ -203,12 +213,12 @@ impl HalfBuffer {
 
 impl ColouredHalf {
     /// Writes places and colours, and lets the shadows follow.
-    fn redraw(&mut self, world: Option<&World>, settings: &ViewSettings) {
+    fn redraw(&mut self, world: Option<&World>, turned: Option<&[Quat]>, settings: &ViewSettings) {
         self.drawn.clear();
         self.spheres.clear();
         if let Some(world) = world {
             self.place(world, settings.grain_size);
-            self.colour(world, settings);
+            self.colour(world, turned, settings);
         }
         self.shadows.outdate();
     }
@@ -228,8 +238,15 @@ impl ColouredHalf {
         (self.spheres).extend(places.map(|(i, x)| (x.as_vec3(), size * own(i))));
     }
 
-    fn colour(&mut self, world: &World, settings: &ViewSettings) {
-        let orientations = world.polyhedra.as_deref().map(|p| &p.orientation);
+    fn colour(&mut self, world: &World, turned: Option<&[Quat]>, settings: &ViewSettings) {
+        let polyhedra = world.polyhedra.as_deref();
+        let has_pattern = settings.shows_turning(world);
+        let turn_of = |i: usize| match (polyhedra, turned) {
+            // Without its rotation a sphere has no pattern.
+            _ if !has_pattern && polyhedron(polyhedra, i).is_none() => None,
+            (Some(polyhedra), _) => Some(polyhedra.orientation[i].as_quat()),
+            (None, turned) => turned.and_then(|turned| turned.get(i).copied()),
+        };
         let (drawn, spheres) = (&mut self.drawn, &self.spheres);
         colour::colours(
             world,
@@ -242,9 +259,7 @@ impl ColouredHalf {
                     centre: spheres[i].0.to_array(),
                     radius: settings.grain_size * world.grains.radius[i] as f32,
                     colour,
-                    orientation: orientations.map_or([0.0, 0.0, 0.0, 1.0], |orientations| {
-                        orientations[i].as_quat().to_array()
-                    }),
+                    orientation: turn_of(i).map_or([0.0; 4], Quat::to_array),
                     ..DrawnGrain::zeroed()
                 });
             },

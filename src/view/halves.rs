@@ -7,6 +7,11 @@ use bevy_egui::egui::{Rect, pos2, vec2};
 /// Room between two halves, in points.
 pub(super) const BETWEEN: f32 = 2.0;
 
+/// What is left of `rect` beside a `margin` at its right.
+pub(super) fn beside(rect: Rect, margin: f32) -> Rect {
+    Rect::from_min_max(rect.min, pos2(rect.max.x - margin, rect.max.y))
+}
+
 /// `rect` in `count` equal parts, from left to right.
 pub(super) fn parts(rect: Rect, count: usize) -> impl Iterator<Item = Rect> {
     let width = ((rect.width() + BETWEEN) / count as f32 - BETWEEN).max(0.0);

@@ -3,8 +3,8 @@
 //!
 //! In: the world shown and what of it is to be seen. Out: one draw of round bars, and what their
 //! thickness and length mean. A bar of a force goes from centre to centre, as thick as the force is
-//! large; one that pulls has a waist. A bridge is as thick as its volume makes it. An arrow tapers
-//! to its tip.
+//! large; one that pulls has a waist. A bridge is a meniscus between the grains' surfaces that holds
+//! its volume. An arrow tapers to its tip.
 
 use crate::simulation::Half;
 use crate::view::colour::{linear, quantile, round_up, stride};
@@ -54,6 +54,14 @@ impl LinkKind {
             Self::Velocity => [0xE8, 0xEC, 0xF2],
         }
     }
+
+    /// How strongly the light is mirrored.
+    fn gloss(self) -> f32 {
+        match self {
+            Self::Liquid => 0.7,
+            Self::Push | Self::Pull | Self::Velocity => 0.12,
+        }
+    }
 }
 
 /// Radius of the bar of the reference force, and of the root of an arrow, in mean radii of grains.
@@ -67,6 +75,8 @@ const LARGEST: f64 = 2.0;
 const SMALLEST: f64 = 0.01;
 /// Radius of a waist over that of its bar.
 const WAIST: f64 = 0.35;
+/// Radius of a meniscus at its middle over that of the rings where it meets the grains.
+const MENISCUS_WAIST: f64 = 0.8;
 
 /// Adds the links' material, their entity and what keeps it up to date.
 pub(super) fn plugin(app: &mut App) {
@@ -89,7 +99,7 @@ struct LinkMaterial {
     palette: LinkColours,
 }
 
-/// The linear colour of each [`LinkKind`].
+/// The linear colour of each [`LinkKind`], and how it shines.
 #[derive(Clone, Copy, ShaderType)]
 struct LinkColours {
     colours: [Vec4; LinkKind::ALL.len()],
@@ -131,7 +141,8 @@ struct Link {
     /// The larger of the radii at both ends.
     radius: f32,
     to: [f32; 3],
-    /// Radii at both ends in 255ths of the larger one, and the [`LinkKind`].
+    /// Radii at both ends in 255ths of the larger one, the [`LinkKind`], and how much thinner the
+    /// middle is than straight sides would make it, in 255ths.
     shape: [u8; 4],
 }
 
@@ -145,6 +156,12 @@ impl Link {
             to: ends[1].as_vec3().to_array(),
             shape: [share(radii[0]), share(radii[1]), kind as u8, 0],
         }
+    }
+
+    /// It with a middle of this `waist` over its radius; from there it widens as a parabola.
+    fn with_waist(mut self, waist: f64) -> Self {
+        self.shape[3] = (255.0 * (1.0 - waist)).round() as u8;
+        self
     }
 
     fn middle(&self) -> Vec3 {
@@ -165,7 +182,7 @@ fn spawn(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<LinkMaterial>>,
 ) {
-    let colours = LinkKind::ALL.map(|kind| Vec3::from(linear(kind.colour())).extend(1.0));
+    let colours = LinkKind::ALL.map(|kind| Vec3::from(linear(kind.colour())).extend(kind.gloss()));
     let palette = LinkColours { colours };
     for half in Half::ALL {
         commands.spawn((
@@ -337,14 +354,15 @@ impl Links {
         let [from, to] = ends(world, contact);
         let normal = (to - from).normalize_or_zero();
         let gap = (to - from).length() - radii[0] - radii[1];
-        let neck = neck_radius(bridge.volume, gap, radii);
-        // From where the neck meets one sphere to where it meets the other.
-        let inside = |r: f64| (r * r - (neck * neck).min(r * r)).sqrt();
+        let ring = meniscus_ring(bridge.volume, gap, radii);
+        // From where it meets one sphere to where it meets the other.
+        let inside = |r: f64| (r * r - (ring * ring).min(r * r)).sqrt();
         let ends = [
             from + normal * inside(radii[0]),
             to - normal * inside(radii[1]),
         ];
-        self.push(ends, [neck; 2], LinkKind::Liquid);
+        let bar = Link::new(ends, [ring; 2], LinkKind::Liquid);
+        self.drawn.push(bar.with_waist(MENISCUS_WAIST));
     }
 
     fn arrows(&mut self, world: &World, reference: f64, radius: f64) {
@@ -370,13 +388,17 @@ fn ends(world: &World, contact: &Contact) -> [DVec3; 2] {
     [from, to]
 }
 
-/// Radius of the cylinder of liquid between two spheres of these `radii` at this `gap` that holds
-/// `volume` [m³]: of `V = π q (D + q / 4 r*)`, with `q` the square of the radius, in the spheres'
-/// parabolas.
-fn neck_radius(volume: f64, gap: f64, radii: [f64; 2]) -> f64 {
+/// Radius of the rings where a meniscus that holds `volume` [m³] meets two spheres of these `radii`
+/// at this `gap` [m]. Its own radius goes as a parabola from ring to ring, with its waist between;
+/// with the spheres' parabolas and the square q of the ring's radius it holds
+/// `V = π q (B D + q (B/2 − 1/4)/r*)`, B being the mean square of its radius over that of the ring.
+fn meniscus_ring(volume: f64, gap: f64, radii: [f64; 2]) -> f64 {
     let effective = radii[0] * radii[1] / (radii[0] + radii[1]);
-    let q = 2.0 * effective * ((gap * gap + volume / (PI * effective)).sqrt() - gap);
-    q.max(0.0).sqrt()
+    let (waist, rest) = (MENISCUS_WAIST, 1.0 - MENISCUS_WAIST);
+    let mean_square = waist * waist + 2.0 / 3.0 * waist * rest + 0.2 * rest * rest;
+    let (square, linear) = ((0.5 * mean_square - 0.25) / effective, mean_square * gap);
+    let root = (linear * linear + 4.0 * square * volume / PI).sqrt();
+    ((root - linear) / (2.0 * square)).max(0.0).sqrt()
 }
 
 fn mean_radius(world: &World) -> f64 {
@@ -402,23 +424,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neck_holds_its_volume_between_two_spheres() {
-        // Volume between the spheres inside the cylinder, ring by ring.
-        let (radii, gap, volume) = ([3e-3, 2e-3], 1e-4, 4e-10);
-        let neck = neck_radius(volume, gap, radii);
-        let rings = 20_000;
-        let mut found = 0.0;
-        for k in 0..rings {
-            let rho = neck * (f64::from(k) + 0.5) / f64::from(rings);
-            let sagitta = |r: f64| r - (r * r - rho * rho).sqrt();
-            let height = gap + sagitta(radii[0]) + sagitta(radii[1]);
-            found += 2.0 * PI * rho * height * neck / f64::from(rings);
-        }
-        // Parabolas for circles: (ρ/r)²/8 of the caps, here 2 % of the volume at most.
-        assert!((found / volume - 1.0).abs() < 0.02, "{}", found / volume);
-        // Grains that overlap have a wider neck, and no liquid none.
-        assert!(neck_radius(volume, -1e-5, radii) > neck);
-        assert_eq!(neck_radius(0.0, gap, radii), 0.0);
+    fn meniscus_holds_its_volume_between_two_spheres() {
+        // Slices along the axis from ring to ring, less the caps of the spheres beyond the rings.
+        let (radii, gap, volume) = ([3e-3_f64, 2e-3], 1e-4, 4e-10);
+        let ring = meniscus_ring(volume, gap, radii);
+        let sagitta = radii.map(|r| r - (r * r - ring * ring).sqrt());
+        let height = gap + sagitta[0] + sagitta[1];
+        let slices = 20_000;
+        let slice = |k: i32| {
+            let v = (f64::from(k) + 0.5) / f64::from(slices) * 2.0 - 1.0;
+            let radius = ring * (MENISCUS_WAIST + (1.0 - MENISCUS_WAIST) * v * v);
+            PI * radius * radius * height / f64::from(slices)
+        };
+        let cap = |k: usize| PI * sagitta[k].powi(2) * (radii[k] - sagitta[k] / 3.0);
+        let found = (0..slices).map(slice).sum::<f64>() - cap(0) - cap(1);
+        // Parabolas for circles: (ρ/r)²/8 of the caps, which are twice the liquid.
+        assert!((found / volume - 1.0).abs() < 0.05, "{}", found / volume);
+        // Grains that overlap have a wider one, and no liquid none.
+        assert!(meniscus_ring(volume, -1e-5, radii) > ring);
+        assert_eq!(meniscus_ring(0.0, gap, radii), 0.0);
     }
 
     #[test]

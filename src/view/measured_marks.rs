@@ -213,8 +213,9 @@ impl Sheet<'_> {
                 "here the column stood, R₀ = {}",
                 length(deposit.initial_radius)
             );
-            let from = at(deposit.initial_radius, self.azimuth(-1.2));
-            self.label(from, (Align2::RIGHT_CENTER, 0.0), &text, self.ink.mark);
+            // Before the heap, beside the number of its front.
+            let before = at(deposit.front, self.azimuth(0.0));
+            self.label(before, (Align2::CENTER_TOP, -30.0), &text, self.ink.mark);
         }
         let text = value(front, deposit.front);
         self.label(

@@ -27,6 +27,10 @@ const INSET: f32 = 18.0;
 /// Length that the scale bar does not exceed, in points.
 const LONGEST_BAR: f32 = 180.0;
 
+/// Room for the bar of colours, and for the names of species, at the right of a picture [points].
+const LEGEND_MARGIN: f32 = 128.0;
+const SPECIES_MARGIN: f32 = 96.0;
+
 /// What the overlay of one half of the picture, or of all of it, says beside what the settings
 /// know.
 #[derive(Clone, Debug)]
@@ -37,6 +41,8 @@ pub struct Caption<'a> {
     pub real_time_factor: Option<f64>,
     /// What tells this half from the other.
     pub title: Option<String>,
+    /// Whether the moment shown is written into the picture, and how fast it passes.
+    pub has_clock: bool,
 }
 
 /// Where something is written: which half of the picture, and whether it has the left or the right
@@ -83,15 +89,12 @@ pub(super) fn overlay(
         {
             ring_labels(&ink, rect, camera, world, radius);
         }
-        if part.is_first {
+        if part.is_first && caption.has_clock {
             let at = inner.left_top();
             clock(&ink, at, world.time(), caption.real_time_factor);
         }
         trails(&ink, rect, camera, part.half, settings);
         selection(&ink, rect, camera, world, settings);
-        if part.is_last && settings.legend.is_none() && world.species.len() > 1 {
-            species(&ink, inner.right_bottom(), world);
-        }
     }
     if part.is_first {
         let corner = inner.left_bottom();
@@ -101,8 +104,34 @@ pub(super) fn overlay(
     if part.is_last && settings.show_axes {
         axes(&ink, inner.right_top() + vec2(-44.0, 44.0), camera);
     }
-    if let Some(legend) = settings.legend.as_ref().filter(|_| part.is_last) {
-        colour_bar(&ink, inner.right_bottom(), legend, settings.colour_map);
+}
+
+/// Room beside the pictures of `worlds` for what their colours mean [points].
+pub(super) fn legend_margin<'a>(
+    settings: &ViewSettings,
+    mut worlds: impl Iterator<Item = &'a World>,
+) -> f32 {
+    match settings.legend {
+        _ if !settings.show_overlay => 0.0,
+        Some(_) => LEGEND_MARGIN,
+        None if worlds.any(|world| world.species.len() > 1) => SPECIES_MARGIN,
+        None => 0.0,
+    }
+}
+
+/// Writes what the colours mean into the margin of `rect`.
+pub(super) fn legend(
+    painter: &Painter,
+    rect: Rect,
+    settings: &ViewSettings,
+    world: Option<&World>,
+) {
+    let ink = Ink::new(painter, settings.background);
+    let corner = rect.right_bottom() - vec2(INSET, INSET);
+    match (&settings.legend, world) {
+        (Some(legend), _) => colour_bar(&ink, corner, legend, settings.colour_map),
+        (None, Some(world)) if world.species.len() > 1 => species(&ink, corner, world),
+        (None, _) => {}
     }
 }
 
@@ -221,7 +250,7 @@ fn colour_bar(ink: &Ink, corner: Pos2, legend: &Legend, map: ColourMap) {
     );
     for i in 0..=4 {
         let share = f64::from(i) / 4.0;
-        let value = (legend.min + share * (legend.max - legend.min)) * scale.factor;
+        let value = legend.value(share) * scale.factor;
         let at = pos2(bar.right() + 4.0, bar.bottom() - share as f32 * size.y);
         let stroke = Stroke::new(1.0, ink.faint);
         ink.painter.line_segment([at - vec2(4.0, 0.0), at], stroke);

@@ -5,7 +5,7 @@ use crate::simulation::Half;
 use crate::view::camera::{HOME, OrbitCamera};
 use crate::view::colour::Scheme;
 use crate::view::framing::outline;
-use crate::view::halves::parts;
+use crate::view::halves::{beside, parts};
 use crate::view::shown_worlds::{ShownWorlds, layers};
 use crate::view::view_settings::{ProjectionKind, ViewSettings};
 use crate::world::{Shape, World};
@@ -145,6 +145,7 @@ pub(super) fn follow(
         if let Some(target) = camera.physical_target_size() {
             let whole = egui::Rect::from_min_size(egui::Pos2::ZERO, points(target, &settings));
             let free = settings.free_rect.or(shown.is_pair().then_some(whole));
+            let free = free.map(|free| beside(free, settings.margin));
             let part = free.and_then(|free| parts(free, count).nth(half.index()));
             let viewport = viewport(part, settings.pixels_per_point, target);
             let shape = viewport.as_ref().map_or(target, |v| v.physical_size);

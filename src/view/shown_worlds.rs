@@ -2,7 +2,7 @@
 //!
 //! In: the newest states that the simulation has published. Out: what the rest of the view draws.
 
-use crate::simulation::{Half, Simulation};
+use crate::simulation::{Half, Simulation, Turned};
 use crate::world::World;
 use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
@@ -28,6 +28,8 @@ const WATCHED: f64 = 0.5;
 #[derive(Resource, Default)]
 pub struct ShownWorlds {
     halves: [Option<Arc<World>>; 2],
+    /// How far their spheres have turned, where that is known.
+    turned: [Option<Turned>; 2],
     /// How long grains that fly in the open are followed [s].
     pub(super) watched: f64,
 }
@@ -38,6 +40,12 @@ impl ShownWorlds {
         self.replace([world, None]);
     }
 
+    /// Shows this world from now on, alone, its spheres turned as `turned` says.
+    pub fn show_turned(&mut self, world: Arc<World>, turned: Turned) {
+        self.replace([Some(world), None]);
+        self.turned[Half::Left.index()] = Some(turned);
+    }
+
     /// Shows these two from now on, side by side.
     pub fn show_pair(&mut self, left: Arc<World>, right: Arc<World>) {
         self.replace([Some(left), Some(right)]);
@@ -46,6 +54,7 @@ impl ShownWorlds {
     /// What was shown is freed beside the frame: a large world takes milliseconds.
     fn replace(&mut self, halves: [Option<Arc<World>>; 2]) {
         let before = std::mem::replace(&mut self.halves, halves);
+        self.turned = [None, None];
         match AsyncComputeTaskPool::try_get() {
             Some(pool) => pool.spawn(async move { drop(before) }).detach(),
             None => drop(before),
@@ -60,6 +69,11 @@ impl ShownWorlds {
     /// The world in this half of the picture.
     pub fn half(&self, half: Half) -> Option<&World> {
         self.halves[half.index()].as_deref()
+    }
+
+    /// How far the spheres of that world have turned since time zero, where that is known.
+    pub fn turned(&self, half: Half) -> Option<&[Quat]> {
+        self.turned[half.index()].as_deref()
     }
 
     /// All worlds in the picture.
@@ -92,5 +106,8 @@ pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut
     if !Half::ALL.into_iter().all(is_shown) {
         shown.watched = WATCHED * simulation.scene().duration;
         shown.replace(newest.map(Option::<&Arc<World>>::cloned));
+        let right =
+            (simulation.comparison()).and_then(|comparison| comparison.right.orientations());
+        shown.turned = [simulation.orientations(), right].map(Option::<&Turned>::cloned);
     }
 }

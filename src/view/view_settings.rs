@@ -11,6 +11,9 @@ use bevy::prelude::Resource;
 use bevy_egui::egui;
 use serde::{Deserialize, Serialize};
 
+/// So many grains are watched one by one.
+const FEW: usize = 24;
+
 /// Everything about the picture that a person can choose, and the two things that the panels need
 /// to know of it.
 #[derive(Resource, Clone, Debug, PartialEq)]
@@ -22,10 +25,14 @@ pub struct ViewSettings {
     pub colour_map: ColourMap,
     /// The numbers at the two ends of the colour map.
     pub range: ColourRange,
+    /// Whether equal steps of colour are equal factors.
+    pub log_colours: bool,
     /// What is cut away.
     pub cut: Option<Cut>,
     /// Size of the grains in the picture over their own: smaller ones let one look between them.
     pub grain_size: f32,
+    /// Whether spheres have a pattern that shows how they turn; `None`: where there are a few.
+    pub show_turning: Option<bool>,
     /// Whether the forces between grains are drawn.
     pub show_forces: bool,
     /// Whether liquid bridges are drawn.
@@ -62,6 +69,8 @@ pub struct ViewSettings {
     /// In: the part of the window that the panels leave free, in egui points. `None`: the whole
     /// window.
     pub free_rect: Option<egui::Rect>,
+    /// Out: how much of that at its right is kept for what the colours mean, in egui points.
+    pub margin: f32,
     /// In: physical pixels per egui point.
     pub pixels_per_point: f32,
     /// Whether edges are smoothed by several samples a pixel; read when the picture is set up.
@@ -86,8 +95,10 @@ impl Default for ViewSettings {
             colour_by: ColourBy::Species,
             colour_map: ColourMap::Viridis,
             range: ColourRange::Automatic,
+            log_colours: false,
             cut: None,
             grain_size: 1.0,
+            show_turning: None,
             show_forces: false,
             show_bridges: false,
             show_velocities: false,
@@ -105,6 +116,7 @@ impl Default for ViewSettings {
             background: Background::Dark,
             camera_request: None,
             free_rect: None,
+            margin: 0.0,
             pixels_per_point: 1.0,
             smooth_edges: true,
             legend: None,
@@ -118,6 +130,11 @@ impl Default for ViewSettings {
 }
 
 impl ViewSettings {
+    /// Whether the spheres of `world` have a pattern.
+    pub fn shows_turning(&self, world: &World) -> bool {
+        (self.show_turning).unwrap_or(world.grains.len() <= FEW)
+    }
+
     /// Begins or ends to draw the way of `grain`.
     pub fn trace(&mut self, grain: usize) {
         match self.traced.iter().position(|traced| *traced == grain) {
@@ -379,4 +396,29 @@ pub struct Legend {
     pub max: f64,
     /// The SI unit; empty for a count.
     pub unit: &'static str,
+    /// Whether equal steps of colour are equal factors; both ends are above zero then.
+    pub is_log: bool,
+}
+
+impl Legend {
+    /// Where `value` stands between the ends, 0 … 1 unless it lies beyond them.
+    pub fn share(&self, value: f64) -> f64 {
+        let place = |value: f64| if self.is_log { value.log10() } else { value };
+        let (low, high) = (place(self.min), place(self.max));
+        if high > low && value.is_finite() {
+            // The logarithm of what is not above zero stands below everything.
+            ((place(value) - low) / (high - low)).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// The value at a `share` of the way.
+    pub fn value(&self, share: f64) -> f64 {
+        if self.is_log {
+            self.min * (self.max / self.min).powf(share)
+        } else {
+            self.min + share * (self.max - self.min)
+        }
+    }
 }

@@ -6,14 +6,17 @@
 
 use crate::simulation::Half;
 use crate::view::camera::{OrbitCamera, apply_response};
-use crate::view::halves::parts;
+use crate::view::halves::{beside, parts};
 use crate::view::ink::Ink;
 use crate::view::measured_marks;
-use crate::view::overlay::{Caption, PicturePart, overlay};
+use crate::view::overlay::{Caption, PicturePart, legend, legend_margin, overlay};
 use crate::view::pick::pick;
 use crate::view::view_settings::ViewSettings;
 use bevy::math::Vec2;
 use bevy_egui::egui::{Id, Response, Sense, Ui, WidgetInfo, WidgetType};
+
+/// The legend takes no more of the picture's width than this share.
+const LARGEST_MARGIN: f32 = 0.3;
 
 /// The free part of the window: call it after all panels with what they left. The pointer moves the
 /// camera there, the picture is fitted into it, and the overlay is drawn; twice, side by side,
@@ -28,8 +31,11 @@ pub fn viewport_ui(
     settings.free_rect = Some(free);
     settings.pixels_per_point = ui.ctx().pixels_per_point();
     settings.lit_by_picture = None;
+    let worlds = || captions.iter().filter_map(|caption| caption.world);
+    settings.margin = legend_margin(settings, worlds()).min(LARGEST_MARGIN * free.width());
     let halves = Half::ALL.into_iter().zip(captions);
-    for (rect, (half, caption)) in parts(free, captions.len()).zip(halves) {
+    let picture = beside(free, settings.margin);
+    for (rect, (half, caption)) in parts(picture, captions.len()).zip(halves) {
         let response = ui.interact(rect, Id::new(("picture", half)), Sense::click_and_drag());
         response.widget_info(|| {
             let title = caption
@@ -49,6 +55,9 @@ pub fn viewport_ui(
             };
             overlay(&ui.painter_at(rect), rect, caption, part, settings, camera);
         }
+    }
+    if settings.show_overlay {
+        legend(&ui.painter_at(free), free, settings, worlds().next());
     }
 }
 

@@ -95,11 +95,13 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         dock.remember(UserMemory::user());
     }
     match &job.opened {
-        Opened::Scene(_) | Opened::Recording(_) => dock.scene_opened(&job.name),
+        Opened::Scene(_) | Opened::Shipped(_) | Opened::Recording(_) => {
+            dock.scene_opened(&job.name);
+        }
         Opened::Session(_) => dock.session_opened(&job.name),
     }
     let look = match &job.opened {
-        Opened::Scene(_) | Opened::Recording(_) => None,
+        Opened::Scene(_) | Opened::Shipped(_) | Opened::Recording(_) => None,
         Opened::Session(session) => SessionLook::read(session.look()),
     };
     dock.is_hidden = is_plain;

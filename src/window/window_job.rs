@@ -33,6 +33,8 @@ pub enum Opened {
     Session(Box<Session>),
     /// A recording at its start.
     Recording(Box<Recording>),
+    /// One that comes with the program: a scene on its way, in no file of the person's.
+    Shipped(Box<Session>),
 }
 
 impl Opened {
@@ -40,7 +42,7 @@ impl Opened {
     pub(super) fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
-            Self::Session(session) => &session.record().scene,
+            Self::Session(session) | Self::Shipped(session) => &session.record().scene,
             Self::Recording(recording) => recording.scene(),
         }
     }
@@ -49,7 +51,9 @@ impl Opened {
     pub(super) fn run(self, options: Options) -> Simulation {
         match self {
             Self::Scene(scene) => Simulation::open(*scene, options),
-            Self::Session(session) => Simulation::resume(*session, options),
+            Self::Session(session) | Self::Shipped(session) => {
+                Simulation::resume(*session, options)
+            }
             Self::Recording(recording) => Simulation::play_back(*recording, options),
         }
     }

@@ -3,6 +3,8 @@
 
 use crate::run::{bits, prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
+use grainfall::measure::Measure;
+use grainfall::run::{OPENING_SCENE, method, opening};
 use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, StoredCells};
 use grainfall::simulation::{
@@ -141,7 +143,7 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
         bytes.extend_from_slice(whole.strip_prefix(from.as_bytes()).unwrap());
         bytes
     };
-    let other = format!("grainfall session 4 {VERSION}");
+    let other = format!("grainfall session 5 {VERSION}");
     let cases: [(Vec<u8>, [&str; 2]); 8] = [
         (
             whole[..whole.len() - 1].to_vec(),
@@ -346,4 +348,32 @@ fn run_that_is_still_prepared_has_nothing_to_save_yet_and_waits() {
         Some(same.run().world().hash()),
         simulation.world().map(|w| w.hash())
     );
+}
+
+/// The bits of the whole way are confirmed by `grainfall verify assets/opening.grainfall`.
+#[test]
+fn the_run_that_the_window_opens_with_is_of_this_program_and_began_at_time_zero() {
+    let make = "`grainfall opening --out assets/opening.grainfall` makes it anew";
+    let session = opening().expect(make);
+    assert_eq!(session.look(), format!("method {}", method()), "{make}");
+    let record = session.record().clone();
+    assert_eq!(record.scene, Scene::open(OPENING_SCENE).unwrap());
+    assert!(record.commands.is_empty() && (record.time - 9.0).abs() < 1e-4);
+    let timeline = session.into_timeline(1, 0);
+    let run = timeline.run();
+    // Its samples are those of the whole run, and its spheres have turned since time zero.
+    assert_eq!(run.series().time()[0], 0.0);
+    assert_eq!(run.bed().clock.step, 0);
+    let turned = run.orientations().expect("they are stored with it");
+    let angle = turned.iter().map(|turn| 2.0 * turn.w.abs().min(1.0).acos());
+    let mean = f64::from(angle.sum::<f32>()) / turned.len() as f64;
+    // As the bed has turned with the drum by 27°, grains that rolled by more.
+    assert!((0.4..1.2).contains(&mean), "{mean}");
+    // A second before the first avalanche the bed is steep and has not slid yet.
+    let angles = run.series().column(Measure::SurfaceAngle);
+    let [steepest, last] = [
+        angles.iter().copied().fold(0.0, f64::max),
+        *angles.last().unwrap(),
+    ];
+    assert!(last.to_degrees() > 25.0 && last > steepest - 0.01);
 }

@@ -259,8 +259,9 @@ fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends()
         return;
     };
     let mut app = falling_from_the_front();
-    app.world_mut().resource_mut::<ViewSettings>().colour_by =
-        ColourBy::Quantity(GrainQuantity::Speed);
+    let mut settings = app.world_mut().resource_mut::<ViewSettings>();
+    settings.colour_by = ColourBy::Quantity(GrainQuantity::Speed);
+    settings.show_turning = Some(false);
     let has_two = |s: &Simulation| s.comparison().is_some();
     ask(
         &mut app,

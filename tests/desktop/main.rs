@@ -14,6 +14,7 @@ mod polyhedra;
 mod recording;
 mod session;
 mod timeline;
+mod turning;
 mod view;
 mod window;
 mod window_of_panels;

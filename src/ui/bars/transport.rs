@@ -12,23 +12,46 @@ use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec
 
 /// Room for the clock, and as much for the speed beside it, in points.
 const ROOM_FOR_CLOCK: f32 = 140.0;
+/// What Reset does.
+const RESET_HINT: &str =
+    "Start afresh with the settled bed and the present parameters; the run is kept (R)";
 /// Below this share of the speed asked for, the bar says that the machine is slower.
 const KEEPING_UP: f64 = 0.9;
 
 /// The transport bar.
 #[derive(Default)]
-pub struct Transport;
+pub struct Transport {
+    /// The newest step when it was opened.
+    opened_at: Option<u64>,
+    /// Whether somebody has played what is open.
+    was_played: bool,
+    /// Whether there was room for the clock.
+    shows_time: bool,
+}
 
 impl Transport {
+    /// Whether it says which moment is shown.
+    pub fn shows_time(&self) -> bool {
+        self.shows_time
+    }
+
     /// Draws the bar.
     pub fn ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let status = simulation.status();
+        if simulation.world().is_some() {
+            let newest = simulation.past().end.step;
+            self.was_played |= newest > *self.opened_at.get_or_insert(newest);
+        }
         timeline_ui(ui, simulation, out);
         ui.horizontal_wrapped(|ui| {
+            play_ui(ui, simulation, !self.was_played, out);
             buttons_ui(ui, simulation, out);
             speed_ui(ui, simulation.speed(), out);
+            if !self.was_played {
+                scenes_ui(ui, out);
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                clock_ui(ui, simulation, out);
+                self.shows_time = clock_ui(ui, simulation, out);
                 warnings_ui(ui, simulation.warnings());
             });
         });
@@ -37,29 +60,71 @@ impl Transport {
     }
 }
 
-fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+/// Play and pause; in the accent colour and with its name while somebody `is_invited` to
+/// press it.
+fn play_ui(ui: &mut egui::Ui, simulation: &Simulation, is_invited: bool, out: &mut Vec<Request>) {
     let status = simulation.status();
-    let mut button =
-        |ui: &mut egui::Ui, face: &str, name: &str, hint: &str, command: Option<Command>| {
-            let face = RichText::new(face).size(19.0);
-            let button = egui::Button::new(face).min_size(vec2(40.0, 32.0));
-            let response = ui
-                .add_enabled(command.is_some(), button)
-                .on_hover_text(hint)
-                .on_disabled_hover_text(format!("{name}: {}", why_not(status)));
-            response
-                .widget_info(|| WidgetInfo::labeled(WidgetType::Button, command.is_some(), name));
-            if response.clicked() {
-                out.extend(command.map(Request::Command));
-            }
-        };
-    let allowed = |command| Some(command).filter(|command| allows(status, command));
     let (face, name, hint) = match status {
         Status::Running => ("⏸", "Pause", "Pause (Space)"),
         Status::Seeking { .. } => ("⏸", "Pause", "Stop on the way (Space)"),
         _ if simulation.looks_back() => ("▶", "Play", "See what followed (Space)"),
         _ => ("▶", "Play", "Play (Space)"),
     };
+    let command = play_or_pause(status);
+    if !(is_invited && name == "Play" && command.is_some()) {
+        return button_ui(ui, status, (face, name, hint), command, out);
+    }
+    let accent = ui.visuals().selection;
+    let face = RichText::new("▶  Play")
+        .size(19.0)
+        .strong()
+        .color(accent.stroke.color);
+    let button = egui::Button::new(face)
+        .fill(accent.bg_fill)
+        .min_size(vec2(108.0, 32.0));
+    let response = ui.add(button).on_hover_text(hint);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
+    if response.clicked() {
+        out.extend(command.map(Request::Command));
+    }
+}
+
+/// The way to other scenes, as long as this one was not played.
+fn scenes_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
+    let button = egui::Button::new("Other scenes…").min_size(vec2(0.0, 32.0));
+    let hint = "Scenes with their pictures (Ctrl+G)";
+    if ui.add(button).on_hover_text(hint).clicked() {
+        out.push(Request::ShowScenes);
+    }
+}
+
+/// A button with this face, name and hint, which sends `command` where there is one.
+fn button_ui(
+    ui: &mut egui::Ui,
+    status: &Status,
+    (face, name, hint): (&str, &str, &str),
+    command: Option<Command>,
+    out: &mut Vec<Request>,
+) {
+    let face = RichText::new(face).size(19.0);
+    let button = egui::Button::new(face).min_size(vec2(36.0, 32.0));
+    let response = ui
+        .add_enabled(command.is_some(), button)
+        .on_hover_text(hint)
+        .on_disabled_hover_text(format!("{name}: {}", why_not(status)));
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, command.is_some(), name));
+    if response.clicked() {
+        out.extend(command.map(Request::Command));
+    }
+}
+
+/// To the start, a step back, a step on, to the newest state; afresh.
+fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let status = simulation.status();
+    let allowed = |command| Some(command).filter(|command| allows(status, command));
+    let start = (simulation.step() > 0).then_some(Command::Seek(0));
+    let end = simulation.past().end.step;
+    let newest = simulation.looks_back().then_some(Command::Seek(end));
     let [back_hint, on_hint, start_hint] = match simulation.recording() {
         Some(_) => [
             "The state before (, or ←)",
@@ -69,13 +134,29 @@ fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>
         None => [
             "The time step before (, or ←)",
             "One time step (. or →)",
-            "Start afresh with the settled bed and the present parameters; the run is kept (R)",
+            RESET_HINT,
         ],
     };
-    button(ui, face, name, hint, play_or_pause(status));
-    button(ui, "⏴", "Step back", back_hint, step_back(simulation));
-    button(ui, "⏭", "Single step", on_hint, step_on(simulation));
-    button(ui, "⏮", "Reset", start_hint, allowed(Command::Reset));
+    let buttons = [
+        (
+            "⏮",
+            "To the start",
+            "The start of the run",
+            start.and_then(allowed),
+        ),
+        ("⏴", "Step back", back_hint, step_back(simulation)),
+        ("⏵", "Single step", on_hint, step_on(simulation)),
+        (
+            "⏭",
+            "To the newest state",
+            "The newest state (End)",
+            newest.and_then(allowed),
+        ),
+        ("⟲", "Reset", start_hint, allowed(Command::Reset)),
+    ];
+    for (face, name, hint, command) in buttons {
+        button_ui(ui, status, (face, name, hint), command, out);
+    }
 }
 
 /// Why a button does nothing now.
@@ -118,14 +199,14 @@ fn speed_name(speed: f64) -> String {
     }
 }
 
-fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let Some(world) = simulation.world() else {
-        return;
+/// The clock, and whether there is room for it: else that in the picture will do.
+fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) -> bool {
+    let Some(world) = simulation
+        .world()
+        .filter(|_| ui.available_width() >= ROOM_FOR_CLOCK)
+    else {
+        return false;
     };
-    // Where there is little room the clock in the picture will do.
-    if ui.available_width() < ROOM_FOR_CLOCK {
-        return;
-    }
     let palette = Palette::of(ui.visuals());
     let (factor, asked) = (simulation.real_time_factor(), simulation.speed());
     let slower = factor > 0.0 && asked.is_finite() && factor < KEEPING_UP * asked;
@@ -160,6 +241,7 @@ fn clock_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) 
                 .on_hover_text("Simulated seconds per second, measured");
         }
     }
+    true
 }
 
 fn warnings_ui(ui: &mut egui::Ui, warnings: &[String]) {

@@ -212,9 +212,9 @@ impl AvalanchePlots {
         ui.horizontal_wrapped(|ui| {
             self.window.choice_ui(ui);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.checkbox(&mut self.logarithmic, "log Tg")
+                ui.checkbox(&mut self.logarithmic, "log")
                     .on_hover_text("Powers of ten for the granular temperature");
-                ui.checkbox(&mut self.corotating, "Tg′")
+                ui.checkbox(&mut self.corotating, "seen from the drum")
                     .on_hover_text(FRAMES);
             });
         });

@@ -44,6 +44,7 @@ impl Panel for PictureSettings {
         let world = simulation.world().map(AsRef::as_ref);
         colour_ui(ui, view, world);
         cut_ui(ui, view, world);
+        turning_ui(ui, view, world);
         between_ui(ui, view, world.is_some_and(|world| world.liquid.is_some()));
         ui.horizontal(|ui| {
             ui.checkbox(&mut view.show_container, "Container");
@@ -97,6 +98,11 @@ fn colour_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) 
     let maps = ColourMap::ALL.map(|choice| (choice, choice.label()));
     choice_ui(ui, "Colour map", &mut view.colour_map, &maps);
     gradient_ui(ui, view.colour_map);
+    ui.checkbox(
+        &mut view.log_colours,
+        "Equal steps of colour are equal factors",
+    )
+    .on_hover_text("A logarithmic scale: for what is small in most grains and large in a few");
     range_ui(ui, view);
 }
 
@@ -140,7 +146,17 @@ fn percentiles_ui(ui: &mut egui::Ui, view: &mut ViewSettings, low: f64, high: f6
 fn fixed_ui(ui: &mut egui::Ui, view: &mut ViewSettings, mut low: f64, mut high: f64) {
     let speed = 0.005 * (high - low).abs().max(1e-6);
     let unit = view.colour_by.unit();
-    ends_ui(ui, [&mut low, &mut high], 0.0..=f64::INFINITY, unit, speed);
+    let least = match view.colour_by {
+        ColourBy::Quantity(quantity) if quantity.is_signed() => f64::NEG_INFINITY,
+        _ => 0.0,
+    };
+    ends_ui(
+        ui,
+        [&mut low, &mut high],
+        least..=f64::INFINITY,
+        unit,
+        speed,
+    );
     view.range = ColourRange::Fixed(low, high);
 }
 
@@ -265,6 +281,22 @@ fn extent(world: &World, axis: CoordinateAxis) -> RangeInclusive<f64> {
     if low < high { low..=high } else { -1.0..=1.0 }
 }
 
+/// Whether spheres have a pattern; polyhedra show by themselves how they lie.
+fn turning_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
+    let Some(world) = world.filter(|world| world.polyhedra.is_none()) else {
+        return;
+    };
+    let mut shows = view.shows_turning(world);
+    let hint = "A dark half and a band on each grain, by which one sees it turn";
+    if ui
+        .checkbox(&mut shows, "Pattern on grains")
+        .on_hover_text(hint)
+        .changed()
+    {
+        view.show_turning = Some(shows);
+    }
+}
+
 /// What is drawn between the grains, and how much of them is in its way.
 fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
     let before = view.show_forces;
@@ -274,7 +306,7 @@ fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
         );
         if wet {
             ui.checkbox(&mut view.show_bridges, "Bridges")
-                .on_hover_text("Liquid bridges as thick as their volume makes them");
+                .on_hover_text("The liquid between two grains, as wide as its volume makes it");
         }
         ui.checkbox(&mut view.show_velocities, "Velocities")
             .on_hover_text("An arrow from each centre, as long as the grain is fast");

@@ -81,7 +81,7 @@ fn the_outline_in_the_picture_has_the_front_and_the_height_of_the_samples() {
     // The third of those that begin opposite to x is the 39th of those that begin there.
     assert_close(outline.sectors[3], 0.06 + 0.039 + 1e-3, 1e-15);
     let mut hole = spheres[0].clone();
-    hole.grains = Default::default();
+    hole.grains = grainfall::world::Grains::default();
     assert_eq!(DepositOutline::of(&hole), None);
 }
 

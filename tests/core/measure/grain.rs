@@ -1,7 +1,7 @@
 //! Numbers of single grains, of worlds built by hand.
 
 use super::*;
-use grainfall::measure::GrainQuantity;
+use grainfall::measure::{GrainQuantity, granular_temperatures};
 
 fn values(quantity: GrainQuantity, world: &World) -> Vec<f64> {
     let mut values = Vec::new();
@@ -71,4 +71,38 @@ fn liquid_is_counted_in_litres_and_only_where_there_is_any() {
     assert!(GrainQuantity::Pressure.applies_to(&world));
     world.grains.film[1] = 2e-9;
     assert_close(values(GrainQuantity::Liquid, &world)[1], 2e-6, 1e-20);
+}
+
+#[test]
+fn a_grain_s_part_of_the_temperature_adds_up_to_that_of_the_bed() {
+    let mut world = on_floor();
+    for i in 0..30 {
+        let place = DVec3::new(f64::from(i % 6), f64::from(i / 6), 0.0) * 0.002;
+        push(&mut world, place, 0.001);
+        let wobble = f64::from(i * i % 7);
+        *world.grains.velocity.last_mut().unwrap() = DVec3::new(wobble, 0.1 * wobble, -0.2);
+    }
+    let parts = values(GrainQuantity::Fluctuation, &world);
+    let mean = parts.iter().sum::<f64>() / 30.0;
+    let whole = granular_temperatures(&world).corotating;
+    // A part in a million million: another order of the sums.
+    assert!((mean / whole - 1.0).abs() < 1e-12, "{mean} {whole}");
+    assert!(whole > 0.1, "{whole}");
+}
+
+#[test]
+fn overlap_is_in_radii_of_the_grain_and_velocities_keep_their_sign() {
+    let mut world = on_floor();
+    push(&mut world, DVec3::ZERO, 0.001);
+    push(&mut world, DVec3::new(0.0029, 0.0, 0.0), 0.002);
+    touch(&mut world, 0, Partner::Grain(1), DVec3::ZERO);
+    world.grains.velocity[1] = DVec3::new(-1.0, 2.0, -3.0);
+    let overlaps = values(GrainQuantity::LargestOverlap, &world);
+    assert!((overlaps[0] - 0.1).abs() < 1e-12 && (overlaps[1] - 0.05).abs() < 1e-12);
+    let of_second = |quantity| values(quantity, &world)[1];
+    assert_eq!(of_second(GrainQuantity::VelocityX), -1.0);
+    assert_eq!(of_second(GrainQuantity::VelocityY), 2.0);
+    assert_eq!(of_second(GrainQuantity::VelocityZ), -3.0);
+    assert_eq!(of_second(GrainQuantity::Radius), 0.002);
+    assert_eq!(of_second(GrainQuantity::Number), 1.0);
 }

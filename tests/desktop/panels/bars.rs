@@ -1,5 +1,5 @@
 //! The bars: what playing, stepping, speed and a fault ask for, the film that is recorded, the title
-//! and the big button of a scene that stands still.
+//! and what a scene that was not played invites to.
 
 use crate::window_of_panels::{
     Window, commands, prepared, ready, set, standing, three_grains, wet,
@@ -15,11 +15,10 @@ use grainfall::solver::{Fault, FaultKind};
 use grainfall::ui::{Request, status_ui};
 use std::time::Duration;
 
-/// Asserts that the bar and the large button call what `simulation` shows by this `title`.
+/// Asserts that the bar calls what `simulation` shows by this `title`.
 #[track_caller]
 fn assert_titled(simulation: Simulation, title: &str) {
     let harness = Window::of(simulation);
-    harness.get_by_label(&format!("Play {title}"));
     let titles = harness.query_all_by_label(title).count();
     assert!(titles >= 2, "in the bar and in the panel about the scene");
 }
@@ -94,9 +93,9 @@ fn speed_is_chosen_from_a_list_that_ends_with_as_fast_as_possible() {
 }
 
 #[test]
-fn a_scene_that_stands_still_has_one_big_button() {
+fn a_scene_that_was_not_played_invites_to_play_and_to_other_scenes() {
     let mut harness = Window::of(prepared());
-    harness.get_by_label("Play Three grains").click();
+    harness.get_by_label("Play").click();
     harness.run_steps(2);
     assert_eq!(commands(&harness.state().asked), [Command::Play]);
     harness.state_mut().asked.clear();
@@ -107,7 +106,7 @@ fn a_scene_that_stands_still_has_one_big_button() {
     simulation.send(Command::Step(3));
     simulation.tick(Duration::from_millis(16));
     harness.run_steps(2);
-    assert!(harness.query_by_label("Play Three grains").is_none());
+    assert!(harness.query_by_label("Other scenes…").is_none());
 }
 
 #[test]

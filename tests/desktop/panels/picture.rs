@@ -8,7 +8,8 @@ use egui_kittest::kittest::Queryable;
 use grainfall::measure::GrainQuantity;
 use grainfall::ui::Request;
 use grainfall::view::{
-    CameraRequest, Caption, ColourBy, ColourRange, Cut, OrbitCamera, ViewSettings, viewport_ui,
+    CameraRequest, Caption, ColourBy, ColourRange, Cut, Legend, OrbitCamera, ViewSettings,
+    viewport_ui,
 };
 
 #[test]
@@ -76,6 +77,44 @@ fn what_lies_between_the_grains_is_chosen_by_name() {
 }
 
 #[test]
+fn what_the_colours_mean_stands_beside_the_picture() {
+    let world = prepared().world().unwrap().clone();
+    let of = |legend: Option<Legend>| {
+        let world = world.clone();
+        let settings = ViewSettings {
+            legend,
+            ..ViewSettings::default()
+        };
+        let mut harness = Harness::builder().with_size([640.0, 360.0]).build_ui_state(
+            move |ui, (settings, camera): &mut (ViewSettings, OrbitCamera)| {
+                let caption = Caption {
+                    world: Some(&world),
+                    real_time_factor: None,
+                    title: None,
+                    has_clock: false,
+                };
+                viewport_ui(ui, &[caption], settings, camera);
+            },
+            (settings, OrbitCamera::default()),
+        );
+        harness.run_steps(2);
+        let (settings, camera) = harness.state();
+        let free = settings.free_rect.unwrap();
+        assert_eq!(camera.viewport.x + settings.margin, free.width());
+        settings.margin
+    };
+    assert_eq!(of(None), 0.0);
+    let speed = Legend {
+        title: "Granular temperature",
+        min: 0.0,
+        max: 1.0,
+        unit: "m²/s²",
+        is_log: false,
+    };
+    assert!(of(Some(speed)) > 100.0);
+}
+
+#[test]
 fn a_click_on_the_picture_picks_the_grain_under_it() {
     let simulation = prepared();
     let world = simulation.world().unwrap().clone();
@@ -88,6 +127,7 @@ fn a_click_on_the_picture_picks_the_grain_under_it() {
                 world: Some(&world),
                 real_time_factor: None,
                 title: None,
+                has_clock: true,
             };
             viewport_ui(ui, &[caption], settings, camera);
         },

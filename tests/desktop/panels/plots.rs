@@ -61,7 +61,7 @@ fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
             assert_eq!(
                 plots.curves_ui(ui, &data.curves(), &mut ViewSettings::default()),
                 None
-            )
+            );
         });
     harness.run_steps(2);
     harness.get_by_label("All").click();

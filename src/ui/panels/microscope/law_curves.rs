@@ -69,8 +69,8 @@ pub(super) fn curves(world: &World, contact: &Contact, terms: &ForceTerms) -> Ve
         .map_or(BridgeLaw::AS_PRINTED, |liquid| liquid.law);
     let wet = world.wetting().is_some() && matches!(contact.partner, Partner::Grain(_));
     let mut laws = vec![
-        ("as printed", BridgeLaw::AS_PRINTED),
-        ("as coded", BridgeLaw::AS_CODED),
+        ("as the paper prints it", BridgeLaw::AS_PRINTED),
+        ("as its program computes it", BridgeLaw::AS_CODED),
     ];
     if !wet {
         laws = vec![("law", own)];

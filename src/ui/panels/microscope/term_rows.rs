@@ -21,9 +21,9 @@ pub(super) fn term_rows(contact: &Contact, terms: &[ForceTerms]) -> Vec<TableRow
             "Of all forces above",
         ),
         TableRow::of(
-            "Applied",
+            "In the last step",
             newtons(contact.force.length()),
-            "What the solver applied in the last step",
+            "The force that moved the grains in the last time step; the sum above is that of the state shown",
         ),
     ]);
     rows
