@@ -9,6 +9,7 @@ use super::wall_mesh::WallMesh;
 use crate::scene::{Scene, TimeStep};
 use crate::world::{Shape, Surface, Wall, World};
 use glam::DVec3;
+use std::fmt::Write as _;
 
 /// The data file's name.
 pub const GRAINS: &str = "grains.data";
@@ -63,6 +64,32 @@ impl Steps {
             output,
         }
     }
+}
+
+/// The end of a script: the step, gravity, dumps of the grains, written as `format` says, and the
+/// run.
+pub fn run_lines(handed: Handed, format: &str) -> String {
+    let world = handed.world;
+    let steps = Steps::of(handed);
+    let mut text = format!(
+        "timestep {:e}\nfix motion all nve/sphere\n",
+        world.clock.time_step
+    );
+    if let Some(down) = world.gravity.try_normalize() {
+        let _ = writeln!(
+            text,
+            "fix weight all gravity {:e} vector {}",
+            world.gravity.length(),
+            words(down)
+        );
+    }
+    let Steps { run, output } = steps;
+    text + &format!(
+        "dump grains all custom {output} {DUMPS}/grains_*.dump id type x y z vx vy vz omegax omegay omegaz radius fx fy fz\n\
+         dump_modify grains sort id pad 12 {format}\n\
+         thermo_style custom step atoms ke cpu\nthermo_modify norm no lost error\n\
+         thermo {output}\nrun {run}\n"
+    )
 }
 
 /// What no engine can take of `handed`, in sentences.

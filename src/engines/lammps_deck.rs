@@ -6,7 +6,7 @@
 
 use super::atom_types::AtomTypes;
 use super::deck::{
-    DUMPS, Deck, GRAINS, Handed, Steps, common_deviations, domain, refused, wall_name, words,
+    Deck, GRAINS, Handed, common_deviations, domain, refused, run_lines, wall_name, words,
 };
 use crate::physics::ContactLaw;
 use crate::physics::law::{Pairing, natural_log};
@@ -59,7 +59,7 @@ pub fn lammps_deck(handed: Handed, types: &AtomTypes) -> Result<Deck, Vec<String
         }
     }
     script += &walls(world, types);
-    script += &tail(handed);
+    script += &run_lines(handed, "time yes units yes format float %.15e");
     Ok(Deck {
         script,
         meshes: Vec::new(),
@@ -286,32 +286,6 @@ fn motion(wall: &Wall, name: &str) -> String {
     if wall.motion.velocity != DVec3::ZERO {
         let _ = write!(text, " move v_{name}_x v_{name}_y v_{name}_z");
     }
-    text
-}
-
-fn tail(handed: Handed) -> String {
-    let world = handed.world;
-    let steps = Steps::of(handed);
-    let mut text = format!(
-        "timestep {:e}\nfix motion all nve/sphere\n",
-        world.clock.time_step
-    );
-    if let Some(down) = world.gravity.try_normalize() {
-        let _ = writeln!(
-            text,
-            "fix weight all gravity {:e} vector {}",
-            world.gravity.length(),
-            words(down)
-        );
-    }
-    let _ = writeln!(
-        text,
-        "dump grains all custom {} {DUMPS}/grains_*.dump id type x y z vx vy vz omegax omegay omegaz radius fx fy fz",
-        steps.output
-    );
-    text += "dump_modify grains sort id pad 12 time yes units yes format float %.15e\n";
-    text += "thermo_style custom step atoms ke cpu\nthermo_modify norm no lost error\n";
-    let _ = writeln!(text, "thermo {}\nrun {}", steps.output, steps.run);
     text
 }
 

@@ -6,9 +6,7 @@
 //! refused.
 
 use super::atom_types::AtomTypes;
-use super::deck::{
-    DUMPS, Deck, GRAINS, Handed, Steps, common_deviations, domain, numbers, refused, words,
-};
+use super::deck::{Deck, GRAINS, Handed, common_deviations, domain, numbers, refused, run_lines};
 use super::liggghts_model::ContactModel;
 use super::liggghts_walls::{FACETS, Walls, rim_radius};
 use crate::physics::law::Pairing;
@@ -62,7 +60,8 @@ pub fn liggghts_deck(handed: Handed, types: &AtomTypes) -> Result<Deck, Vec<Stri
     let ContactModel { models, settings } = ContactModel::of(world, true);
     let _ = writeln!(script, "pair_style gran {models}{settings}\npair_coeff * *");
     script += &walls.script;
-    script += &tail(handed);
+    let format = format!("format \"%d %d{}\"", " %.15e".repeat(13));
+    script += &run_lines(handed, &format);
     Ok(Deck {
         deviations: deviations(handed, &walls),
         // Squares and rims that turn stay inside.
@@ -247,36 +246,6 @@ fn liquid_properties(liquid: &Liquid, film: f64, types: usize) -> String {
         format!("fix angle all property/global contactAngle peratomtype {angles}\n"),
     ]
     .concat()
-}
-
-fn tail(handed: Handed) -> String {
-    let world = handed.world;
-    let steps = Steps::of(handed);
-    let mut text = format!(
-        "timestep {:e}\nfix motion all nve/sphere\n",
-        world.clock.time_step
-    );
-    if let Some(down) = world.gravity.try_normalize() {
-        let _ = writeln!(
-            text,
-            "fix weight all gravity {:e} vector {}",
-            world.gravity.length(),
-            words(down)
-        );
-    }
-    let _ = writeln!(
-        text,
-        "dump grains all custom {} {DUMPS}/grains_*.dump id type x y z vx vy vz omegax omegay omegaz radius fx fy fz",
-        steps.output
-    );
-    let _ = writeln!(
-        text,
-        "dump_modify grains sort id pad 12 format \"%d %d{}\"",
-        " %.15e".repeat(13)
-    );
-    text += "thermo_style custom step atoms ke cpu\nthermo_modify norm no lost error\n";
-    let _ = writeln!(text, "thermo {}\nrun {}", steps.output, steps.run);
-    text
 }
 
 fn deviations(handed: Handed, walls: &Walls) -> Vec<String> {

@@ -20,17 +20,17 @@ pub static KASPER2021: Paper = Paper {
     settings: &["duration=50s"],
     keys: &["bridge-law", "radius", "liquid"],
     batches: &[
-        batch("r3", R3, &["0", "1", "3", "5", "7"], (1, 2)),
-        batch("r3", R3, &["2", "4", "6"], (1, 2)),
-        batch("r3", R3, ALL, (3, 4)),
-        batch("r2", R2, &["0", "1", "3", "5", "7"], (1, 2)),
-        batch("r1.25", R1_25, &["0", "1", "5", "7"], (1, 1)),
-        batch("coded", CODED_R3, &["1", "3", "5", "7"], (1, 4)),
-        batch("r3", R3, ALL, (5, 8)),
-        batch("coded", CODED_R2, &["1", "5", "7"], (1, 2)),
-        batch("r2", R2, &["0", "1", "3", "5", "7"], (3, 4)),
-        batch("r2", R2, &["2", "4", "6"], (1, 4)),
-        batch("r1.25", R1_25, &["0", "1", "5", "7"], (2, 2)),
+        Batch::new("r3", R3, &["0", "1", "3", "5", "7"], (1, 2)),
+        Batch::new("r3", R3, &["2", "4", "6"], (1, 2)),
+        Batch::new("r3", R3, ALL, (3, 4)),
+        Batch::new("r2", R2, &["0", "1", "3", "5", "7"], (1, 2)),
+        Batch::new("r1.25", R1_25, &["0", "1", "5", "7"], (1, 1)),
+        Batch::new("coded", CODED_R3, &["1", "3", "5", "7"], (1, 4)),
+        Batch::new("r3", R3, ALL, (5, 8)),
+        Batch::new("coded", CODED_R2, &["1", "5", "7"], (1, 2)),
+        Batch::new("r2", R2, &["0", "1", "3", "5", "7"], (3, 4)),
+        Batch::new("r2", R2, &["2", "4", "6"], (1, 4)),
+        Batch::new("r1.25", R1_25, &["0", "1", "5", "7"], (2, 2)),
     ],
     small_settings: &[
         "duration=1s",
@@ -41,8 +41,8 @@ pub static KASPER2021: Paper = Paper {
         "liquid-volume=0.3ml",
     ],
     small_batches: &[
-        batch("r3", R3, &["0", "1", "7"], (1, 2)),
-        batch("coded", CODED_R3, &["7"], (1, 2)),
+        Batch::new("r3", R3, &["0", "1", "7"], (1, 2)),
+        Batch::new("coded", CODED_R3, &["7"], (1, 2)),
     ],
     tables,
 };
@@ -57,20 +57,6 @@ const PRINTED: &str = "as-printed";
 const CODED: &str = "as-coded";
 /// Dry, and all liquids of Table 1.
 const ALL: &[&str] = &["0", "1", "2", "3", "4", "5", "6", "7"];
-
-const fn batch(
-    part: &'static str,
-    values: &'static [&'static str],
-    list: &'static [&'static str],
-    seeds: (u64, u64),
-) -> Batch {
-    Batch {
-        part,
-        values,
-        list,
-        seeds,
-    }
-}
 
 /// The tables, from the cases that are there.
 fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {

@@ -22,14 +22,14 @@ pub static MAN2023: Paper = Paper {
     settings: &["duration=440ms", "time-step=2.2us", "output-interval=20ms"],
     keys: &["mu11", "mu22", "height", "mix"],
     batches: &[
-        batch("h1", H1, MIXES, (1, 3)),
-        batch("frictions", &["0.1", "0.1", "10mm"], &["0.3"], (1, 3)),
-        batch("frictions", &["0.4", "0.8", "10mm"], &["0.3"], (1, 3)),
-        batch("h2", H2, MIXES, (1, 1)),
-        batch("h5", H5, MIXES, (1, 1)),
-        batch("h5", H5, MIXES, (2, 3)),
-        batch("h2", H2, MIXES, (2, 3)),
-        batch("h10", &["0.1", "0.4", "100mm"], &["0.3"], (1, 3)),
+        Batch::new("h1", H1, MIXES, (1, 3)),
+        Batch::new("frictions", &["0.1", "0.1", "10mm"], &["0.3"], (1, 3)),
+        Batch::new("frictions", &["0.4", "0.8", "10mm"], &["0.3"], (1, 3)),
+        Batch::new("h2", H2, MIXES, (1, 1)),
+        Batch::new("h5", H5, MIXES, (1, 1)),
+        Batch::new("h5", H5, MIXES, (2, 3)),
+        Batch::new("h2", H2, MIXES, (2, 3)),
+        Batch::new("h10", &["0.1", "0.4", "100mm"], &["0.3"], (1, 3)),
     ],
     small_settings: &[
         "duration=60ms",
@@ -40,8 +40,8 @@ pub static MAN2023: Paper = Paper {
         "time-step=automatic",
     ],
     small_batches: &[
-        batch("h1", H1, &["0.3"], (1, 2)),
-        batch("h2", H2, &["0.3"], (1, 2)),
+        Batch::new("h1", H1, &["0.3"], (1, 2)),
+        Batch::new("h2", H2, &["0.3"], (1, 2)),
     ],
     tables,
 };
@@ -50,20 +50,6 @@ const H1: &[&str] = &["0.1", "0.4", "10mm"];
 const H2: &[&str] = &["0.1", "0.4", "20mm"];
 const H5: &[&str] = &["0.1", "0.4", "50mm"];
 const MIXES: &[&str] = &["0.1", "0.3", "0.5"];
-
-const fn batch(
-    part: &'static str,
-    values: &'static [&'static str],
-    list: &'static [&'static str],
-    seeds: (u64, u64),
-) -> Batch {
-    Batch {
-        part,
-        values,
-        list,
-        seeds,
-    }
-}
 
 /// The rows of the table behind those of the laws.
 const COLUMN: &[TableColumn] = &[

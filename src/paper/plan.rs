@@ -44,6 +44,24 @@ pub struct Batch {
     pub seeds: (u64, u64),
 }
 
+impl Batch {
+    /// Cases of a `part` with these `values`, each of a `list`, from the first to the last of
+    /// `seeds`.
+    pub(crate) const fn new(
+        part: &'static str,
+        values: &'static [&'static str],
+        list: &'static [&'static str],
+        seeds: (u64, u64),
+    ) -> Self {
+        Self {
+            part,
+            values,
+            list,
+            seeds,
+        }
+    }
+}
+
 /// A table of a paper, as `tables.md` and a document's markers hold it.
 pub struct PaperTable {
     /// What its marker names, behind the paper: `dry`.
