@@ -4,6 +4,7 @@ use super::*;
 use glam::DVec3;
 use grainfall::solver::{FaultKind, advise};
 use grainfall::world::Clock;
+use std::sync::LazyLock;
 
 /// Spheres dry and wet, and polyhedra, in motion: the scene after some steps.
 fn moving(name: &str, values: &[(&str, &str)], steps: u64) -> World {
@@ -17,16 +18,15 @@ fn moving(name: &str, values: &[(&str, &str)], steps: u64) -> World {
     world
 }
 
-fn worlds() -> Vec<(&'static str, World)> {
-    vec![
+/// States that all tests here begin with.
+static WORLDS: LazyLock<[(&str, World); 3]> = LazyLock::new(|| {
+    let as_coded = [("bridge-law", "as-coded")];
+    [
         ("dry spheres", moving("two-sizes-drum", &[], 7500)),
-        (
-            "wet spheres",
-            moving("honey-drum", &[("bridge-law", "as-coded")], 7500),
-        ),
+        ("wet spheres", moving("honey-drum", &as_coded, 7500)),
         ("polyhedra", moving("small-column", &[], 7500)),
     ]
-}
+});
 
 /// The same state in a step of `time` [s]: so short that no position and no velocity changes by a
 /// bit.
@@ -45,10 +45,10 @@ fn largest_difference(a: &[DVec3], b: &[DVec3]) -> f64 {
 
 #[test]
 fn forces_without_a_step_are_those_that_a_step_sees() {
-    for (name, world) in worlds() {
+    for (name, world) in &*WORLDS {
         let mut evaluated = world.clone();
         Solver::new(2).evaluate(&mut evaluated).unwrap();
-        let stepped = after_no_time(&world, 1e-20);
+        let stepped = after_no_time(world, 1e-20);
         let (a, b) = (&evaluated.grains, &stepped.grains);
         for (what, a, b) in [
             ("force", &a.force, &b.force),
@@ -76,7 +76,7 @@ fn forces_without_a_step_are_those_that_a_step_sees() {
 
 #[test]
 fn nothing_moves_and_no_energy_is_booked() {
-    for (name, world) in worlds() {
+    for (name, world) in &*WORLDS {
         let mut evaluated = world.clone();
         Solver::new(2).evaluate(&mut evaluated).unwrap();
         // All that is no force and no memory of a contact, to the bit.
@@ -91,13 +91,13 @@ fn nothing_moves_and_no_energy_is_booked() {
             rest.features.clone_from(&world.features);
         }
         assert_eq!(rest.hash(), world.hash(), "{name}");
-        assert!(rest == world, "{name}");
+        assert!(rest == *world, "{name}");
     }
 }
 
 #[test]
 fn evaluated_forces_depend_neither_on_threads_nor_on_what_the_solver_knows() {
-    for (name, world) in worlds() {
+    for (name, world) in &*WORLDS {
         let mut used = Solver::new(1);
         let mut last = world.clone();
         used.advance(&mut last, 20).unwrap();
