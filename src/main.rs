@@ -3,15 +3,16 @@
 //! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state
 //! than a file states, 5 another program writes to the output folder, 130 interrupted.
 
-use clap::{Args, Parser, Subcommand};
 use grainfall::engines::MpiEngine;
+#[cfg(feature = "desktop")]
+use grainfall::headless::command_line::PictureArguments;
+use grainfall::headless::command_line::{Arguments, Task, What};
 use grainfall::headless::terminal::{say, tell};
 use grainfall::headless::{
-    self, Allowed, ImportTask, PaperTask, Report, Said, SweepTask, check_threads, interruption,
+    self, Allowed, PaperTask, Report, SweepTask, check_threads, interruption, named_scene,
+    short_name,
 };
 use grainfall::parameters::Settings;
-#[cfg(feature = "desktop")]
-use grainfall::physics::units::seconds;
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
 use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
@@ -25,198 +26,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// An interactive laboratory for granular matter.
-///
-/// Opens a scene in a window, or runs it without one and writes its numbers to files.
-#[derive(Parser)]
-#[command(version, args_conflicts_with_subcommands = true, args_override_self = true, after_help = EXIT_CODES)]
-struct Arguments {
-    #[command(flatten)]
-    what: What,
-    /// Run without a window, as fast as the machine can, and write files
-    #[arg(long)]
-    no_render: bool,
-    /// Folder for the files of a run without a window [default: out/<scene>]. The same command goes
-    /// on there where it was stopped
-    #[arg(long, value_name = "DIR", requires = "no_render")]
-    out: Option<PathBuf>,
-    #[command(flatten)]
-    allowed: Allowed,
-    /// Begin anew, in the place of the run that the folder holds
-    #[arg(long, requires = "no_render")]
-    restart: bool,
-    #[command(flatten)]
-    said: Said,
-    #[cfg(feature = "desktop")]
-    #[command(flatten)]
-    picture: PictureArguments,
-    #[command(subcommand)]
-    task: Option<Task>,
-}
-
-/// A picture that the program takes by itself.
-#[cfg(feature = "desktop")]
-#[derive(Args)]
-struct PictureArguments {
-    /// Open with two runs side by side, the right one with this value of a live parameter:
-    /// viscosity=1.41
-    #[arg(long, value_name = "KEY=VALUE", conflicts_with = "no_render")]
-    compare: Option<String>,
-    /// Take a picture of the window and end
-    #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
-    screenshot: Option<PathBuf>,
-    /// Simulated time at which the picture is taken: 13s, 500ms
-    #[arg(long, value_name = "TIME", default_value = "0s", requires = "screenshot", value_parser = moment)]
-    at: f64,
-    /// Take the picture without a display
-    #[arg(long, requires = "screenshot")]
-    offscreen: bool,
-    /// Take the picture of the grains alone, without panels
-    #[arg(long, requires = "screenshot")]
-    plain: bool,
-    /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "screenshot", value_parser = size)]
-    size: (u32, u32),
-}
-
-/// `13s`.
-#[cfg(feature = "desktop")]
-fn moment(text: &str) -> Result<f64, String> {
-    seconds(text)
-        .filter(|time| *time >= 0.0)
-        .ok_or_else(|| "expected a time such as `13s`, `500ms` or `2min`".to_owned())
-}
-
-/// `1280x720`.
-#[cfg(feature = "desktop")]
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (64..=8192).contains(side));
-    text.split_once('x')
-        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
-        .ok_or_else(|| "expected WIDTHxHEIGHT, each 64 to 8192, such as 1280x720".to_owned())
-}
-
-/// What to open and what to change about it.
-#[derive(Args)]
-struct What {
-    /// A scene file, a session saved in the window, the folder of a run, or the name of a built-in scene
-    scene: Option<String>,
-    /// Simulated time of a run without a window: 10s, 500ms
-    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
-    duration: Option<String>,
-    /// Simulated time between two written states: 0.1s, 20ms
-    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
-    output_interval: Option<String>,
-    /// Simulated time between two samples: 1ms, 10us [default: 20 ms, and less while a column falls or few grains
-    /// meet]
-    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
-    sample_interval: Option<String>,
-    /// Length of a step: automatic, 10us
-    #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
-    time_step: Option<String>,
-    /// Seed of everything random
-    #[arg(long, allow_hyphen_values = true, value_name = "N")]
-    seed: Option<String>,
-    /// Change a value: friction.glass.glass=0.3, drum-speed=1rpm, count=200 (may be repeated)
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Threads the solver works on [default: all cores, one less with a window]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
-    threads: Option<u16>,
-    /// Commands to carry out when their time comes: a list in RON or JSON, a run's summary.json, or
-    /// a session
-    #[arg(long, value_name = "FILE")]
-    commands: Option<PathBuf>,
-}
-
-#[derive(Subcommand)]
-enum Task {
-    /// Run a scene's variations side by side and set their results beside each other
-    ///
-    /// Stopped with Ctrl-C or killed, it goes on where it was when it is called again; called twice
-    /// at the same time, both share the cases. On a cluster each job runs one of them, see --count,
-    /// --case and --merge. Results: table.csv, table.md and plots.
-    Sweep(SweepTask),
-    /// Run a paper's cases, or go on with them, and make its tables and figures
-    ///
-    /// Stopped with Ctrl-C or killed, it goes on where it was when it is called again; the cases that
-    /// tell most come first. Results: tables.md, statements.md, ensembles.csv, table.csv and plots.
-    Paper(PaperTask),
-    /// Compute a run again and confirm that it comes to the same state, to the bit
-    Verify {
-        /// A run's summary.json, or a session or a list of changes saved in the window
-        file: PathBuf,
-        /// Threads the solver works on [default: all cores]
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
-        threads: Option<u16>,
-    },
-    /// List what can be set in a scene: key, value, range, when it acts, what it does
-    Settings {
-        /// A scene file, or the name of a built-in scene
-        scene: String,
-        /// As JSON, in SI units
-        #[arg(long)]
-        json: bool,
-    },
-    /// Cut a scene's Voronoi cells to grains and write them to a file, for `packing` in scenes
-    Pack {
-        /// A scene file, or the name of a built-in scene
-        scene: String,
-        /// Change a value, as in a single run: height=10cm, solid-fraction=0.55
-        #[arg(long, value_name = "KEY=VALUE")]
-        set: Vec<String>,
-        /// The file
-        #[arg(long, value_name = "FILE")]
-        out: PathBuf,
-    },
-    /// Write what another engine takes to run a scene of spheres on many machines, by MPI
-    ///
-    /// A folder with script, data file of the settled bed, meshes and DEVIATIONS.txt, which says
-    /// what the engine does otherwise. What it does not have is refused.
-    Export {
-        #[command(flatten)]
-        what: What,
-        /// The engine: liggghts or lammps
-        #[arg(long, value_name = "ENGINE")]
-        to: MpiEngine,
-        /// The folder
-        #[arg(long, value_name = "DIR")]
-        out: PathBuf,
-        /// Leave it to the engine to settle the bed: for more grains than settle here
-        #[arg(long)]
-        unsettled: bool,
-        #[command(flatten)]
-        said: Said,
-    },
-    /// Measure what another engine computed and write it as a run's folder
-    ///
-    /// Dumps and data files of LIGGGHTS and LAMMPS become series.csv, summary.json, grains.pvd …; what
-    /// takes forces or the memory of contacts is left out.
-    Import(ImportTask),
-    /// Settle a scene's bed and write it to a file
-    #[command(hide = true)]
-    Bed {
-        /// A scene file, or the name of a built-in scene
-        scene: String,
-        /// The file
-        #[arg(long, value_name = "FILE")]
-        out: PathBuf,
-    },
-    /// Compute the run that the window opens with and write it to a file
-    #[command(hide = true)]
-    Opening {
-        /// The file
-        #[arg(long, value_name = "FILE")]
-        out: PathBuf,
-    },
-}
-
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 files could not be written or the machine gives too little, 2 bad input, \
-                          3 physical fault, 4 another state than a file states, 5 another program writes to the \
-                          output folder, 130 interrupted";
-
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::of_the_process();
     match carry_out(arguments) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
@@ -235,6 +46,15 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         Some(Task::Verify { file, threads }) => {
             let threads = checked_threads(threads, Report::Text)?;
             return headless::confirm(&file, threads, &allowed, &*interruption()?);
+        }
+        Some(Task::Scenes { json }) => return list_scenes(json),
+        Some(Task::Completions { shell }) => {
+            headless::print_completions(shell);
+            return Ok(exit::DONE);
+        }
+        Some(Task::Man { folder }) => {
+            headless::write_manual(&folder)?;
+            return Ok(exit::DONE);
         }
         Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
         Some(Task::Pack { scene, set, out }) => {
@@ -331,7 +151,7 @@ fn first_scene() -> String {
 
 /// The scene called `name` with the changes asked for, and the commands to carry out while it runs.
 fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>), RunnerError> {
-    let mut scene = Scene::open(name)?;
+    let mut scene = named_scene(name)?;
     let options = [
         ("duration", &what.duration),
         ("output-interval", &what.output_interval),
@@ -387,15 +207,6 @@ fn unchanged(name: &str, what: &What) -> Result<Opened, RunnerError> {
         ));
     }
     Kept::read(Path::new(name)).map_or_else(refuse, |kept| Ok(kept.into()))
-}
-
-/// `scenes/papers/kasper2021/dry-r3.ron` is called `dry-r3`.
-fn short_name(name: &str) -> String {
-    let file = name.strip_suffix(".ron").unwrap_or(name);
-    Path::new(file).file_name().map_or_else(
-        || "scene".into(),
-        |file| file.to_string_lossy().into_owned(),
-    )
 }
 
 #[cfg(feature = "desktop")]
@@ -488,9 +299,28 @@ fn run_paper(task: &PaperTask, allowed: &Allowed) -> Result<u8, RunnerError> {
     task.carry_out(&job, &*interruption()?)
 }
 
+/// Prints the scenes that come with the program. Returns the exit code.
+fn list_scenes(json: bool) -> Result<u8, RunnerError> {
+    let mut list = Vec::new();
+    for scene in built_in() {
+        list.push((scene, Scene::parse(scene.path, scene.text)?.title));
+    }
+    if json {
+        let list: Vec<_> = (list.iter())
+            .map(|(scene, title)| serde_json::json!({"name": scene.name, "title": title, "path": scene.path}))
+            .collect();
+        say(&format!("{:#}", serde_json::Value::from(list)));
+    } else {
+        for (scene, title) in list {
+            say(&format!("{:<20} {title}", scene.name));
+        }
+    }
+    Ok(exit::DONE)
+}
+
 /// Prints what can be set in the scene called `name`. Returns the exit code.
 fn list_settings(name: &str, json: bool) -> Result<u8, RunnerError> {
-    let settings = Settings::of(&Scene::open(name)?);
+    let settings = Settings::of(&named_scene(name)?);
     let text = if json {
         let list = serde_json::to_string_pretty(settings.list());
         list.map_err(|error| RunnerError::Input(error.to_string()))?
@@ -498,7 +328,7 @@ fn list_settings(name: &str, json: bool) -> Result<u8, RunnerError> {
         settings.to_string()
     };
     say(text.trim_end());
-    Ok(0)
+    Ok(exit::DONE)
 }
 
 /// Prints `error` and what led to it, once, for people.

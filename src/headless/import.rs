@@ -1,12 +1,11 @@
 //! `grainfall import DUMP…`: what another engine computed, as a run's folder.
 
 use super::terminal::say;
-use super::{Progress, Report, Said};
+use super::{Progress, Report, Said, named_scene};
 use crate::engines::{ImportError, ImportSource, import, named_files, scene_from};
 use crate::measure::ResultKey;
 use crate::output::write_file;
 use crate::runner::{RunnerError, apply_settings, exit};
-use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// What to take in, what it is of, and where it goes.
@@ -82,7 +81,7 @@ impl ImportTask {
     fn source(&self) -> Result<ImportSource, RunnerError> {
         let mut source = match &self.scene {
             Some(name) => {
-                let mut scene = Scene::open(name)?;
+                let mut scene = named_scene(name)?;
                 let commands = apply_settings(&mut scene, &self.set)?;
                 let name = Path::new(name).file_stem();
                 let name = name.map_or_else(|| "scene".into(), |name| name.to_string_lossy());

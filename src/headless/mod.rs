@@ -5,15 +5,18 @@
 //! loop that moves it to its end, records it and stops it is the one of [`crate::runner`].
 
 mod allowed;
+pub mod command_line;
 mod confirm;
 mod export;
 mod import;
 mod interruption;
+mod named_scene;
 mod pack;
 mod paper_task;
 mod program;
 mod progress;
 mod report;
+mod shell;
 mod sweep_task;
 pub mod terminal;
 
@@ -22,9 +25,11 @@ pub use confirm::confirm;
 pub use export::hand_over;
 pub use import::ImportTask;
 pub use interruption::{check_threads, interruption};
+pub use named_scene::{named_scene, short_name};
 pub use pack::{write_bed, write_opening, write_packing};
 pub use paper_task::PaperTask;
 pub use program::run;
 pub use progress::Progress;
 pub use report::{Report, Said};
+pub use shell::{print_completions, write_manual};
 pub use sweep_task::SweepTask;

@@ -1,7 +1,7 @@
 //! What a scene begins with, computed once and kept in a file: its settled bed, its grains cut from
 //! Voronoi cells; and the run that the window opens with.
 
-use super::{Allowed, Progress};
+use super::{Allowed, Progress, named_scene};
 use crate::geometry::Rounded;
 use crate::output::write_file;
 use crate::run::Estimate;
@@ -16,7 +16,7 @@ use std::path::Path;
 /// # Errors
 /// When there is no such scene, it has no bed or asks for more memory than there is, or the file cannot be written.
 pub fn write_bed(name: &str, allowed: &Allowed, path: &Path) -> Result<u8, RunnerError> {
-    let scene = Scene::open(name)?;
+    let scene = named_scene(name)?;
     allowed.memory(&Estimate::of_start(&scene))?;
     let bed = make_bed(&scene, available_threads())
         .map_err(|error| RunnerError::Input(error.to_string()))?;
@@ -49,7 +49,7 @@ pub fn write_packing(
     allowed: &Allowed,
     path: &Path,
 ) -> Result<u8, RunnerError> {
-    let mut scene = Scene::open(name)?;
+    let mut scene = named_scene(name)?;
     for setting in settings {
         if !apply_settings(&mut scene.clone(), std::slice::from_ref(setting))?.is_empty() {
             return Err(RunnerError::Input(format!(

@@ -4,11 +4,10 @@
 //! reported.
 
 use super::terminal::{say, tell};
-use super::{Progress, Report, Said};
+use super::{Progress, Report, Said, named_scene};
 use crate::output::Ending;
 use crate::run::{BedStore, Estimate};
 use crate::runner::{RunnerError, apply_settings, exit};
-use crate::scene::Scene;
 use crate::sweep::{self, Sweep, Variation};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -74,7 +73,7 @@ impl SweepTask {
     /// # Errors
     /// When the scene, a setting or a variation is wrong.
     pub fn sweep(&self, name: &str, jobs: usize) -> Result<Sweep, RunnerError> {
-        let mut scene = Scene::open(&self.scene)?;
+        let mut scene = named_scene(&self.scene)?;
         let duration = self.duration.iter();
         let duration: Vec<String> = duration.map(|time| format!("duration={time}")).collect();
         apply_settings(&mut scene, &duration)?;

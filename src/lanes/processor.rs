@@ -3,6 +3,8 @@
 //! In: the processor, asked at run time. Out: work done with the widest lanes it has, or with any
 //! of those it has.
 
+#[cfg(target_arch = "aarch64")]
+use super::neon;
 use super::scalar::One;
 use super::vocabulary::Work;
 #[cfg(target_arch = "x86_64")]
@@ -26,6 +28,9 @@ pub enum Processor {
     /// One number at a time.
     Scalar,
     /// Four at a time.
+    #[cfg(target_arch = "aarch64")]
+    Neon,
+    /// Four at a time.
     #[cfg(target_arch = "x86_64")]
     Avx2(avx2::Avx2),
     /// Eight at a time.
@@ -42,6 +47,8 @@ impl Processor {
     /// All that this processor can do, narrowest first.
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::Scalar];
+        #[cfg(target_arch = "aarch64")]
+        all.push(Self::Neon);
         #[cfg(target_arch = "x86_64")]
         {
             all.extend(avx2::Avx2::detect().map(Self::Avx2));
@@ -54,6 +61,8 @@ impl Processor {
     pub fn run<W: Work>(self, work: W) -> W::Output {
         match self {
             Self::Scalar => work.run::<One>(()),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => work.run::<neon::Four>(()),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(proof) => proof.run(work),
             #[cfg(target_arch = "x86_64")]
@@ -66,6 +75,8 @@ impl fmt::Display for Processor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Scalar => "one at a time",
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => "four at a time (NEON)",
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(_) => "four at a time (AVX2)",
             #[cfg(target_arch = "x86_64")]

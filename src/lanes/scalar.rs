@@ -1,6 +1,6 @@
 //! One number at a time, for any processor: the plain twin of the wide lanes.
 //!
-//! In: numbers and rows. Out: the same operations as `avx2` and `avx512` do, with the same bits.
+//! In: numbers and rows. Out: the same operations as `avx2`, `avx512` and `neon` do, with the same bits.
 
 use super::vocabulary::{Lanes, Quad, Row, Rows, WIDEST, split_bits};
 use std::ops::{Add, Div, Mul, Neg, Sub};

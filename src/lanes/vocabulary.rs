@@ -2,7 +2,7 @@
 //!
 //! In: nothing. Out: the traits [`Lanes`], [`Quad`] and [`Work`], rows in memory, and vectors of
 //! three of which each component is lanes. What the operations are made of is not here: `scalar`,
-//! `avx2` and `avx512` do that, each for one width.
+//! `avx2`, `avx512` and `neon` do that, each for one width.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -246,13 +246,18 @@ pub(crate) fn one_of(names: &[&str]) -> String {
 
 /// `Did you mean …?` where one of the `known` names is near.
 pub(crate) fn suggestion(name: &str, known: &[&str]) -> Option<String> {
+    nearest(name, known).map(|nearest| format!("Did you mean `{nearest}`?"))
+}
+
+/// The one of the `known` names that `name` may be a slip of.
+pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let longest = 1 + name.chars().count() / 3;
-    known
+    let distances = known
         .iter()
-        .map(|candidate| (edit_distance(name, candidate), candidate))
-        .filter(|(distance, _)| *distance <= longest)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| format!("Did you mean `{candidate}`?"))
+        .map(|known| (edit_distance(name, known), *known));
+    let near = distances.filter(|(distance, _)| *distance <= longest);
+    near.min_by_key(|(distance, _)| *distance)
+        .map(|(_, nearest)| nearest)
 }
 
 /// Characters to insert, drop or replace to turn `a` into `b`, whatever their case (Levenshtein).

@@ -7,6 +7,7 @@ use super::file::SceneFile;
 use super::syntax;
 use crate::files::read_whole;
 use ron::extensions::Extensions;
+use std::io::Read;
 use std::path::Path;
 
 /// Largest scene file that is read [bytes]: room for about half a million listed grains.
@@ -21,6 +22,18 @@ impl Scene {
         let path = path.as_ref();
         let name = path.display().to_string();
         Self::parse(&name, &read(path, &name)?)
+    }
+
+    /// The scene that comes from `source`, which errors call `name`; names of files in it are
+    /// relative to the present folder.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn read(source: impl Read, name: &str) -> Result<Self, SceneError> {
+        let mut bytes = Vec::new();
+        let read = source.take(LARGEST_FILE).read_to_end(&mut bytes);
+        read.map_err(|error| unreadable(name, format!("cannot be read: {error}")))?;
+        Self::parse(name, &text_of(bytes, name)?)
     }
 
     /// The scene that a person calls `name`: the file at that path, or else a built-in scene of
@@ -43,14 +56,15 @@ impl Scene {
     /// As [`Scene::load`], and when there is neither such a file nor such a scene.
     pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = name.as_ref();
-        if path.exists() {
-            return Self::load(path);
-        }
         let name = path.display().to_string();
         let wanted = name.strip_suffix(".ron").unwrap_or(&name);
         let mut known = built_in().iter();
-        if let Some(scene) = known.find(|scene| scene.name == wanted || scene.path == name) {
-            return Self::parse(scene.path, scene.text);
+        let known = known.find(|scene| scene.name == wanted || scene.path == name);
+        // A folder of a scene's name is where its results are, not the scene.
+        match known {
+            Some(scene) if !path.is_file() => return Self::parse(scene.path, scene.text),
+            _ if path.exists() => return Self::load(path),
+            _ => {}
         }
         let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
         Err(SceneError::unreadable(
@@ -107,12 +121,20 @@ fn folder_of(file: &str) -> &Path {
 
 /// Text of the file at `path`, which errors call `name`.
 fn read(path: &Path, name: &str) -> Result<String, SceneError> {
-    let refuse = |fault: String| SceneError::unreadable(name, fault, "a scene file in RON");
     let bytes = read_whole(path, LARGEST_FILE)
-        .map_err(|error| refuse(format!("cannot be read: {error}")))?;
+        .map_err(|error| unreadable(name, format!("cannot be read: {error}")))?;
+    text_of(bytes, name)
+}
+
+/// `bytes` as text.
+fn text_of(bytes: Vec<u8>, name: &str) -> Result<String, SceneError> {
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
-        refuse("is not UTF-8 text".to_owned()).at_line(&text, good)
+        unreadable(name, "is not UTF-8 text".to_owned()).at_line(&text, good)
     })
+}
+
+fn unreadable(name: &str, fault: String) -> SceneError {
+    SceneError::unreadable(name, fault, "a scene file in RON")
 }

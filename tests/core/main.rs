@@ -7,6 +7,8 @@
 )]
 
 mod architecture;
+#[cfg(feature = "headless")]
+mod command_line;
 mod comparison;
 mod doors;
 mod engines;

@@ -14,9 +14,9 @@ use grainfall::world::StateHash;
 /// Snapshots are taken after each of so many steps.
 const SNAPSHOTS: u64 = 300;
 /// Steps that each resumed run takes.
-const STEPS: u64 = 24;
+const STEPS: u64 = 8;
 /// One in so many is resumed to the end of the run instead.
-const WHOLE: u64 = 25;
+const WHOLE: u64 = 75;
 
 /// The drum and the box, each filled with cells.
 const CELLS: &str = r#"(

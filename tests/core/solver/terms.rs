@@ -66,7 +66,7 @@ fn terms_of_polyhedra_add_up_to_the_force_that_was_applied() {
             .replace("features: Shared", &format!("features: {rule}"));
         let scene = Scene::parse("column", &text).unwrap();
         let mut world = build(&scene, advise(&scene).time_step);
-        run(&mut world, 0.05);
+        run(&mut world, 0.02);
         let (worst, contacts) = worst_difference(&world);
         println!("{rule}: {contacts} contacts, {worst:.1e}");
         assert!(contacts > 200, "{contacts}");
@@ -82,7 +82,7 @@ fn terms_of_polyhedra_add_up_to_the_force_that_was_applied() {
 
 #[test]
 fn implicit_dashpots_of_polyhedra_are_told_along_their_normals() {
-    let world = scene_after("small-column", &[("integrator", "imex")], 0.05);
+    let world = scene_after("small-column", &[("integrator", "imex")], 0.02);
     let (worst, contacts) = worst_difference(&world);
     assert!(contacts > 200 && worst < 1e-13, "{contacts} {worst:e}");
     let mut damped = 0;
