@@ -47,7 +47,8 @@ pub fn misspelt_command(word: &str) -> Option<String> {
 }
 
 fn shown(program: &Command) -> impl Iterator<Item = &Command> {
-    (program.get_subcommands()).filter(|command| !command.is_hide_set())
+    let has_a_page = |command: &&Command| !command.is_hide_set() && command.get_name() != "help";
+    program.get_subcommands().filter(has_a_page)
 }
 
 /// Prints what `shell` needs to complete commands and options.
