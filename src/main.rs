@@ -9,8 +9,8 @@ use grainfall::headless::command_line::PictureArguments;
 use grainfall::headless::command_line::{Arguments, Task, What};
 use grainfall::headless::terminal::{say, tell};
 use grainfall::headless::{
-    self, Allowed, PaperTask, Report, SweepTask, check_threads, interruption, named_scene,
-    short_name,
+    self, Allowed, PaperTask, Report, SweepTask, check_threads, interruption, misspelt_command,
+    named_scene, short_name,
 };
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
@@ -151,7 +151,10 @@ fn first_scene() -> String {
 
 /// The scene called `name` with the changes asked for, and the commands to carry out while it runs.
 fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>), RunnerError> {
-    let mut scene = named_scene(name)?;
+    let mut scene = named_scene(name).map_err(|error| match misspelt_command(name) {
+        Some(problem) => RunnerError::Input(problem),
+        None => error.into(),
+    })?;
     let options = [
         ("duration", &what.duration),
         ("output-interval", &what.output_interval),

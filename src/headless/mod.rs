@@ -31,5 +31,5 @@ pub use paper_task::PaperTask;
 pub use program::run;
 pub use progress::Progress;
 pub use report::{Report, Said};
-pub use shell::{print_completions, write_manual};
+pub use shell::{misspelt_command, print_completions, write_manual};
 pub use sweep_task::SweepTask;

@@ -1,9 +1,8 @@
 //! The scene that a person names on the command line.
 
-use super::shell::misspelt_command;
-use crate::runner::RunnerError;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 use std::io;
+use std::path::Path;
 
 /// What stands for a scene on standard input.
 const STANDARD_INPUT: &str = "-";
@@ -11,22 +10,19 @@ const STANDARD_INPUT: &str = "-";
 /// The scene called `name`: on standard input, in a file, or built in.
 ///
 /// # Errors
-/// When there is none, or it is wrong; of a word that is almost a command it says so.
-pub fn named_scene(name: &str) -> Result<Scene, RunnerError> {
+/// When there is none, or it is wrong.
+pub fn named_scene(name: &str) -> Result<Scene, SceneError> {
     if name == STANDARD_INPUT {
-        return Ok(Scene::read(io::stdin().lock(), "standard input")?);
+        return Scene::read(io::stdin().lock(), "standard input");
     }
-    Scene::open(name).map_err(|error| match misspelt_command(name) {
-        Some(problem) => RunnerError::Input(problem),
-        None => error.into(),
-    })
+    Scene::open(name)
 }
 
 /// What files of the scene called `name` are called: `scenes/papers/kasper2021/dry-r3.ron` is
 /// `dry-r3`, and what comes on standard input `scene`.
 pub fn short_name(name: &str) -> String {
     let file = name.strip_suffix(".ron").unwrap_or(name);
-    let file = std::path::Path::new(file).file_name();
+    let file = Path::new(file).file_name();
     file.filter(|_| name != STANDARD_INPUT).map_or_else(
         || "scene".into(),
         |file| file.to_string_lossy().into_owned(),
