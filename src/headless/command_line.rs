@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Run without a window, as fast as the machine can, and write files
     #[arg(long)]
     pub no_render: bool,
-    /// Folder for the files of a run without a window [default: out/<scene>]. The same command goes
+    /// Folder for the files of a run without a window [default: out/SCENE]. The same command goes
     /// on there where it was stopped
     #[arg(long, value_name = "DIR", requires = "no_render")]
     pub out: Option<PathBuf>,
