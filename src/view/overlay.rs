@@ -7,11 +7,11 @@
 use crate::measure::numeral;
 use crate::simulation::Half;
 use crate::view::camera::OrbitCamera;
-use crate::view::colour::{SELECTED, species_colour, stride, trail_colour};
+use crate::view::colour::{SELECTED, Scheme, species_colour, stride, trail_colour};
 use crate::view::framing::ring_distance;
 use crate::view::grain_buffer::CutPlanes;
 use crate::view::halves::BETWEEN;
-use crate::view::ink::{Ink, rgb};
+use crate::view::ink::{Ink, rgb, srgb};
 use crate::view::links::LinkKind;
 use crate::view::scale::{Prefixed, ScaleBar, length, short_number, with_unit};
 use crate::view::view_settings::{ColourMap, CoordinateAxis, Legend, ViewSettings};
@@ -119,7 +119,8 @@ pub(super) fn legend_margin<'a>(
     }
 }
 
-/// Writes what the colours mean into the margin of `rect`.
+/// Writes what the colours mean into the margin of `rect`, which no picture reaches, on a ground
+/// like the picture's.
 pub(super) fn legend(
     painter: &Painter,
     rect: Rect,
@@ -127,6 +128,9 @@ pub(super) fn legend(
     world: Option<&World>,
 ) {
     let ink = Ink::new(painter, settings.background);
+    let margin = rect.with_min_x(rect.right() - settings.margin);
+    let ground = rgb(srgb(Scheme::of(settings.background).background));
+    painter.rect_filled(margin, CornerRadius::ZERO, ground);
     let corner = rect.right_bottom() - vec2(INSET, INSET);
     match (&settings.legend, world) {
         (Some(legend), _) => colour_bar(&ink, corner, legend, settings.colour_map),
