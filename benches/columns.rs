@@ -1,7 +1,7 @@
 //! Whole steps of columns of rounded polyhedra just released, per grain and step, on one thread and
 //! two.
 //!
-//! `cargo bench --no-default-features --bench columns`, see `benches/README.md`. The case is the
+//! `cargo bench --bench columns`, see `benches/README.md`. The case is the
 //! one whose figures for the program of Man et al. 2023 are known: spacing 2 mm, rounding 0.2 mm,
 //! contacts of 100 N/m, every pair of features a full contact.
 

@@ -2,12 +2,12 @@
 //! thread and two; where the time of a step goes; the neighbour search alone; one contact law
 //! alone.
 //!
-//! `cargo bench --no-default-features --bench drums`, see `benches/README.md`. Beds are settled
+//! `cargo bench --bench drums`, see `benches/README.md`. Beds are settled
 //! once and kept with the user's own.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use grainfall::run::{BedStore, Preparation, Prepared};
 use grainfall::scene::Scene;
-use grainfall::simulation::{BedStore, Preparation, Prepared};
 use grainfall::solver::{Processor, Solver, Stage, advise};
 use grainfall::world::{World, build};
 use std::hint::black_box;

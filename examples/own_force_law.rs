@@ -6,7 +6,7 @@
 //! `src/physics/law/`, with a line in the list there and a key in `src/scene/file/`.
 //!
 //! ```sh
-//! cargo run --no-default-features --example own_force_law
+//! cargo run -p grainfall-core --example own_force_law
 //! ```
 
 use grainfall::lanes::{Lanes, Row};

@@ -1,7 +1,7 @@
 //! Steps a world and reads its grains: the columns in which the state stands.
 //!
 //! ```sh
-//! cargo run --no-default-features --example read_grains
+//! cargo run -p grainfall-core --example read_grains
 //! ```
 
 use grainfall::scene::Scene;

@@ -2,7 +2,7 @@
 //! was measured.
 //!
 //! ```sh
-//! cargo run --no-default-features --example run_a_scene -- small-drum
+//! cargo run -p grainfall-core --example run_a_scene -- small-drum
 //! ```
 
 use grainfall::runner::{self, Job};

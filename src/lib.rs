@@ -1,4 +1,5 @@
-//! Grainfall: an interactive laboratory for granular matter.
+//! The library of Grainfall, an interactive laboratory for granular matter: scenes, worlds, the solver, measures, runs. It knows of
+//! no window and no app: the program, its Bevy systems and panels are the package in `app`.
 //!
 //! ```text
 //!  scenes/*.ron
@@ -11,19 +12,10 @@
 //!                                  │
 //!                                 run     world + solver + commands + samples; branches; the record that verifies
 //!                                  ├──▶ runner, sweep, paper    to the end: files, checkpoints, many cases
-//!                                 lab     one or two runs, one clock, one command enum
-//!                                  │
-//!                             simulation  Bevy plugin: steps the lab in FixedUpdate
-//!                     ┌────────────┴───────────────┐
-//!                     ▼                            ▼
-//!                 headless                  view (3D)  ui (egui panels)
-//!                 MinimalPlugins            DefaultPlugins
-//!                 + SimulationPlugin        + the same SimulationPlugin
+//!                                 lab     one or two runs, one clock, one command enum: what the program's systems step
 //! ```
 //!
-//! A module names only modules above it in this table. Nothing but `simulation`, `headless` and
-//! what is drawn knows of Bevy: without features the package is a library without it; `headless`
-//! adds the program without a window, `desktop` (the default) the window.
+//! A module names only modules above it in this table.
 //!
 //! | module | holds |
 //! |---|---|
@@ -44,11 +36,6 @@
 //! | [`sweep`] | variations of a scene side by side: cases, table, plots |
 //! | [`paper`] | a paper's cases in one command: what they are, their tables in files and documents |
 //! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
-//! | [`simulation`] | the Bevy plugin that lets a lab go on |
-//! | `headless` | the program without a window: the app, progress, what is printed |
-//! | `view` | a world as pixels: grains, container, camera, colours |
-//! | `ui` | the egui panels |
-//! | `window` | the app that opens them in a window, or draws them into a picture |
 //!
 //! # Conventions
 //! SI units everywhere in state, files and output; other units only in panels and in scene keys
@@ -72,12 +59,6 @@
 pub mod engines;
 pub mod files;
 pub mod geometry;
-#[cfg(feature = "headless")]
-#[allow(
-    clippy::disallowed_methods,
-    reason = "what it computes reaches no trajectory"
-)]
-pub mod headless;
 pub mod lab;
 pub mod lanes;
 #[allow(
@@ -105,29 +86,10 @@ pub mod recording;
 pub mod run;
 pub mod runner;
 pub mod scene;
-pub mod simulation;
 pub mod solver;
 #[allow(
     clippy::disallowed_methods,
     reason = "what it computes reaches no trajectory"
 )]
 pub mod sweep;
-#[cfg(feature = "desktop")]
-#[allow(
-    clippy::disallowed_methods,
-    reason = "what it computes reaches no trajectory"
-)]
-pub mod ui;
-#[cfg(feature = "desktop")]
-#[allow(
-    clippy::disallowed_methods,
-    reason = "what it computes reaches no trajectory"
-)]
-pub mod view;
-#[cfg(feature = "desktop")]
-#[allow(
-    clippy::disallowed_methods,
-    reason = "what it computes reaches no trajectory"
-)]
-pub mod window;
 pub mod world;

@@ -35,7 +35,7 @@ pub use commands_file::read_commands;
 pub use drive::{Finished, Runner, Standing, look, run, standing};
 pub use error::RunnerError;
 pub use job::{Job, available_threads};
-pub use setting::{apply_settings, compared_value};
+pub use setting::{apply_settings, compared_value, live_command};
 pub use verify::{Verdict, VouchedFiles};
 pub use watch::{Watch, spoken};
 

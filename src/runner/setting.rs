@@ -72,6 +72,19 @@ pub fn compared_value(setting: &str) -> Result<(Parameter, Value), RunnerError> 
     })
 }
 
+/// The command that gives the live parameter called `key` the value that `text` states.
+///
+/// # Errors
+/// When there is no such key, or its value is none.
+pub fn live_command(key: &str, text: &str) -> Result<Command, RunnerError> {
+    match parameter_value(key, text) {
+        Ok((parameter, value)) => Ok(Command::Set { parameter, value }),
+        Err(SettingMistake::Key(reason) | SettingMistake::Value(reason)) => {
+            Err(RunnerError::Input(format!("{key}: {reason}")))
+        }
+    }
+}
+
 /// What is wrong with a setting.
 enum SettingMistake {
     Key(String),

@@ -250,7 +250,7 @@ pub(crate) fn suggestion(name: &str, known: &[&str]) -> Option<String> {
 }
 
 /// The one of the `known` names that `name` may be a slip of.
-pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let longest = 1 + name.chars().count() / 3;
     let distances = known
         .iter()

@@ -26,10 +26,8 @@ mod text;
 pub use built_in::{BuiltIn, built_in};
 pub use container::{SceneContainer, ScenePlane, SceneTube};
 pub use description::{SAMPLE_INTERVAL, Scene, TimeStep};
-pub use error::SceneError;
-#[cfg(feature = "headless")]
-pub(crate) use error::nearest;
 pub(crate) use error::{Problem, one_of, suggestion};
+pub use error::{SceneError, nearest};
 pub(crate) use file::count_of;
 pub(crate) use grains::lattice_counts;
 pub use grains::{SceneCellSpecies, SceneCells, SceneGrain, SceneGrains, SceneSpecies};

@@ -13,7 +13,7 @@
 //! what they came to beside each other in the end ([`merge`]).
 
 mod case;
-pub(crate) mod chart;
+pub mod chart;
 mod column_laws;
 mod column_plots;
 mod drum_plots;
@@ -40,7 +40,7 @@ pub use folder::SWEEP;
 pub(crate) use folder::SweepFolder;
 pub(crate) use kasper_statements::drum_statements;
 pub(crate) use man_statements::column_statements;
-pub(crate) use plan::cases;
+pub use plan::cases;
 pub use plan::{Case, Sweep, count};
 pub(crate) use results_table::TableColumn;
 pub(crate) use statements::table as statements_table;

@@ -1,6 +1,6 @@
 //! The arrows between files: which module may name which, and no circles among neighbours.
 //!
-//! In: the source files as text, and the table of modules in `src/lib.rs`. Out: a sentence for
+//! In: the source files as text, and the tables of modules in `src/lib.rs` and `app/src/lib.rs`. Out: a sentence for
 //! every arrow that runs against the table, and for every circle of files or folders that stand
 //! side by side. An arrow is a `use` or a path that begins with `crate`, `super`, `self` or a child
 //! module; a name that a `mod.rs` only hands on counts as taken from the file that defines it.
@@ -335,7 +335,7 @@ fn table(text: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The modules of the table in `src/lib.rs`, from the lowest up.
+/// The modules of the table in a `lib.rs`, from the lowest up.
 fn rows_of_table(lib: &str) -> Vec<String> {
     table(lib).concat()
 }
@@ -482,38 +482,47 @@ fn read_sources(folder: &Path, below: &str, files: &mut Vec<(String, String)>) {
     }
 }
 
-fn sources() -> Vec<(String, String)> {
-    let mut files = Vec::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    read_sources(&folder, "", &mut files);
-    files
+/// The files of the library and those of the program.
+fn packages() -> [Vec<(String, String)>; 2] {
+    ["src", "app/src"].map(|folder| {
+        let mut files = Vec::new();
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        read_sources(&folder, "", &mut files);
+        files
+    })
 }
 
 #[test]
 fn modules_name_only_modules_above_them_in_the_table() {
-    let files = sources();
-    let lib = files.iter().find(|(path, _)| path == "lib.rs").unwrap();
-    let said = against_the_table(&Tree::of(&files), &rows_of_table(&lib.1));
-    let text: Vec<String> = said.into_iter().collect();
-    assert!(text.is_empty(), "{}", text.join("\n"));
+    for files in packages() {
+        let lib = files.iter().find(|(path, _)| path == "lib.rs").unwrap();
+        let said = against_the_table(&Tree::of(&files), &rows_of_table(&lib.1));
+        let text: Vec<String> = said.into_iter().collect();
+        assert!(text.is_empty(), "{}", text.join("\n"));
+    }
 }
 
 #[test]
 fn folders_keep_the_order_that_their_own_tables_state() {
-    let files = sources();
-    let ordered = files.iter().filter(|(_, text)| text.contains(HAS_ORDER));
+    let packages = packages();
+    let ordered = packages.iter().flatten();
+    let ordered = ordered.filter(|(_, text)| text.contains(HAS_ORDER));
     assert!(
         ordered.count() >= 2,
         "the panels and the view have such tables"
     );
-    let said = against_own_tables(&Tree::of(&files), &files);
-    assert!(said.is_empty(), "{}", said.join("\n"));
+    for files in packages {
+        let said = against_own_tables(&Tree::of(&files), &files);
+        assert!(said.is_empty(), "{}", said.join("\n"));
+    }
 }
 
 #[test]
 fn neighbours_never_name_each_other_in_a_circle() {
-    let said = circles_in_words(&Tree::of(&sources()));
-    assert!(said.is_empty(), "{}", said.join("\n"));
+    for files in packages() {
+        let said = circles_in_words(&Tree::of(&files));
+        assert!(said.is_empty(), "{}", said.join("\n"));
+    }
 }
 
 /// A small crate whose files hold this.

@@ -1,13 +1,11 @@
 //! Claims about two runs side by side: always shown at the same step, each the run that it would be
 //! by itself.
 
-use crate::run::{bits, prepared, set};
+use crate::runs::{bits, prepared, set};
 use crate::timeline::{Explored, column_lab, wet_lab};
+use grainfall::lab::{DriverKind, Half, Lab, LabCommand, Options, RunView, Status};
+use grainfall::run::{BedStore, Command, Parameter, Session, StampedCommand};
 use grainfall::scene::{Scene, TimeStep};
-use grainfall::simulation::{
-    BedStore, Command, DriverKind, Half, Lab, LabCommand, Options, Parameter, RunView, Session,
-    StampedCommand, Status,
-};
 use grainfall::world::World;
 use std::sync::Arc;
 use std::time::Duration;

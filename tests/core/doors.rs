@@ -2,9 +2,9 @@
 //! may ask for.
 
 use grainfall::engines::{Export, ExportRecord, MpiEngine, export};
+use grainfall::run::{RunRecord, Session};
 use grainfall::runner::read_commands;
 use grainfall::scene::{Scene, StoredCells, within_folders};
-use grainfall::simulation::{RunRecord, Session};
 use grainfall::solver::advise;
 use grainfall::world::{Packing, build};
 use std::fs;

@@ -1,5 +1,4 @@
-//! Claims about scenes, worlds, solver, measures, runs and the headless runner. No window, no
-//! driver needed.
+//! Claims about scenes, worlds, solver, measures and runs. No window, no driver needed.
 
 #![allow(
     clippy::disallowed_methods,
@@ -7,23 +6,17 @@
 )]
 
 mod architecture;
-#[cfg(feature = "headless")]
-mod command_line;
 mod comparison;
 mod doors;
 mod engines;
-#[cfg(feature = "headless")]
-mod headless;
 mod measure;
-#[cfg(all(feature = "headless", unix))]
-mod outputs;
 mod paper;
 mod parameters;
 mod recorder;
 mod recording;
-#[cfg(feature = "headless")]
-mod reliability;
 mod run;
+#[path = "../common/runs.rs"]
+mod runs;
 mod same_bits;
 mod scene;
 mod session;
@@ -32,4 +25,6 @@ mod step;
 mod sweep;
 mod timeline;
 mod vtk;
+#[path = "../common/vtk_file.rs"]
+mod vtk_file;
 mod world;

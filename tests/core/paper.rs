@@ -1,6 +1,6 @@
 //! A paper in one command: its small setting, stopping and going on, tables of what is there.
 
-use crate::run::{shared_beds, until_done};
+use crate::runs::{shared_beds, until_done};
 use grainfall::paper::{self, Listed, PAPERS, PaperJob, Papered, Selection};
 use grainfall::sweep::SweepEnding;
 use std::cell::Cell;

@@ -5,8 +5,8 @@ use grainfall::parameters::{
     Kind, NameKind, Parameter, Settings, Value, Values, entries, live_parameters, start_parameters,
     table_of_keys,
 };
+use grainfall::run::{Command, ScriptedCommand, StampedCommand};
 use grainfall::scene::{Scene, SceneGrains, built_in};
-use grainfall::simulation::{Command, ScriptedCommand, StampedCommand};
 use grainfall::solver::advise;
 use grainfall::world::build;
 use std::collections::BTreeMap;

@@ -1,9 +1,9 @@
 //! Claims about when a run is measured: samples follow what happens, and nothing else.
 
-use crate::run::{prepared, shared_beds};
+use crate::runs::{prepared, shared_beds};
 use grainfall::measure::{Measure, Sample, Series};
+use grainfall::run::{Command, Parameter, Run};
 use grainfall::scene::{SAMPLE_INTERVAL, Scene};
-use grainfall::simulation::{Command, Parameter, Run};
 use grainfall::solver::{Solver, advise};
 use grainfall::world;
 use std::ops::Range;

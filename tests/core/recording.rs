@@ -2,15 +2,14 @@
 //! it does not hold.
 
 use crate::engines::import::dump;
-use crate::run::{friction, prepared, shared_beds};
+use crate::runs::{friction, prepared, shared_beds};
 use grainfall::engines::{ImportSource, import, sound_scene_from};
+use grainfall::lab::{DriverKind, Lab, LabCommand, Options, Status};
 use grainfall::measure::GrainQuantity;
 use grainfall::recording::Recording;
+use grainfall::run::{Command, Parameter, Script, ScriptedCommand};
 use grainfall::runner::{Job, run};
 use grainfall::scene::Scene;
-use grainfall::simulation::{
-    Command, DriverKind, Lab, LabCommand, Options, Parameter, Script, ScriptedCommand, Status,
-};
 use grainfall::world::World;
 use std::fs;
 use std::path::{Path, PathBuf};

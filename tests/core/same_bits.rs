@@ -4,13 +4,13 @@
 //! `GRAINFALL_HASHES=FILE` writes these rows and those of the golden hashes to a file, for the log
 //! of a build.
 
-use crate::run::{prepared, set};
+use crate::runs::{prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
-use grainfall::runner::{self, Job, Verdict};
-use grainfall::simulation::{
-    Checkpoint, Command, DriverKind, Half, Lab, LabCommand, Options, Parameter, Run, RunRecord,
-    Script, ScriptedCommand, Session, Status, Timeline,
+use grainfall::lab::{DriverKind, Half, Lab, LabCommand, Options, Status};
+use grainfall::run::{
+    Checkpoint, Command, Parameter, Run, RunRecord, Script, ScriptedCommand, Session, Timeline,
 };
+use grainfall::runner::{self, Job, Verdict};
 use grainfall::solver::{Processor, Solver};
 use std::cell::Cell;
 use std::fs::File;

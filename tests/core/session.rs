@@ -1,16 +1,14 @@
 //! Claims about sessions in files: they reopen to the same bits, and a file that cannot is refused
 //! in words.
 
-use crate::run::{bits, prepared, set};
+use crate::runs::{bits, prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
+use grainfall::lab::{DriverKind, Lab, LabCommand, Options, Status};
 use grainfall::measure::Measure;
+use grainfall::run::{BedStore, Command, Parameter, RunRecord, Session, Timeline, VERSION};
 use grainfall::run::{OPENING_SCENE, method, opening};
 use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, StoredCells};
-use grainfall::simulation::{
-    BedStore, Command, DriverKind, Lab, LabCommand, Options, Parameter, RunRecord, Session, Status,
-    Timeline, VERSION,
-};
 use grainfall::world::Packing;
 use std::fs;
 use std::path::{Path, PathBuf};

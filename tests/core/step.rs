@@ -1,15 +1,16 @@
 //! Claims about a time step that a change makes too long: it is told, shortened by a recorded
 //! command, taken back and computed again to the bit.
 
-use crate::run::{prepared, set};
+use crate::runs::{prepared, set};
 use crate::timeline::{arrive, change, go_on, hash};
+use grainfall::lab::{DriverKind, Half, Lab, LabCommand, Options, Status};
 use grainfall::physics::{LIQUID_CASES, LiquidCase};
+use grainfall::run::{
+    BedStore, Changed, Command, CommandError, Parameter, Run, RunRecord, Script, ScriptedCommand,
+    Session, StepTimes, Timeline,
+};
 use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, TimeStep};
-use grainfall::simulation::{
-    BedStore, Changed, Command, CommandError, DriverKind, Half, Lab, LabCommand, Options,
-    Parameter, Run, RunRecord, Script, ScriptedCommand, Session, Status, StepTimes, Timeline,
-};
 use grainfall::solver::advise;
 use std::time::Duration;
 

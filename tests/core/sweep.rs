@@ -1,10 +1,10 @@
 //! Sweeps: cases, results side by side, stopping and going on, wrong input.
 
-use crate::run::until_done;
+use crate::runs::until_done;
 use grainfall::output::Ending;
+use grainfall::run::BedStore;
 use grainfall::runner::RunnerError;
 use grainfall::scene::Scene;
-use grainfall::simulation::BedStore;
 use grainfall::sweep::{self, Sweep, SweepEnding, Variation};
 use std::fs;
 use std::path::Path;

@@ -1,13 +1,13 @@
 //! Claims about going back in time: the same bits on every way to a moment, whatever was changed,
 //! taken back or forgotten.
 
-use crate::run::{bits, friction, prepared, set, shared_beds};
+use crate::runs::{bits, friction, prepared, set, shared_beds};
 use grainfall::measure::{Measure, NON_RIGID_TEMPERATURE, Series};
 use grainfall::physics::LIQUID_CASES;
-use grainfall::scene::{Scene, SceneContainer};
-use grainfall::simulation::{
+use grainfall::run::{
     BedStore, Changed, Command, Parameter, Run, Script, ScriptedCommand, Timeline,
 };
+use grainfall::scene::{Scene, SceneContainer};
 use grainfall::world::StateHash;
 
 /// Memory for a handful of keyframes of the scenes here, and for all that could be wanted [bytes].

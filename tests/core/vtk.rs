@@ -1,9 +1,10 @@
 //! Grains, contacts, shapes and walls as VTK files, read back from their bytes.
 
+use crate::vtk_file::File;
 use glam::{DQuat, DVec3};
 use grainfall::output::{write_contacts, write_container, write_grains, write_shapes};
+use grainfall::run::Provenance;
 use grainfall::scene::Scene;
-use grainfall::simulation::Provenance;
 use grainfall::solver::{Solver, advise, force_terms};
 use grainfall::world::{Contact, Partner, Polyhedra, Polyhedron, World, build};
 use std::io;
@@ -50,104 +51,15 @@ fn cube_and_sphere() -> World {
     world
 }
 
-/// A `.vtp` or `.vtu` file: its text up to the numbers that are appended, and these where there are
-/// any.
-pub struct File {
-    pub header: String,
-    data: Vec<u8>,
-}
-
 /// What writes a file of a world.
 type Writing = fn(&World, &Provenance, &mut dyn io::Write) -> io::Result<()>;
 
-impl File {
-    fn of(world: &World, write: Writing) -> Self {
-        let mut bytes = Vec::new();
-        let scene = Scene::open("bouncing-grain").unwrap();
-        let from = Provenance::of(&scene, world);
-        write(world, &from, &mut bytes).unwrap();
-        Self::parse(&bytes)
-    }
-
-    pub fn parse(bytes: &[u8]) -> Self {
-        let mark = b"<AppendedData encoding=\"raw\">\n_";
-        let at = bytes.windows(mark.len()).position(|w| w == mark);
-        let at = at.map_or(bytes.len(), |at| at + mark.len());
-        Self {
-            header: String::from_utf8(bytes[..at].to_vec()).unwrap(),
-            data: bytes[at..].to_vec(),
-        }
-    }
-
-    /// The arrays within `<element> … </element>`, by name and in their order.
-    pub fn names(&self, element: &str) -> Vec<&str> {
-        let start = self.header.find(&format!("<{element}>")).unwrap();
-        let end = self.header.find(&format!("</{element}>")).unwrap();
-        let arrays = self.header[start..end].split("Name=\"").skip(1);
-        arrays.map(|rest| rest.split('"').next().unwrap()).collect()
-    }
-
-    /// The element of the array called `name`, behind its name.
-    fn element(&self, name: &str) -> &str {
-        let start = self.header.find(&format!("Name=\"{name}\"")).unwrap();
-        self.header[start..].split("<DataArray").next().unwrap()
-    }
-
-    /// The bytes of the numbers of the array called `name`.
-    fn bytes(&self, name: &str) -> Vec<u8> {
-        let element = self.element(name);
-        let bytes = match element.split("offset=\"").nth(1) {
-            Some(offset) => {
-                let offset: usize = offset.split('"').next().unwrap().parse().unwrap();
-                self.data[offset..].to_vec()
-            }
-            None => decoded(element.split(['>', '<']).nth(1).unwrap()),
-        };
-        let length = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
-        bytes[8..8 + length].to_vec()
-    }
-
-    pub fn integers(&self, name: &str) -> Vec<i32> {
-        let element = self.element(name);
-        if element.contains("format=\"ascii\"") {
-            let text = element.split(['>', '<']).nth(1).unwrap();
-            return text
-                .split_whitespace()
-                .map(|n| n.parse().unwrap())
-                .collect();
-        }
-        let bytes = self.bytes(name);
-        let (numbers, _) = bytes.as_chunks();
-        numbers.iter().map(|n| i32::from_le_bytes(*n)).collect()
-    }
-
-    pub fn floats(&self, name: &str) -> Vec<f32> {
-        let bytes = self.bytes(name);
-        let (numbers, _) = bytes.as_chunks();
-        numbers.iter().map(|n| f32::from_le_bytes(*n)).collect()
-    }
-
-    fn vectors(&self, name: &str) -> Vec<DVec3> {
-        let numbers: Vec<f64> = self.floats(name).into_iter().map(f64::from).collect();
-        numbers.chunks(3).map(DVec3::from_slice).collect()
-    }
-}
-
-/// What base64 `text` stands for.
-fn decoded(text: &str) -> Vec<u8> {
-    let alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let text = text.trim_end_matches('=');
-    let mut bits = text.chars().map(|c| alphabet.find(c).unwrap() as u32);
+fn written(world: &World, write: Writing) -> File {
     let mut bytes = Vec::new();
-    while let Some(first) = bits.next() {
-        let rest = [bits.next(), bits.next(), bits.next()];
-        let known = rest.iter().flatten().count();
-        let word = rest
-            .iter()
-            .fold(first, |word, six| word << 6 | six.unwrap_or(0));
-        bytes.extend_from_slice(&word.to_be_bytes()[1..=known]);
-    }
-    bytes
+    let scene = Scene::open("bouncing-grain").unwrap();
+    let from = Provenance::of(&scene, world);
+    write(world, &from, &mut bytes).unwrap();
+    File::parse(&bytes)
 }
 
 /// Exact in 32 bits, or as near as these are.
@@ -159,12 +71,12 @@ fn near(found: &[DVec3], expected: &[DVec3]) -> bool {
 #[test]
 fn shapes_and_axes_together_are_the_solids_where_they_are() {
     let world = cube_and_sphere();
-    let shapes = File::of(&world, |world, from, file| {
+    let shapes = written(&world, |world, from, file| {
         write_shapes(world, world.polyhedra.as_ref().unwrap(), from, file)
     });
     let counts = "NumberOfPoints=\"9\" NumberOfCells=\"2\"";
     assert!(shapes.header.contains(counts), "{}", shapes.header);
-    let grains = File::of(&world, write_grains);
+    let grains = written(&world, write_grains);
     let (points, centres) = (shapes.vectors("Points"), grains.vectors("Points"));
     let axes = grains.vectors("tensor");
     let placed = points.iter().zip(shapes.integers("id")).map(|(p, id)| {
@@ -214,7 +126,7 @@ fn grains_are_points_with_what_each_has() {
         touching: true,
         bridge: None,
     });
-    let file = File::of(&world, write_grains);
+    let file = written(&world, write_grains);
     let first = file.header.find("<VTKFile type=\"PolyData\"").unwrap();
     assert_eq!(&file.header[..first], "<?xml version=\"1.0\"?>\n");
     let counts = "NumberOfPoints=\"2\" NumberOfVerts=\"2\"";
@@ -254,7 +166,7 @@ fn wet_drum() -> World {
 #[test]
 fn contacts_add_up_to_the_force_on_each_grain() {
     let world = wet_drum();
-    let file = File::of(&world, write_contacts);
+    let file = written(&world, write_contacts);
     let (first, second) = (file.integers("id1"), file.integers("id2"));
     let (along, across) = (
         file.vectors("force_normal"),
@@ -287,7 +199,7 @@ fn contacts_add_up_to_the_force_on_each_grain() {
 #[test]
 fn contacts_are_lines_with_the_gap_and_the_bridge_of_each() {
     let world = wet_drum();
-    let file = File::of(&world, write_contacts);
+    let file = written(&world, write_contacts);
     let (points, ends) = (file.vectors("point"), file.vectors("Points"));
     let (normals, along) = (file.vectors("normal"), file.vectors("force_normal"));
     let (overlap, bridges) = (file.floats("overlap"), file.floats("bridge_volume"));
@@ -314,7 +226,7 @@ fn contacts_are_lines_with_the_gap_and_the_bridge_of_each() {
         "bridges over gaps"
     );
     let dry = cube_and_sphere();
-    let none = File::of(
+    let none = written(
         &World {
             polyhedra: None,
             ..dry
@@ -326,7 +238,7 @@ fn contacts_are_lines_with_the_gap_and_the_bridge_of_each() {
 
 #[test]
 fn walls_are_polygons_with_their_numbers() {
-    let file = File::of(&wet_drum(), write_container);
+    let file = written(&wet_drum(), write_container);
     let walls = file.integers("wall");
     let count = |wall| walls.iter().filter(|number| **number == wall).count();
     assert_eq!([0, 1, 2].map(count), [180, 1, 1], "rim and two plates");

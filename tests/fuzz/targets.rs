@@ -5,12 +5,12 @@ use super::{byte_mutator, mutator};
 use grainfall::measure::sample;
 use grainfall::parameters::Settings;
 use grainfall::recording::Recording;
-use grainfall::runner::{Job, compared_value, read_commands, run};
-use grainfall::scene::{Scene, SceneGrains, StoredCells, built_in};
-use grainfall::simulation::{
+use grainfall::run::{
     BedStore, Checkpoint, Command, Estimate, Parameter, Preparation, Prepared, Run, RunRecord,
     Session, Timeline,
 };
+use grainfall::runner::{Job, compared_value, read_commands, run};
+use grainfall::scene::{Scene, SceneGrains, StoredCells, built_in};
 use grainfall::solver::{Solver, advise};
 use grainfall::sweep::Variation;
 use grainfall::world::{self, Packing};

@@ -6,8 +6,8 @@ mod allocator;
 
 use allocator::{in_use, with_peak};
 use grainfall::output::write_grains;
+use grainfall::run::Provenance;
 use grainfall::scene::Scene;
-use grainfall::simulation::Provenance;
 use grainfall::solver::{Solver, advise};
 use grainfall::world::build;
 use std::sync::{Mutex, PoisonError};

@@ -2,9 +2,10 @@
 //! docs/validation.md.
 
 use super::value;
+use grainfall::lab::SMALLEST_DROP;
 use grainfall::measure::{Measure, ResultKey, RunQuantity, Summary, summarise};
+use grainfall::run::{BedStore, Preparation, Prepared};
 use grainfall::scene::Scene;
-use grainfall::simulation::{BedStore, Preparation, Prepared, SMALLEST_DROP};
 use grainfall::solver::advise;
 use std::sync::Arc;
 

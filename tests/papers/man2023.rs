@@ -2,9 +2,10 @@
 //! not stands in docs/validation.md.
 
 use super::value;
+use grainfall::lab::SMALLEST_DROP;
 use grainfall::measure::{Measure, RunQuantity, Summary, results};
+use grainfall::run::{BedStore, Preparation, Prepared};
 use grainfall::scene::Scene;
-use grainfall::simulation::{BedStore, Preparation, Prepared, SMALLEST_DROP};
 use std::sync::Arc;
 
 /// Steps of this length ran to rest with a closed energy balance; the paper's own are longer [s].

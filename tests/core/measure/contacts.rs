@@ -92,7 +92,7 @@ fn overlap_of_polyhedra_is_relative_to_the_smaller_rounding() {
 #[test]
 fn the_mean_of_the_grains_coordination_is_that_of_the_bed() {
     let scene = Scene::open("small-drum").unwrap();
-    let (run, _) = crate::run::prepared(&scene, 1, crate::run::shared_beds());
+    let (run, _) = crate::runs::prepared(&scene, 1, crate::runs::shared_beds());
     let mut counts = Vec::new();
     GrainQuantity::Coordination.append(run.world(), &mut counts);
     let mean = counts.iter().sum::<f64>() / counts.len() as f64;

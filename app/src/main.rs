@@ -1,0 +1,347 @@
+//! The command line: what to open, what to change, and whether a window is wanted.
+//!
+//! Exit codes: 0 done, 1 files could not be written, 2 bad input, 3 physical fault, 4 another state
+//! than a file states, 5 another program writes to the output folder, 130 interrupted.
+
+use grainfall::engines::MpiEngine;
+use grainfall::lab::Kept;
+use grainfall::lab::Options;
+use grainfall::parameters::Settings;
+use grainfall::run::{Estimate, ScriptedCommand};
+#[cfg(feature = "desktop")]
+use grainfall::run::{OPENING_SCENE, Session, opening};
+#[cfg(feature = "desktop")]
+use grainfall::runner::compared_value;
+use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
+use grainfall::scene::{Scene, built_in};
+#[cfg(feature = "desktop")]
+use grainfall_app::headless::command_line::PictureArguments;
+use grainfall_app::headless::command_line::{Arguments, Task, What};
+use grainfall_app::headless::terminal::{say, tell};
+use grainfall_app::headless::{
+    self, Allowed, PaperTask, Report, SweepTask, check_threads, interruption, misspelt_command,
+    named_scene, short_name,
+};
+#[cfg(feature = "desktop")]
+use grainfall_app::window::Opened;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::of_the_process();
+    match carry_out(arguments) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            print_chain(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
+    let allowed = arguments.allowed;
+    allowed.take_effect();
+    match arguments.task {
+        Some(Task::Bed { scene, out }) => return headless::write_bed(&scene, &allowed, &out),
+        Some(Task::Opening { out }) => return headless::write_opening(&out),
+        Some(Task::Verify { file, threads }) => {
+            let threads = checked_threads(threads, Report::Text)?;
+            return headless::confirm(&file, threads, &allowed, &*interruption()?);
+        }
+        Some(Task::Scenes { json }) => return list_scenes(json),
+        Some(Task::Completions { shell }) => {
+            headless::print_completions(shell);
+            return Ok(exit::DONE);
+        }
+        Some(Task::Man { folder }) => {
+            headless::write_manual(&folder)?;
+            return Ok(exit::DONE);
+        }
+        Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
+        Some(Task::Pack { scene, set, out }) => {
+            return headless::write_packing(&scene, &set, &allowed, &out);
+        }
+        Some(Task::Sweep(task)) => return run_sweep(&task, &allowed),
+        Some(Task::Import(task)) => return task.carry_out(),
+        Some(Task::Export {
+            what,
+            to,
+            out,
+            unsettled,
+            said,
+        }) => return export_scene(&what, to, (out, !unsettled), (&allowed, said.report())),
+        Some(Task::Paper(task)) => return run_paper(&task, &allowed),
+        None => {}
+    }
+    let what = arguments.what;
+    #[cfg(feature = "desktop")]
+    if let Some(session) = opening_session(&what, &arguments.picture, arguments.no_render) {
+        let options = window_options(&what, Vec::new());
+        let name = OPENING_SCENE.to_owned();
+        return open_window(
+            name,
+            Opened::Shipped(session.into()),
+            options,
+            arguments.picture,
+        );
+    }
+    let name = what.scene.clone().unwrap_or_else(first_scene);
+    #[cfg(feature = "desktop")]
+    if Kept::is_at(&name) && !arguments.no_render {
+        let opened = unchanged(&name, &what)?;
+        let options = window_options(&what, Vec::new());
+        return open_window(name, opened, options, arguments.picture);
+    }
+    if Kept::is_at(&name) {
+        return Err(RunnerError::Input(format!(
+            "{name} holds what was computed: it opens in a window, and `grainfall verify` computes it again without one"
+        )));
+    }
+    let (scene, script) = changed_scene(&name, &what)?;
+    if !arguments.no_render {
+        #[cfg(feature = "desktop")]
+        allowed.memory(&Estimate::of_start(&scene))?;
+        #[cfg(feature = "desktop")]
+        return open_window(
+            name,
+            scene.into(),
+            window_options(&what, script),
+            arguments.picture,
+        );
+        #[cfg(not(feature = "desktop"))]
+        return Err(RunnerError::Input(NO_WINDOW.into()));
+    }
+    let name = short_name(&name);
+    let out = arguments.out.unwrap_or(Path::new("out").join(&name));
+    let report = arguments.said.report();
+    let interruption = interruption()?;
+    let job = Job {
+        threads: checked_threads(what.threads, report)?,
+        script,
+        checkpoints: true,
+        restart: arguments.restart,
+        ..Job::new(name, scene, out)
+    };
+    allowed.begin(&Estimate::of(&job.scene), &job.out, report)?;
+    let ending = headless::run(&job, report, &interruption)?;
+    Ok(ending.exit_code())
+}
+
+/// The threads asked for, or as many as there are cores; says where they are more.
+///
+/// # Errors
+/// When the machine does not give so many.
+fn checked_threads(asked: Option<u16>, report: Report) -> Result<usize, RunnerError> {
+    let cores = available_threads();
+    let threads = asked.map_or(cores, usize::from);
+    if threads > cores {
+        report.note(&format!(
+            "{threads} threads share {cores} cores, which is slower than {cores} threads"
+        ));
+    }
+    check_threads(threads)?;
+    Ok(threads)
+}
+
+/// The built-in scene to open when none is asked for.
+fn first_scene() -> String {
+    built_in()
+        .first()
+        .map_or(String::new(), |scene| scene.name.to_owned())
+}
+
+/// The scene called `name` with the changes asked for, and the commands to carry out while it runs.
+fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>), RunnerError> {
+    let mut scene = named_scene(name).map_err(|error| match misspelt_command(name) {
+        Some(problem) => RunnerError::Input(problem),
+        None => error.into(),
+    })?;
+    let options = [
+        ("duration", &what.duration),
+        ("output-interval", &what.output_interval),
+        ("sample-interval", &what.sample_interval),
+        ("time-step", &what.time_step),
+        ("seed", &what.seed),
+    ];
+    let options = options
+        .into_iter()
+        .filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
+    let settings: Vec<String> = options.chain(what.set.iter().cloned()).collect();
+    let mut script = apply_settings(&mut scene, &settings)?;
+    if let Some(path) = &what.commands {
+        script.extend(read_commands(path)?);
+    }
+    Ok((scene, script))
+}
+
+/// The run that the window opens with where nothing is asked for but a window.
+#[cfg(feature = "desktop")]
+fn opening_session(what: &What, picture: &PictureArguments, no_render: bool) -> Option<Session> {
+    let values = [
+        &what.scene,
+        &what.duration,
+        &what.output_interval,
+        &what.sample_interval,
+        &what.time_step,
+        &what.seed,
+        &picture.compare,
+    ];
+    let asks = values.into_iter().any(Option::is_some) || !what.set.is_empty();
+    let takes_files = what.commands.is_some() || picture.screenshot.is_some();
+    (!asks && !takes_files && !no_render).then(opening)?
+}
+
+/// The session or the recording called `name`, which opens as it was.
+#[cfg(feature = "desktop")]
+fn unchanged(name: &str, what: &What) -> Result<Opened, RunnerError> {
+    let refuse = |reason: String| Err(RunnerError::Input(reason));
+    let given = [
+        &what.duration,
+        &what.output_interval,
+        &what.time_step,
+        &what.seed,
+    ];
+    if given.iter().any(|option| option.is_some())
+        || !what.set.is_empty()
+        || what.commands.is_some()
+    {
+        return refuse(format!(
+            "{name} opens as it was saved: leave the options out and change it in the window, or give a scene the changes of a \
+             session or a summary.json with --commands"
+        ));
+    }
+    Kept::read(Path::new(name)).map_or_else(refuse, |kept| Ok(kept.into()))
+}
+
+#[cfg(feature = "desktop")]
+fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
+    let options = Options::window();
+    Options {
+        threads: what.threads.map_or(options.threads, usize::from),
+        script,
+        ..options
+    }
+}
+
+/// Opens the laboratory; what went wrong is said here. Returns the exit code.
+#[cfg(feature = "desktop")]
+fn open_window(
+    name: String,
+    opened: Opened,
+    options: Options,
+    picture: PictureArguments,
+) -> Result<u8, RunnerError> {
+    use grainfall_app::window::{PictureJob, WindowJob, run};
+    let compared = picture.compare.as_deref().map(compared_value).transpose()?;
+    let picture = picture.screenshot.map(|path| PictureJob {
+        path,
+        at: picture.at,
+        size: picture.size.into(),
+        offscreen: picture.offscreen,
+        plain: picture.plain,
+    });
+    let job = WindowJob {
+        name,
+        opened,
+        options,
+        compared,
+        picture,
+    };
+    Ok(run(job).map_or_else(
+        |error| {
+            print_chain(&error);
+            error.exit_code()
+        },
+        |()| 0,
+    ))
+}
+
+#[cfg(not(feature = "desktop"))]
+const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \
+                         `desktop`";
+
+/// Hands a scene to another engine. Returns the exit code.
+fn export_scene(
+    what: &What,
+    engine: MpiEngine,
+    (out, settles): (PathBuf, bool),
+    (allowed, report): (&Allowed, Report),
+) -> Result<u8, RunnerError> {
+    let name = what.scene.clone().unwrap_or_else(first_scene);
+    let (scene, script) = changed_scene(&name, what)?;
+    let job = Job {
+        threads: checked_threads(what.threads, report)?,
+        script,
+        ..Job::new(short_name(&name), scene, out)
+    };
+    allowed.begin(&Estimate::of_start(&job.scene), &job.out, report)?;
+    let is_done = headless::hand_over(&job, engine, settles, report, &*interruption()?)?;
+    Ok(if is_done {
+        exit::DONE
+    } else {
+        exit::INTERRUPTED
+    })
+}
+
+fn run_sweep(task: &SweepTask, allowed: &Allowed) -> Result<u8, RunnerError> {
+    let report = task.report();
+    let jobs = checked_threads(task.jobs, report)?;
+    let sweep = task.sweep(&short_name(&task.scene), jobs)?;
+    if let Some(at_once) = task.runs_at_once(jobs) {
+        allowed.begin(&task.estimate(&sweep, at_once)?, &sweep.out, report)?;
+    }
+    task.carry_out(&sweep, &*interruption()?)
+}
+
+fn run_paper(task: &PaperTask, allowed: &Allowed) -> Result<u8, RunnerError> {
+    let at_once = checked_threads(task.threads, task.report())?;
+    let job = task.job(at_once)?;
+    if task.computes() {
+        let estimate = job.estimate(at_once);
+        allowed.begin(&estimate, &job.sweep().out, Report::Quiet)?;
+    }
+    task.carry_out(&job, &*interruption()?)
+}
+
+/// Prints the scenes that come with the program. Returns the exit code.
+fn list_scenes(json: bool) -> Result<u8, RunnerError> {
+    let mut list = Vec::new();
+    for scene in built_in() {
+        list.push((scene, Scene::parse(scene.path, scene.text)?.title));
+    }
+    if json {
+        let list: Vec<_> = (list.iter())
+            .map(|(scene, title)| serde_json::json!({"name": scene.name, "title": title, "path": scene.path}))
+            .collect();
+        say(&format!("{:#}", serde_json::Value::from(list)));
+    } else {
+        for (scene, title) in list {
+            say(&format!("{:<20} {title}", scene.name));
+        }
+    }
+    Ok(exit::DONE)
+}
+
+/// Prints what can be set in the scene called `name`. Returns the exit code.
+fn list_settings(name: &str, json: bool) -> Result<u8, RunnerError> {
+    let settings = Settings::of(&named_scene(name)?);
+    let text = if json {
+        let list = serde_json::to_string_pretty(settings.list());
+        list.map_err(|error| RunnerError::Input(error.to_string()))?
+    } else {
+        settings.to_string()
+    };
+    say(text.trim_end());
+    Ok(exit::DONE)
+}
+
+/// Prints `error` and what led to it, once, for people.
+fn print_chain(error: &dyn Error) {
+    tell(&format!("error: {error}"));
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        tell(&format!("  because: {error}"));
+        cause = error.source();
+    }
+}

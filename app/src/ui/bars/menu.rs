@@ -1,0 +1,173 @@
+//! The menu bar: files, undo and redo, the comparison of two runs, the view, help.
+//!
+//! In: the simulation, the files opened last, which sides are shown. Out: requests; an entry that
+//! cannot act now says why. What an entry does is not decided here.
+
+use crate::simulation::Simulation;
+use crate::ui::bars::sides::{OpenSides, why_not_both};
+use crate::ui::bars::time_slider::why_no_undo;
+use crate::ui::panels::picture_settings::MEASURED_HINT;
+use crate::ui::request::{Request, Sheet};
+use crate::ui::shortcuts::SHORTCUTS;
+use crate::ui::widgets::button::button_unless_ui;
+use crate::ui::words::number;
+use crate::view::{Background, CameraRequest, ProjectionKind, StandardView, ViewSettings};
+use bevy_egui::egui;
+use grainfall::lab::Half;
+use grainfall::run::Command;
+use grainfall::scene::built_in;
+
+/// Width of the View menu, in points: its longest entry fits.
+const VIEW_WIDTH: f32 = 250.0;
+
+/// Draws the menu bar; `rest` is drawn at its right end, from right to left.
+pub fn menu_ui(
+    ui: &mut egui::Ui,
+    simulation: Option<&Simulation>,
+    recent: &[String],
+    shown: &mut OpenSides,
+    view: &mut ViewSettings,
+    out: &mut Vec<Request>,
+    rest: impl FnOnce(&mut egui::Ui),
+) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file_ui(ui, simulation, recent, out));
+        ui.menu_button("Edit", |ui| edit_ui(ui, simulation, out));
+        ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
+        ui.menu_button("Help", |ui| {
+            item_ui(ui, "Shortcuts", Request::Show(Sheet::Shortcuts), out);
+            item_ui(ui, "About Grainfall", Request::Show(Sheet::About), out);
+        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), rest);
+    });
+}
+
+fn file_ui(
+    ui: &mut egui::Ui,
+    simulation: Option<&Simulation>,
+    recent: &[String],
+    out: &mut Vec<Request>,
+) {
+    item_ui(ui, "Scenes…", Request::ShowScenes, out);
+    item_ui(ui, "Open…", Request::ChooseFile, out);
+    ui.menu_button("Built-in scenes", |ui| {
+        for scene in built_in() {
+            item_ui(ui, scene.name, Request::Open(scene.name.into()), out);
+        }
+    });
+    ui.menu_button("Recent", |ui| {
+        for name in recent {
+            item_ui(ui, name, Request::Open(name.clone()), out);
+        }
+        if recent.is_empty() {
+            ui.weak("Nothing was opened yet");
+        }
+    });
+    ui.separator();
+    let why_not = simulation.is_none().then_some("There is no run to save");
+    let as_another = Request::ChooseSession;
+    item_unless_ui(ui, "Save the session", Request::Save, why_not, out);
+    item_unless_ui(ui, "Save the session as…", as_another, why_not, out);
+    item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
+    item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
+    ui.add_enabled_ui(simulation.is_some(), |ui| {
+        item_ui(ui, "Record a film…", Request::ChooseFilm, out);
+    });
+    ui.separator();
+    item_ui(ui, "Quit", Request::Quit, out);
+}
+
+fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Request>) {
+    let comparison = simulation.and_then(|simulation| simulation.comparison());
+    let [undo, redo] = simulation.map_or([None; 2], |simulation| simulation.undo_and_redo());
+    let entries = [("Undo", Command::Undo, undo), ("Redo", Command::Redo, redo)];
+    for (name, command, what) in entries {
+        let nothing = simulation.map_or("There is no run", why_no_undo);
+        let why_not = what.is_none().then(|| number::capitalised(nothing));
+        item_unless_ui(ui, name, Request::Command(command), why_not.as_deref(), out);
+    }
+    ui.separator();
+    let why_not = simulation.is_none().then_some("There is no run to compare");
+    let compare = Request::Compare(None);
+    item_unless_ui(ui, "Compare two values…", compare, why_not, out);
+    let why_not = comparison.is_none().then_some("There is one run only");
+    for half in Half::ALL {
+        let name = format!("End the comparison, keep the {} run", half.label());
+        item_unless_ui(ui, &name, Request::EndComparison(half), why_not, out);
+    }
+}
+
+fn view_ui(
+    ui: &mut egui::Ui,
+    shown: &mut OpenSides,
+    view: &mut ViewSettings,
+    out: &mut Vec<Request>,
+) {
+    ui.set_width(VIEW_WIDTH);
+    item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
+    item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
+    for side in StandardView::ALL {
+        item_ui(
+            ui,
+            side.label(),
+            Request::Camera(CameraRequest::From(side)),
+            out,
+        );
+    }
+    ui.separator();
+    let mut parallel = view.projection == ProjectionKind::Orthographic;
+    if ui.checkbox(&mut parallel, "Parallel projection").changed() {
+        view.projection = if parallel {
+            ProjectionKind::Orthographic
+        } else {
+            ProjectionKind::Perspective
+        };
+    }
+    let mut light = view.background == Background::Light;
+    if ui
+        .checkbox(&mut light, "Light, for projectors and print")
+        .changed()
+    {
+        view.background = if light {
+            Background::Light
+        } else {
+            Background::Dark
+        };
+    }
+    ui.checkbox(&mut view.show_measured, "Show what is measured")
+        .on_hover_text(MEASURED_HINT);
+    ui.separator();
+    ui.checkbox(&mut shown.left, "Controls on the left");
+    ui.checkbox(&mut shown.right, "Plots and results on the right");
+    if let Some(reason) = why_not_both(ui.ctx().content_rect().width()) {
+        // Menus spread their text over the whole width.
+        ui.vertical(|ui| ui.weak(reason));
+    }
+    ui.separator();
+    ui.weak("Text and controls");
+    egui::gui_zoom::zoom_menu_buttons(ui);
+}
+
+/// An entry that asks for `request`, with its shortcut.
+fn item_ui(ui: &mut egui::Ui, name: &str, request: Request, out: &mut Vec<Request>) {
+    item_unless_ui(ui, name, request, None, out);
+}
+
+/// The same, disabled where there is a reason why not; hovering over it shows the reason.
+fn item_unless_ui(
+    ui: &mut egui::Ui,
+    name: &str,
+    request: Request,
+    why_not: Option<&str>,
+    out: &mut Vec<Request>,
+) {
+    let shortcut = SHORTCUTS
+        .iter()
+        .find(|shortcut| shortcut.asks_for(&request));
+    let keys = shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ui.ctx()));
+    let button = egui::Button::new(name).shortcut_text(keys);
+    if button_unless_ui(ui, why_not, button).clicked() {
+        out.push(request);
+        ui.close();
+    }
+}

@@ -1,0 +1,248 @@
+//! The timeline under the picture: the present run from its start to its newest state, to look at
+//! any moment of it.
+//!
+//! In: the simulation. Out: requests to show a moment, to undo and to redo. Changes are marked
+//! above the line, avalanches below it.
+
+use crate::simulation::Simulation;
+use crate::ui::playback::allows;
+use crate::ui::request::Request;
+use crate::ui::theme::Palette;
+use crate::ui::words::number;
+use crate::ui::words::run_names::parameter_name;
+use bevy_egui::egui::{self, Rect, RichText, WidgetInfo, WidgetType, pos2, vec2};
+use grainfall::recording::RecordingFacts;
+use grainfall::run::{Changed, Command};
+
+/// Of marks closer together than this one is drawn, in points.
+const BETWEEN_MARKS: f32 = 3.0;
+
+/// Draws the timeline, over the whole width; nothing while there is no run.
+pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    if simulation.world().is_none() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        if let Some(recording) = simulation.recording() {
+            run_anew_ui(ui, out);
+            line_ui(ui, simulation, out);
+            state_ui(ui, simulation, recording);
+        } else {
+            undo_ui(ui, simulation, out);
+            line_ui(ui, simulation, out);
+            place_ui(ui, simulation, out);
+        }
+    });
+}
+
+/// The ways from a recording to a run.
+fn run_anew_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
+    let ways = [
+        (
+            "The scene, from its start",
+            "Its bed is made again, and the parameters have the values of the moment shown",
+            Request::RunAnew,
+        ),
+        (
+            "On from this moment",
+            "The grains are where they are, with their velocities and films; contacts begin without springs and bridges",
+            Request::RunOn,
+        ),
+    ];
+    let menu = ui.menu_button("Run anew", |ui| {
+        for (name, hint, request) in ways {
+            if ui.button(name).on_hover_text(hint).clicked() {
+                out.push(request);
+                ui.close();
+            }
+        }
+    });
+    menu.response
+        .on_hover_text("A recording shows what was computed. A run can be changed");
+}
+
+/// `state 12 of 51 · 1.20 of 5.00 s`.
+fn state_in_words(recording: &RecordingFacts, step: u64) -> String {
+    let (index, states) = (recording.index_at(step), recording.moments.len());
+    let time = |index: usize| {
+        recording
+            .moments
+            .get(index)
+            .map_or(0.0, |moment| moment.time)
+    };
+    let place = place_in_words(time(index), time(states.saturating_sub(1)));
+    format!("state {} of {states} · {place}", index + 1)
+}
+
+/// Which state of a recording is shown.
+fn state_ui(ui: &mut egui::Ui, simulation: &Simulation, recording: &RecordingFacts) {
+    let text = state_in_words(recording, simulation.step());
+    ui.label(text).on_hover_text(
+        "A recording shows the states that were written, each as it is, until the next is due; nothing is made up between \
+         them",
+    );
+}
+
+/// Undo and redo.
+fn undo_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let [undo, redo] = simulation.undo_and_redo();
+    let buttons = [
+        ("⟲", "Undo", "Undo (Ctrl+Z)", undo, Command::Undo),
+        ("⟳", "Redo", "Redo (Ctrl+Shift+Z)", redo, Command::Redo),
+    ];
+    for (face, name, title, what, command) in buttons {
+        let enabled = what.is_some() && allows(simulation.status(), &command);
+        let button = egui::Button::new(RichText::new(face).size(17.0)).min_size(vec2(32.0, 26.0));
+        let mut response = ui.add_enabled(enabled, button);
+        response = response.on_disabled_hover_text(format!("{title}: {}", why_no_undo(simulation)));
+        if let Some(what) = what {
+            let about = changed_name(what, simulation);
+            let effect = match command {
+                Command::Undo => "Back to the moment before it, as if it had not been made",
+                _ => "On to where the run was when it was taken back",
+            };
+            response = response.on_hover_text(format!("{title}: {about}\n{effect}"));
+        }
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, enabled, name));
+        if response.clicked() {
+            out.push(Request::Command(command));
+        }
+    }
+}
+
+/// Why there is no undo or redo.
+pub fn why_no_undo(simulation: &Simulation) -> &'static str {
+    match simulation.comparison() {
+        Some(_) => "there is nothing to take back since the comparison began",
+        None => "there is nothing to take back",
+    }
+}
+
+fn changed_name(what: &Changed, simulation: &Simulation) -> String {
+    match what {
+        Changed::Parameter(parameter) => parameter_name(parameter, simulation),
+        Changed::Parameters => "several parameters".into(),
+        Changed::Start => "starting afresh".into(),
+        Changed::Run => "taking up another run".into(),
+    }
+}
+
+/// The line itself.
+fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let Some(world) = simulation.world() else {
+        return;
+    };
+    let time_step = world.clock.time_step;
+    let Some(times) = simulation.step_times() else {
+        return;
+    };
+    let end = simulation.past().end;
+    let shown = simulation.step();
+    let enabled = end.step > 0 && allows(simulation.status(), &Command::Seek(0));
+    let mut time = times.time_at(shown.min(end.step));
+    let room = match simulation.recording() {
+        Some(recording) => width(ui, &state_in_words(recording, end.step)) + 24.0,
+        None => room_for_place(ui, end.time),
+    };
+    ui.spacing_mut().slider_width = (ui.available_width() - room).max(80.0);
+    let slider = egui::Slider::new(&mut time, 0.0..=end.time.max(time_step)).show_value(false);
+    let response = ui.add_enabled(enabled, slider);
+    let value = (time * 1e6).round() / 1e6;
+    response.widget_info(|| WidgetInfo::slider(enabled, value, "Moment shown"));
+    if response.changed() {
+        let step = times.step_at(time).min(end.step);
+        if step != shown {
+            out.push(Request::Command(Command::Seek(step)));
+        }
+    }
+    marks_ui(ui, response.rect, simulation, end.time);
+    response.on_hover_text(match simulation.recording() {
+        Some(_) => "Drag to see any state of the recording.",
+        None => {
+            "Drag to see any moment of the run. Change something there to begin another run from it."
+        }
+    });
+}
+
+/// Changes above the line, avalanches below it.
+fn marks_ui(ui: &egui::Ui, line: Rect, simulation: &Simulation, end: f64) {
+    let palette = Palette::of(ui.visuals());
+    let inset = line.height() / 2.5;
+    let span = line.x_range().shrink(inset);
+    let place = |time: f64| egui::lerp(span, (time / end.max(f64::MIN_POSITIVE)).min(1.0) as f32);
+    let mut drawn_until = f32::NEG_INFINITY;
+    let commands = simulation.commands();
+    let changes = (simulation.changes().iter()).filter_map(|first| commands.get(*first));
+    for x in changes.map(|change| place(change.time)) {
+        if x >= drawn_until {
+            let mark = egui::Stroke::new(2.0, palette.change);
+            ui.painter()
+                .vline(x, line.top()..=line.center().y - 3.0, mark);
+            drawn_until = x + BETWEEN_MARKS;
+        }
+    }
+    drawn_until = f32::NEG_INFINITY;
+    for x in simulation
+        .avalanches()
+        .iter()
+        .map(|avalanche| place(avalanche.start))
+    {
+        if x >= drawn_until {
+            let centre = pos2(x, line.bottom() - 2.0);
+            ui.painter().circle_filled(centre, 2.0, palette.maximum);
+            drawn_until = x + BETWEEN_MARKS;
+        }
+    }
+}
+
+/// Shows the newest state of the run.
+const TO_THE_NEWEST: &str = "To the newest";
+
+/// `2.04 of 17.22 s`.
+fn place_in_words(time: f64, end: f64) -> String {
+    format!("{} of {}", number::moment(time), number::moment(end))
+}
+
+/// Width of the text and the button right of the line. It does not depend on the moment shown, so
+/// the line does not jump.
+fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
+    let spacing = ui.spacing();
+    let places = [end, end.min(0.1234)].map(|time| width(ui, &place_in_words(time, end)));
+    let texts = places[0].max(places[1]) + width(ui, TO_THE_NEWEST);
+    texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
+}
+
+/// Width of `text`.
+fn width(ui: &egui::Ui, text: &str) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let words = (ui.painter()).layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
+    words.size().x
+}
+
+/// The moment shown out of the whole run, and the way back to the newest.
+fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+    let end = simulation.past().end;
+    if !simulation.looks_back() {
+        ui.weak("newest")
+            .on_hover_text("The newest state of the run is shown");
+        return;
+    }
+    let Some(times) = simulation.step_times() else {
+        return;
+    };
+    let time = times.time_at(simulation.step());
+    let palette = Palette::of(ui.visuals());
+    let text = place_in_words(time, end.time);
+    ui.label(RichText::new(text).color(palette.warning))
+        .on_hover_text(
+            "An earlier moment is shown: Play shows what followed, a change begins another run",
+        );
+    let enabled = allows(simulation.status(), &Command::Seek(end.step));
+    let button = ui.add_enabled(enabled, egui::Button::new(TO_THE_NEWEST));
+    if button
+        .on_hover_text("Show the newest state (End)")
+        .clicked()
+    {
+        out.push(Request::Command(Command::Seek(end.step)));
+    }
+}

@@ -1,0 +1,467 @@
+//! Everything that is drawn round the picture: which panels there are, where they stand, what lies
+//! over them.
+//!
+//! In: the simulation and the view's settings. Out: requests, and what is left free for the
+//! picture. Needs no Bevy app.
+
+use crate::simulation::Simulation;
+use crate::ui::bars::badge::Badge;
+use crate::ui::bars::menu::menu_ui;
+use crate::ui::bars::sides::{OpenSides, ROOM_FOR_BOTH, ROOM_FOR_ONE};
+use crate::ui::bars::transport::Transport;
+use crate::ui::detail::Detail;
+use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
+use crate::ui::dialogs::scene_gallery::Gallery;
+use crate::ui::dialogs::sheets::{open_error_ui, sheet_ui, unsaved_ui};
+use crate::ui::panels::about_scene::AboutScene;
+use crate::ui::panels::avalanche_plots::AvalanchePlots;
+use crate::ui::panels::beside_paper::BesidePaper;
+use crate::ui::panels::changes::ChangeList;
+use crate::ui::panels::collapse_plots::CollapsePlots;
+use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
+use crate::ui::panels::compare::Compare;
+use crate::ui::panels::energy_stack::EnergyStack;
+use crate::ui::panels::explorer::Explorer;
+use crate::ui::panels::mean_velocities::MeanVelocities;
+use crate::ui::panels::microscope::Microscope;
+use crate::ui::panels::parameters::Parameters;
+use crate::ui::panels::picture_settings::PictureSettings;
+use crate::ui::panels::results::Results;
+use crate::ui::panels::solver_profile::SolverProfile;
+use crate::ui::plot_export::Export;
+use crate::ui::request::{Request, Sheet};
+use crate::ui::sections::{Section, section, sections_ui};
+use crate::ui::theme::Palette;
+use crate::ui::user_memory::{Look, UserMemory};
+use crate::ui::widgets::focus::focus_ui;
+use crate::ui::words::run_names::title_in_words;
+use crate::ui::{shortcuts, theme};
+use crate::view::ViewSettings;
+use bevy::prelude::Resource;
+use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText};
+use grainfall::lab::Status;
+use grainfall::run::Parameter;
+use grainfall::scene::built_in;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Computing time over which the speed of a scene is worth knowing.
+const WORTH_MEASURING: Duration = Duration::from_millis(200);
+/// How long a notice stays.
+const NOTICE_TIME: Duration = Duration::from_secs(6);
+
+/// All that surrounds the picture.
+#[derive(Resource)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+pub struct Dock {
+    left: Vec<Section>,
+    right: Vec<Section>,
+    transport: Transport,
+    badge: Badge,
+    shown: OpenSides,
+    /// The plot that a file is being chosen for.
+    pub export: Option<Box<Export>>,
+    gallery: Gallery,
+    shows_scenes: bool,
+    memory: UserMemory,
+    /// The built-in scene that is open, unless it was changed.
+    scene: Option<&'static str>,
+    /// Choosing a file.
+    pub path_dialog: PathDialog,
+    sheet: Option<Sheet>,
+    open_error: Option<String>,
+    /// The file of the session, where it has one.
+    pub session: Option<PathBuf>,
+    /// The request that would lose unsaved work, while the person is asked about it.
+    leaving: Option<Request>,
+    /// What to do when the session has been saved.
+    pub after_saving: Option<Request>,
+    notice: Option<(String, Instant)>,
+    /// Whether a button of the pointer or a key is held: what is changed meanwhile is one change.
+    pub is_holding: bool,
+    /// Whether such a change is under way.
+    pub is_changing: bool,
+    /// Whether a picture of the window is being taken, in which no tooltip belongs.
+    pub is_photographed: bool,
+    /// Tooltips that there were when a dialog came over the panels, while it is there.
+    stale_tooltips: Option<Vec<egui::LayerId>>,
+    /// Whether a file hovers over the window.
+    pub file_hovers: bool,
+    /// Whether the dock is hidden and the picture fills the window.
+    pub is_hidden: bool,
+}
+
+/// The register of panels on the left, from top to bottom, and whether each is open at first.
+fn left() -> Vec<Section> {
+    vec![
+        section(AboutScene, true),
+        section(Parameters::default(), true),
+        section(Compare::default(), false),
+        section(ChangeList::default(), true),
+        section(PictureSettings, false),
+        section(SolverProfile, false),
+    ]
+}
+
+/// The register of panels on the right.
+fn right() -> Vec<Section> {
+    vec![
+        section(Microscope::default(), false),
+        section(AvalanchePlots::default(), true),
+        section(CollapsePlots::default(), true),
+        section(Explorer::default(), false),
+        section(EnergyStack, false),
+        section(MeanVelocities::default(), false),
+        section(BesidePaper::default(), true),
+        section(ColumnBesidePaper, true),
+        section(Results::default(), true),
+    ]
+}
+
+impl Default for Dock {
+    fn default() -> Self {
+        Self {
+            left: left(),
+            right: right(),
+            transport: Transport::default(),
+            badge: Badge::default(),
+            shown: OpenSides {
+                left: true,
+                right: true,
+            },
+            export: None,
+            gallery: Gallery::default(),
+            shows_scenes: false,
+            memory: UserMemory::default(),
+            scene: None,
+            path_dialog: PathDialog::default(),
+            sheet: None,
+            open_error: None,
+            session: None,
+            leaving: None,
+            after_saving: None,
+            notice: None,
+            is_holding: false,
+            is_changing: false,
+            is_photographed: false,
+            stale_tooltips: None,
+            file_hovers: false,
+            is_hidden: false,
+        }
+    }
+}
+
+impl Dock {
+    /// Draws everything into `root`, which spans the window and keeps what is free for the picture,
+    /// and reads the keyboard.
+    pub fn ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        view.lit_by_plot = None;
+        self.remember_look(root.ctx(), view);
+        theme::show(root.ctx(), view.background);
+        self.remember_ui(root.ctx(), simulation);
+        self.is_holding =
+            (root.ctx()).input(|input| input.pointer.any_down() || !input.keys_down.is_empty());
+        out.extend(shortcuts::pressed(root.ctx(), simulation));
+        self.menu_bar_ui(root, simulation, view, out);
+        if let Some(simulation) = simulation {
+            self.sides_ui(root, simulation, view, out);
+            let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
+            bar.show(root, |ui| self.transport.ui(ui, simulation, out));
+        }
+        self.windows_ui(root.ctx(), out);
+        focus_ui(root.ctx(), Palette::of(root.visuals()));
+        self.hide_stale_tooltips(root.ctx());
+    }
+
+    /// Leaves out of this frame what tells of a place under the pointer that a dialog lies over now,
+    /// and in a picture every such thing: egui lets it stand until the pointer leaves that place.
+    fn hide_stale_tooltips(&mut self, ctx: &egui::Context) {
+        let has_dialog = self.shows_scenes
+            || self.path_dialog.is_open()
+            || self.sheet.is_some()
+            || self.open_error.is_some()
+            || self.leaving.is_some();
+        let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
+        let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
+        self.stale_tooltips = match (has_dialog, self.stale_tooltips.take()) {
+            (false, _) => None,
+            (true, known) => Some(known.unwrap_or_else(|| layers.clone())),
+        };
+        let stale = self.stale_tooltips.clone().unwrap_or_default();
+        let hidden = if self.is_photographed { layers } else { stale };
+        ctx.graphics_mut(|graphics| {
+            for layer in hidden {
+                *graphics.entry(layer) = egui::layers::PaintList::default();
+            }
+        });
+    }
+
+    /// The sections of both sides, by the titles of their panels.
+    pub(super) fn sections(&mut self) -> impl Iterator<Item = &mut Section> {
+        self.left.iter_mut().chain(&mut self.right)
+    }
+
+    /// The sections of both sides.
+    pub(super) fn shown_sections(&self) -> impl Iterator<Item = &Section> {
+        self.left.iter().chain(&self.right)
+    }
+
+    /// Remembers in `memory` from now on.
+    pub fn remember(&mut self, memory: UserMemory) {
+        self.memory = memory;
+    }
+
+    /// Opens the panel called `title`, on whichever side it stands.
+    pub fn show_panel(&mut self, title: &str) {
+        let sides = [
+            (&mut self.left, &mut self.shown.left),
+            (&mut self.right, &mut self.shown.right),
+        ];
+        for (sections, shown) in sides {
+            let wanted = sections
+                .iter_mut()
+                .find(|section| section.panel.title() == title);
+            if let Some(section) = wanted {
+                (section.is_wanted, *shown) = (true, true);
+            }
+        }
+    }
+
+    /// Opens the panel where two values are compared: of `parameter`, where one is given.
+    pub fn compare(&mut self, parameter: Option<&Parameter>) {
+        self.show_panel(Compare::TITLE);
+        if let Some(parameter) = parameter {
+            for section in self.left.iter_mut().chain(&mut self.right) {
+                section.panel.take_up(parameter);
+            }
+        }
+    }
+
+    /// Opens every panel on both sides.
+    pub fn show_all_panels(&mut self) {
+        for section in self.left.iter_mut().chain(&mut self.right) {
+            section.is_wanted = true;
+        }
+    }
+
+    /// Lets the person choose where the plot `export` goes.
+    pub fn export_plot(&mut self, export: Box<Export>) {
+        self.export = Some(export);
+        self.path_dialog.ask(Purpose::Plot);
+    }
+
+    /// Shows the scenes that come with the program.
+    pub fn show_scenes(&mut self) {
+        self.shows_scenes = true;
+    }
+
+    /// Restores the look of the last session, then keeps the present one.
+    fn remember_look(&mut self, ctx: &egui::Context, view: &mut ViewSettings) {
+        if let Some(look) = self.memory.last_look() {
+            ctx.set_zoom_factor(look.scale);
+            view.background = look.background;
+        } else {
+            self.memory.keep_look(Look {
+                scale: ctx.zoom_factor(),
+                background: view.background,
+            });
+        }
+    }
+
+    /// Restores how much the controls showed the last time, then keeps that and how fast the scene
+    /// runs.
+    fn remember_ui(&mut self, ctx: &egui::Context, simulation: Option<&Simulation>) {
+        let chosen = Detail::chosen(ctx);
+        match chosen {
+            Some(detail) => self.memory.show(detail),
+            None => self.memory.detail().choose(ctx),
+        }
+        let running = simulation.filter(|simulation| *simulation.status() == Status::Running);
+        if let (Some(name), Some(simulation)) = (self.scene, running)
+            && let Some(world) = simulation.world()
+        {
+            let profile = simulation.profile();
+            let computed = profile.steps as f64 * world.clock.time_step;
+            if profile.total > WORTH_MEASURING {
+                self.memory
+                    .ran(name, computed / profile.total.as_secs_f64());
+            }
+        }
+    }
+
+    /// Paints notes over the picture, which fills the free part of `root`. The pointer stays the
+    /// picture's.
+    pub fn over_picture_ui(&self, root: &egui::Ui, simulation: Option<&Simulation>) {
+        let free = root.available_rect_before_wrap();
+        let painter = root.painter_at(free);
+        let visuals = root.visuals();
+        let write = |text: &str, size, colour| {
+            let font = FontId::proportional(size);
+            painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
+        };
+        if simulation.is_none() {
+            let text =
+                "Open a scene, a session or a recording: File menu, Ctrl+O, or drop a file here";
+            write(text, 18.0, visuals.text_color());
+        }
+        if self.file_hovers {
+            painter.rect_filled(free, 0.0, Palette::of(visuals).veil);
+            write("Drop to open", 24.0, visuals.strong_text_color());
+        }
+    }
+
+    /// Whether the panels say which moment is shown: then the picture need not.
+    pub fn shows_time(&self) -> bool {
+        !self.is_hidden && self.transport.shows_time()
+    }
+
+    /// Shows a sheet.
+    pub fn show_sheet(&mut self, sheet: Sheet) {
+        self.sheet = Some(sheet);
+    }
+
+    /// Shows why a file could not be opened.
+    pub fn show_open_error(&mut self, reason: String) {
+        self.open_error = Some(reason);
+    }
+
+    /// Why a file could not be opened, while that is shown.
+    pub fn open_error(&self) -> Option<&str> {
+        self.open_error.as_deref()
+    }
+
+    /// Asks whether to save before `next`, which leaves the session.
+    pub fn ask_to_save(&mut self, next: Request) {
+        self.leaving = Some(next);
+    }
+
+    /// Says `text` for a few seconds.
+    pub fn notify(&mut self, text: impl Into<String>) {
+        self.notice = Some((text.into(), Instant::now()));
+    }
+
+    /// What is told now, if anything.
+    pub fn notice(&self) -> Option<&str> {
+        self.notice.as_ref().map(|(text, _)| text.as_str())
+    }
+
+    /// Puts the scene called `name` first among the recent ones and resets the panels for it.
+    pub fn scene_opened(&mut self, name: &str) {
+        self.memory.opened(name);
+        self.scene = built_in()
+            .iter()
+            .map(|scene| scene.name)
+            .find(|known| *known == name);
+        self.session = None;
+        (self.left, self.right) = (left(), right());
+        self.transport = Transport::default();
+    }
+
+    /// Resets the panels for a scene made from the present one.
+    pub fn scene_changed(&mut self) {
+        self.session = None;
+        self.scene = None;
+        (self.left, self.right) = (left(), right());
+        self.transport = Transport::default();
+    }
+
+    /// Does the same for the session in the file called `name`, where it will be saved again.
+    pub fn session_opened(&mut self, name: &str) {
+        self.scene_opened(name);
+        self.session = Some(name.into());
+    }
+
+    fn menu_bar_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let (recent, shown, badge) = (self.memory.recent(), &mut self.shown, &mut self.badge);
+        let mut of_badge = Vec::new();
+        egui::Panel::top("menu").show(root, |ui| {
+            menu_ui(ui, simulation, recent, shown, view, out, |ui| {
+                if let Some(simulation) = simulation {
+                    badge.ui(ui, simulation, &mut of_badge);
+                    let title = RichText::new(title_in_words(simulation)).weak();
+                    ui.add(egui::Label::new(title).truncate());
+                }
+            });
+        });
+        out.extend(of_badge);
+    }
+
+    fn sides_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: &Simulation,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        let width = root.available_width();
+        let size = |share: f32, least: f32, most: f32| (share * width).clamp(least, most);
+        if width >= ROOM_FOR_ONE {
+            egui::Panel::left("controls")
+                .default_size(size(0.235, 290.0, 380.0))
+                .size_range(240.0..=520.0)
+                .show_collapsible(root, &mut self.shown.left, |ui| {
+                    sections_ui(ui, &mut self.left, simulation, view, out);
+                });
+        }
+        if width >= ROOM_FOR_BOTH || (width >= ROOM_FOR_ONE && !self.shown.left) {
+            egui::Panel::right("measures")
+                .default_size(size(0.285, 350.0, 560.0))
+                .size_range(280.0..=900.0)
+                .show_collapsible(root, &mut self.shown.right, |ui| {
+                    sections_ui(ui, &mut self.right, simulation, view, out);
+                });
+        }
+    }
+
+    fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
+        self.shows_scenes = self.shows_scenes && self.gallery.ui(ctx, &self.memory, out);
+        self.path_dialog.ui(ctx, out);
+        self.sheet = self.sheet.filter(|sheet| sheet_ui(ctx, *sheet));
+        let open = |reason: &String| open_error_ui(ctx, reason);
+        self.open_error = self.open_error.take().filter(open);
+        let asked = |next: &Request| unsaved_ui(ctx, next, out);
+        self.leaving = self.leaving.take().filter(asked);
+        self.notice_ui(ctx);
+    }
+
+    fn notice_ui(&mut self, ctx: &egui::Context) {
+        self.notice = self
+            .notice
+            .take()
+            .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
+        let waiting = "Waiting for the system's file dialog; ask again to type a path";
+        let said = self.notice();
+        let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
+            return;
+        };
+        // Each text is laid out by itself, however long the last one was.
+        egui::Area::new(Id::new("notice").with(text))
+            .anchor(Align2::CENTER_TOP, [0.0, 44.0])
+            .interactable(false)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style())
+                    .inner_margin(10)
+                    .show(ui, |ui| {
+                        ui.set_max_width(0.6 * ui.ctx().content_rect().width());
+                        ui.label(text);
+                    });
+            });
+        ctx.request_repaint_after(NOTICE_TIME);
+    }
+}
+
+fn bar_frame(ui: &egui::Ui) -> egui::Frame {
+    egui::Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(10, 8))
+}

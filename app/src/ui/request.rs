@@ -1,0 +1,125 @@
+//! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push
+//! requests, and one function ([`super::dispatch`]) fulfils them.
+
+use crate::ui::plot_export::Export;
+use crate::ui::screenshot_orders::ScreenshotOrder;
+use crate::view::CameraRequest;
+use bevy::prelude::*;
+use grainfall::lab::Half;
+use grainfall::parameters::{Parameter, Value};
+use grainfall::run::Command;
+use grainfall::scene::Scene;
+use std::path::PathBuf;
+
+/// Something a person asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// A change of the run.
+    Command(Command),
+    /// Show the panel where two values are compared: of this parameter, where one is given.
+    Compare(Option<Parameter>),
+    /// Begin a run beside the present one, with another value of a parameter.
+    StartComparison(Parameter, Value),
+    /// Another value of a parameter in one of two runs.
+    SetIn(Half, Parameter, Value),
+    /// Go on with one of two runs, and keep the other as a branch of it.
+    EndComparison(Half),
+    /// Draw the trail of the selected grain, or no longer.
+    Trail,
+    /// Draw no trails.
+    NoTrails,
+    /// Another view of the scene.
+    Camera(CameraRequest),
+    /// Show the scenes that come with the program.
+    ShowScenes,
+    /// Let the person choose a file of a scene, a session or a recording.
+    ChooseFile,
+    /// Open this: the path of a scene, a session or a recording, or a built-in scene's name.
+    Open(String),
+    /// Start afresh with this scene in place of the present one, and the present values of the live
+    /// parameters.
+    Start(Box<Scene>),
+    /// Start a run of the scene of the recording that is shown, with the values of that moment.
+    RunAnew,
+    /// Start a run with the grains of the recording as they are at the moment shown.
+    RunOn,
+    /// Write the whole session to the file it has, or let the person choose one.
+    Save,
+    /// Let the person choose where the whole session goes.
+    ChooseSession,
+    /// Write the whole session to this file.
+    SaveSession(PathBuf),
+    /// Save, and when that has succeeded do this, which leaves the session.
+    SaveThen(Box<Request>),
+    /// Do this, which leaves the session, without asking.
+    Leave(Box<Request>),
+    /// Let the person choose where the list of changes goes.
+    ChooseChanges,
+    /// Write the changes of the present run to this file.
+    SaveChanges(PathBuf),
+    /// Let the person choose where the picture of the window goes.
+    ChoosePicture,
+    /// Let the person choose where this plot goes.
+    ExportPlot(Box<Export>),
+    /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.
+    SavePlot(PathBuf),
+    /// Let the person choose where a film of the picture goes.
+    ChooseFilm,
+    /// Take a picture or a film, or end one.
+    Screenshot(ScreenshotOrder),
+    /// Show a sheet over the window.
+    Show(Sheet),
+    /// End the program.
+    Quit,
+}
+
+impl Request {
+    /// Whether it gives a parameter a value: what is set while one drag lasts is one change.
+    pub(super) fn sets_a_value(&self) -> bool {
+        matches!(self, Self::Command(Command::Set { .. }) | Self::SetIn(..))
+    }
+
+    /// Whether it takes a run: what a recording is not asked for.
+    pub(super) fn takes_a_run(&self) -> bool {
+        match self {
+            Self::Command(command) => matches!(
+                command,
+                Command::Set { .. }
+                    | Command::Undo
+                    | Command::Redo
+                    | Command::Return(_)
+                    | Command::Forget(_)
+            ),
+            Self::Compare(_)
+            | Self::StartComparison(..)
+            | Self::SetIn(..)
+            | Self::EndComparison(_)
+            | Self::Save
+            | Self::ChooseSession
+            | Self::SaveSession(_)
+            | Self::ChooseChanges
+            | Self::SaveChanges(_) => true,
+            _ => false,
+        }
+    }
+}
+
+/// A sheet of text over the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sheet {
+    /// Keys and what they do.
+    Shortcuts,
+    /// What the program is.
+    About,
+}
+
+/// What has been asked for and not yet fulfilled.
+#[derive(Resource, Default)]
+pub struct Requests(pub(super) Vec<Request>);
+
+impl Requests {
+    /// Asks for `request`, as a panel would.
+    pub fn ask(&mut self, request: Request) {
+        self.0.push(request);
+    }
+}

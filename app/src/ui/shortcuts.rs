@@ -1,0 +1,348 @@
+//! What each key does, in one table: keys are looked up in it, and the sheet of shortcuts and the
+//! menus show it.
+//!
+//! In: the keys pressed in a frame, the simulation. Out: requests that mean something now. While a
+//! text is typed or a dialog is open, no key counts.
+
+use crate::simulation::Simulation;
+use crate::ui::playback::{Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche};
+use crate::ui::request::{Request, Sheet};
+use crate::view::{CameraRequest, StandardView};
+use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
+use grainfall::run::Command;
+
+/// A key and what it does.
+pub struct Shortcut {
+    /// Keys that do it, any of them.
+    keys: &'static [KeyboardShortcut],
+    /// What it does, in words.
+    pub name: &'static str,
+    action: KeyAction,
+}
+
+enum KeyAction {
+    PlayOrPause,
+    StepBack,
+    StepOn,
+    Steps(Way, u64),
+    Leap(Way),
+    ToTheNewest,
+    Avalanche(Way),
+    Ask(Request),
+}
+
+const fn key(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+
+const fn look_from(side: StandardView) -> KeyAction {
+    KeyAction::Ask(Request::Camera(CameraRequest::From(side)))
+}
+
+/// Every shortcut, in the order of the sheet.
+pub const SHORTCUTS: &[Shortcut] = &[
+    Shortcut {
+        keys: &[key(Key::Space)],
+        name: "Play or pause",
+        action: KeyAction::PlayOrPause,
+    },
+    // Before the keys with fewer others held, which would take them.
+    Shortcut {
+        keys: &[ctrl_shift(Key::ArrowRight)],
+        name: "A hundred time steps on",
+        action: KeyAction::Steps(Way::On, 100),
+    },
+    Shortcut {
+        keys: &[ctrl_shift(Key::ArrowLeft)],
+        name: "A hundred time steps back",
+        action: KeyAction::Steps(Way::Back, 100),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::ArrowRight)],
+        name: "Ten time steps on",
+        action: KeyAction::Steps(Way::On, 10),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::ArrowLeft)],
+        name: "Ten time steps back",
+        action: KeyAction::Steps(Way::Back, 10),
+    },
+    Shortcut {
+        keys: &[shift(Key::ArrowRight)],
+        name: "A fiftieth of a second on",
+        action: KeyAction::Leap(Way::On),
+    },
+    Shortcut {
+        keys: &[shift(Key::ArrowLeft)],
+        name: "A fiftieth of a second back",
+        action: KeyAction::Leap(Way::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::Period), key(Key::ArrowRight)],
+        name: "One time step",
+        action: KeyAction::StepOn,
+    },
+    Shortcut {
+        keys: &[key(Key::Comma), key(Key::ArrowLeft)],
+        name: "One time step back",
+        action: KeyAction::StepBack,
+    },
+    Shortcut {
+        keys: &[key(Key::End)],
+        name: "The newest state",
+        action: KeyAction::ToTheNewest,
+    },
+    // Before the shorter one, which would take its keys.
+    Shortcut {
+        keys: &[ctrl_shift(Key::Z), ctrl(Key::Y)],
+        name: "Redo",
+        action: KeyAction::Ask(Request::Command(Command::Redo)),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::Z)],
+        name: "Undo",
+        action: KeyAction::Ask(Request::Command(Command::Undo)),
+    },
+    Shortcut {
+        keys: &[key(Key::R)],
+        name: "Start afresh",
+        action: KeyAction::Ask(Request::Command(Command::Reset)),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::T)],
+        name: "Compare two values side by side",
+        action: KeyAction::Ask(Request::Compare(None)),
+    },
+    // Before the plain key, which would take it.
+    Shortcut {
+        keys: &[shift(Key::T)],
+        name: "No trails",
+        action: KeyAction::Ask(Request::NoTrails),
+    },
+    Shortcut {
+        keys: &[key(Key::T)],
+        name: "Trail of the grain under the microscope",
+        action: KeyAction::Ask(Request::Trail),
+    },
+    Shortcut {
+        keys: &[key(Key::F)],
+        name: "Everything in view",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Fit)),
+    },
+    Shortcut {
+        keys: &[key(Key::Home)],
+        name: "The view a scene opens with",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Home)),
+    },
+    Shortcut {
+        keys: &[key(Key::Num1)],
+        name: "Look from the front",
+        action: look_from(StandardView::Front),
+    },
+    Shortcut {
+        keys: &[key(Key::Num2)],
+        name: "Look from the back",
+        action: look_from(StandardView::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::Num3)],
+        name: "Look from the left",
+        action: look_from(StandardView::Left),
+    },
+    Shortcut {
+        keys: &[key(Key::Num4)],
+        name: "Look from the right",
+        action: look_from(StandardView::Right),
+    },
+    Shortcut {
+        keys: &[key(Key::Num5)],
+        name: "Look from above",
+        action: look_from(StandardView::Above),
+    },
+    Shortcut {
+        keys: &[key(Key::Num6)],
+        name: "Look from below",
+        action: look_from(StandardView::Below),
+    },
+    // Before the plain keys, which would take them.
+    Shortcut {
+        keys: &[shift(Key::F5)],
+        name: "Keep this view as view 1",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Save(0))),
+    },
+    Shortcut {
+        keys: &[shift(Key::F6)],
+        name: "Keep this view as view 2",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Save(1))),
+    },
+    Shortcut {
+        keys: &[shift(Key::F7)],
+        name: "Keep this view as view 3",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Save(2))),
+    },
+    Shortcut {
+        keys: &[key(Key::F5)],
+        name: "Show kept view 1",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Recall(0))),
+    },
+    Shortcut {
+        keys: &[key(Key::F6)],
+        name: "Show kept view 2",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Recall(1))),
+    },
+    Shortcut {
+        keys: &[key(Key::F7)],
+        name: "Show kept view 3",
+        action: KeyAction::Ask(Request::Camera(CameraRequest::Recall(2))),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::O)],
+        name: "Open a scene, a session or a recording",
+        action: KeyAction::Ask(Request::ChooseFile),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::G)],
+        name: "Scenes with their pictures",
+        action: KeyAction::Ask(Request::ShowScenes),
+    },
+    Shortcut {
+        keys: &[ctrl_shift(Key::S)],
+        name: "Save the session to another file",
+        action: KeyAction::Ask(Request::ChooseSession),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::S)],
+        name: "Save the session",
+        action: KeyAction::Ask(Request::Save),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::P)],
+        name: "Save a picture of the window",
+        action: KeyAction::Ask(Request::ChoosePicture),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::R)],
+        name: "Record a film of the picture",
+        action: KeyAction::Ask(Request::ChooseFilm),
+    },
+    Shortcut {
+        keys: &[key(Key::PageUp)],
+        name: "The avalanche before",
+        action: KeyAction::Avalanche(Way::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::PageDown)],
+        name: "The next avalanche",
+        action: KeyAction::Avalanche(Way::On),
+    },
+    Shortcut {
+        keys: &[key(Key::F1)],
+        name: "These shortcuts",
+        action: KeyAction::Ask(Request::Show(Sheet::Shortcuts)),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::Q)],
+        name: "Quit",
+        action: KeyAction::Ask(Request::Quit),
+    },
+];
+
+/// What egui's own keys and the mouse over the picture do.
+pub const GESTURES: [(&str, &str); 7] = [
+    (
+        "Ctrl + +, −, 0",
+        "Text and controls larger, smaller, as at first",
+    ),
+    ("Click a grain", "Put it under the microscope"),
+    ("Shift + click a grain", "Draw its trail, or no longer"),
+    ("Drag", "Orbit"),
+    ("Right drag, Shift + drag", "Pan"),
+    ("Scroll, pinch", "Zoom"),
+    ("Double click", "Everything in view"),
+];
+
+impl Shortcut {
+    /// Its keys in words: `. or →`.
+    pub fn keys(&self, ctx: &egui::Context) -> String {
+        let name = |key: &KeyboardShortcut| {
+            let symbol = match key.logical_key {
+                Key::Period => ".",
+                Key::Comma => ",",
+                Key::ArrowLeft => "←",
+                Key::ArrowRight => "→",
+                _ => return ctx.format_shortcut(key),
+            };
+            let ctrl = if key.modifiers.command { "Ctrl+" } else { "" };
+            let shift = if key.modifiers.shift { "Shift+" } else { "" };
+            format!("{ctrl}{shift}{symbol}")
+        };
+        let names: Vec<String> = self.keys.iter().map(name).collect();
+        names.join(" or ")
+    }
+
+    /// Whether it asks for `request`.
+    pub fn asks_for(&self, request: &Request) -> bool {
+        matches!(&self.action, KeyAction::Ask(own) if own == request)
+    }
+
+    /// Whether its keys work the control that has the keyboard's focus.
+    fn moves_a_control(&self) -> bool {
+        use Key::{ArrowLeft, ArrowRight, End, Home, Space};
+        self.keys.iter().any(|key| {
+            let works = [ArrowLeft, ArrowRight, End, Home, Space].contains(&key.logical_key);
+            works && !key.modifiers.command
+        })
+    }
+
+    fn is_pressed(&self, ctx: &egui::Context) -> bool {
+        ctx.input_mut(|input| {
+            // Every key is consumed, not only the first that is pressed.
+            let pressed = self.keys.iter().filter(|key| input.consume_shortcut(key));
+            pressed.count() > 0
+        })
+    }
+
+    /// What it asks for, if `simulation` allows it now.
+    fn request(&self, simulation: Option<&Simulation>) -> Option<Request> {
+        let command = match &self.action {
+            KeyAction::Ask(Request::Command(command)) => command.clone(),
+            KeyAction::Ask(request) => return Some(request.clone()),
+            KeyAction::PlayOrPause => play_or_pause(simulation?.status())?,
+            KeyAction::StepBack => step_back(simulation?)?,
+            KeyAction::StepOn => step_on(simulation?)?,
+            KeyAction::Leap(way) => leap(simulation?, *way)?,
+            KeyAction::Steps(way, steps) => go(simulation?, *way, *steps)?,
+            KeyAction::Avalanche(way) => return to_avalanche(simulation?, *way),
+            KeyAction::ToTheNewest => Command::Seek(simulation?.past().end.step),
+        };
+        allows(simulation?.status(), &command).then_some(Request::Command(command))
+    }
+}
+
+/// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet
+/// lies over the window.
+pub fn pressed(ctx: &egui::Context, simulation: Option<&Simulation>) -> Vec<Request> {
+    let covered = ctx.memory(|memory| memory.top_modal_layer().is_some());
+    if covered || ctx.text_edit_focused() {
+        return Vec::new();
+    }
+    let focused = ctx.memory(|memory| memory.focused().is_some());
+    let pressed = (SHORTCUTS.iter())
+        .filter(|shortcut| !(focused && shortcut.moves_a_control()))
+        .filter(|shortcut| shortcut.is_pressed(ctx));
+    pressed
+        .filter_map(|shortcut| shortcut.request(simulation))
+        .collect()
+}

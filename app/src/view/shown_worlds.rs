@@ -1,0 +1,115 @@
+//! The world in the picture, or the two worlds in its halves.
+//!
+//! In: the newest states that the simulation has published. Out: what the rest of the view draws.
+
+use crate::simulation::Simulation;
+use bevy::camera::visibility::RenderLayers;
+use bevy::prelude::*;
+use bevy::tasks::AsyncComputeTaskPool;
+use grainfall::lab::Half;
+use grainfall::run::Turned;
+use grainfall::world::World;
+use std::sync::Arc;
+
+/// When the view works in an update.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub enum ViewSystems {
+    /// Takes the newest world.
+    Take,
+    /// Writes its grains into their buffer.
+    Fill,
+    /// Turns it into meshes.
+    Draw,
+}
+
+/// Part of a scene's duration in which grains in the open stay in the picture: what happens to them
+/// happens before.
+const WATCHED: f64 = 0.5;
+
+/// The world in the picture, or the two worlds in its halves.
+#[derive(Resource, Default)]
+pub struct ShownWorlds {
+    halves: [Option<Arc<World>>; 2],
+    /// How far their spheres have turned, where that is known.
+    turned: [Option<Turned>; 2],
+    /// How long grains that fly in the open are followed [s].
+    pub(super) watched: f64,
+}
+
+impl ShownWorlds {
+    /// Shows this world from now on, alone.
+    pub fn show(&mut self, world: Option<Arc<World>>) {
+        self.replace([world, None]);
+    }
+
+    /// Shows this world from now on, alone, its spheres turned as `turned` says.
+    pub fn show_turned(&mut self, world: Arc<World>, turned: Turned) {
+        self.replace([Some(world), None]);
+        self.turned[Half::Left.index()] = Some(turned);
+    }
+
+    /// Shows these two from now on, side by side.
+    pub fn show_pair(&mut self, left: Arc<World>, right: Arc<World>) {
+        self.replace([Some(left), Some(right)]);
+    }
+
+    /// What was shown is freed beside the frame: a large world takes milliseconds.
+    fn replace(&mut self, halves: [Option<Arc<World>>; 2]) {
+        let before = std::mem::replace(&mut self.halves, halves);
+        self.turned = [None, None];
+        match AsyncComputeTaskPool::try_get() {
+            Some(pool) => pool.spawn(async move { drop(before) }).detach(),
+            None => drop(before),
+        }
+    }
+
+    /// The world in the picture; of two the left one.
+    pub fn world(&self) -> Option<&World> {
+        self.half(Half::Left)
+    }
+
+    /// The world in this half of the picture.
+    pub fn half(&self, half: Half) -> Option<&World> {
+        self.halves[half.index()].as_deref()
+    }
+
+    /// How far the spheres of that world have turned since time zero, where that is known.
+    pub fn turned(&self, half: Half) -> Option<&[Quat]> {
+        self.turned[half.index()].as_deref()
+    }
+
+    /// All worlds in the picture.
+    pub fn worlds(&self) -> impl Iterator<Item = &World> {
+        self.halves.iter().flatten().map(AsRef::as_ref)
+    }
+
+    /// Whether two worlds are shown.
+    pub fn is_pair(&self) -> bool {
+        self.halves[Half::Right.index()].is_some()
+    }
+}
+
+/// What the camera of this half of the picture sees.
+pub(super) fn layers(half: Half) -> RenderLayers {
+    RenderLayers::layer(half.index())
+}
+
+/// Shows the newest states of the simulation's runs. They are told apart by their addresses: while
+/// a state is shown, no other is at its address.
+pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<ShownWorlds>) {
+    let Some(simulation) = simulation else { return };
+    let right = (simulation.comparison()).and_then(|comparison| comparison.right.world());
+    let newest = [simulation.world(), right];
+    let is_shown = |half: Half| match (newest[half.index()], &shown.halves[half.index()]) {
+        (Some(newest), Some(shown)) => Arc::ptr_eq(newest, shown),
+        (None, None) => true,
+        _ => false,
+    };
+    if !Half::ALL.into_iter().all(is_shown) {
+        shown.watched = WATCHED * simulation.scene().duration;
+        shown.replace(newest.map(Option::<&Arc<World>>::cloned));
+        let right =
+            (simulation.comparison()).and_then(|comparison| comparison.right.orientations());
+        shown.turned = [simulation.orientations(), right].map(Option::<&Turned>::cloned);
+    }
+}

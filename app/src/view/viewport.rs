@@ -1,0 +1,123 @@
+//! The free part of the window, where the picture is: the pointer there moves the camera and
+//! chooses grains.
+//!
+//! In: what the panels left free, the pointer. Out: the camera moved, a grain selected or traced,
+//! and the overlay drawn.
+
+use crate::view::camera::{OrbitCamera, apply_response};
+use crate::view::halves::{beside, parts};
+use crate::view::ink::Ink;
+use crate::view::measured_marks;
+use crate::view::overlay::{Caption, PicturePart, legend, legend_margin, overlay};
+use crate::view::pick::pick;
+use crate::view::view_settings::ViewSettings;
+use bevy::math::Vec2;
+use bevy_egui::egui::{Id, Response, Sense, Ui, WidgetInfo, WidgetType};
+use grainfall::lab::Half;
+
+/// The legend takes no more of the picture's width than this share.
+const LARGEST_MARGIN: f32 = 0.3;
+
+/// The free part of the window: call it after all panels with what they left. The pointer moves the
+/// camera there, the picture is fitted into it, and the overlay is drawn; twice, side by side,
+/// where there are two `captions`.
+pub fn viewport_ui(
+    ui: &mut Ui,
+    captions: &[Caption],
+    settings: &mut ViewSettings,
+    camera: &mut OrbitCamera,
+) {
+    let free = ui.available_rect_before_wrap();
+    settings.free_rect = Some(free);
+    settings.pixels_per_point = ui.ctx().pixels_per_point();
+    settings.lit_by_picture = None;
+    let worlds = || captions.iter().filter_map(|caption| caption.world);
+    settings.margin = legend_margin(settings, worlds()).min(LARGEST_MARGIN * free.width());
+    let halves = Half::ALL.into_iter().zip(captions);
+    let picture = beside(free, settings.margin);
+    for (rect, (half, caption)) in parts(picture, captions.len()).zip(halves) {
+        let response = ui.interact(rect, Id::new(("picture", half)), Sense::click_and_drag());
+        response.widget_info(|| {
+            let title = caption
+                .title
+                .as_ref()
+                .map_or_else(String::new, |title| format!(": {title}"));
+            WidgetInfo::labeled(WidgetType::Image, true, format!("Picture{title}"))
+        });
+        apply_response(&response, camera);
+        click(&response, half, caption, settings, camera);
+        measured(&response, half, caption, settings, camera);
+        if settings.show_overlay {
+            let part = PicturePart {
+                half,
+                is_first: half == Half::Left,
+                is_last: half.index() + 1 == captions.len(),
+            };
+            overlay(&ui.painter_at(rect), rect, caption, part, settings, camera);
+        }
+    }
+    if settings.show_overlay {
+        legend(&ui.painter_at(free), free, settings, worlds().next());
+    }
+}
+
+/// Draws what is measured where it is measured; the pointer there is told how.
+fn measured(
+    response: &Response,
+    half: Half,
+    caption: &Caption,
+    settings: &mut ViewSettings,
+    camera: &OrbitCamera,
+) {
+    let Some(world) = caption.world.filter(|_| settings.show_measured) else {
+        return;
+    };
+    let rect = response.rect;
+    let painter = response
+        .ctx
+        .layer_painter(response.layer_id)
+        .with_clip_rect(rect);
+    let ink = Ink::new(&painter, settings.background);
+    let shown = &settings.measured[half.index()];
+    let marks = measured_marks::draw(&ink, rect, camera, (world, shown), settings.lit_by_plot);
+    let pointer = response.hover_pos().filter(|_| !response.dragged());
+    let lit = pointer.and_then(|pointer| measured_marks::under(&marks, pointer));
+    if let Some(measure) = lit {
+        settings.lit_by_picture = lit;
+        let quantity = measure.quantity();
+        let text = [
+            quantity.label(),
+            quantity.explanation(),
+            quantity.equation.into(),
+        ];
+        let text = text.into_iter().filter(|line| !line.is_empty());
+        let text = text.collect::<Vec<String>>().join("\n");
+        response.clone().on_hover_text_at_pointer(text);
+    }
+}
+
+/// Puts the grain that is clicked on under the microscope; with Shift, traces it.
+fn click(
+    response: &Response,
+    half: Half,
+    caption: &Caption,
+    settings: &mut ViewSettings,
+    camera: &OrbitCamera,
+) {
+    let (Some(world), Some(at)) = (caption.world, response.interact_pointer_pos()) else {
+        return;
+    };
+    if !response.clicked() {
+        return;
+    }
+    settings.focus = half;
+    let at = at - response.rect.min;
+    let picked = pick(world, camera, settings, Vec2::new(at.x, at.y));
+    if response.ctx.input(|input| input.modifiers.shift) {
+        if let Some(grain) = picked {
+            settings.trace(grain);
+        }
+    } else if picked != settings.selected {
+        (settings.selected, settings.beside) = (picked, None);
+    }
+}

@@ -1,0 +1,213 @@
+//! Plots: over time, any quantity over another, the energy, the velocities.
+
+use crate::timeline::carried_out;
+use crate::window_of_panels::{Window, prepared, ready, sample, standing, with_samples};
+use bevy_egui::egui::accesskit::Role;
+use bevy_egui::egui::{self, Shape};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use grainfall::measure::{Avalanche, Series};
+use grainfall::run::Command;
+use grainfall::scene::Scene;
+use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::{AvalanchePlots, Curves, Request};
+use grainfall_app::view::ViewSettings;
+
+/// Ten thousand samples of a sawtooth, with its avalanches.
+struct Sawtooth {
+    series: Series,
+    avalanches: Vec<Avalanche>,
+}
+
+impl Sawtooth {
+    fn new() -> Self {
+        let mut series = Series::default();
+        for i in 0..10_000 {
+            let time = f64::from(i) * 0.02;
+            let temperature = if time % 1.0 < 0.1 { 1e-5 } else { 1e-10 };
+            series.push(sample(time, 0.4 + 0.05 * (time % 1.0), temperature));
+        }
+        let avalanche = |i: u32| Avalanche {
+            start: f64::from(i),
+            end: f64::from(i) + 0.1,
+            theta_m: 0.45,
+            theta_r: 0.40,
+        };
+        Self {
+            series,
+            avalanches: (0..200).map(avalanche).collect(),
+        }
+    }
+
+    fn curves(&self) -> Curves<'_> {
+        Curves {
+            series: &self.series,
+            compared: None,
+            avalanches: &self.avalanches,
+            changes: &[3.0, 3.01, 190.0],
+            kept: &[],
+            shown: None,
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_samples_are_drawn_with_no_more_points_than_pixels_need() {
+    let width = 400.0;
+    let data = Sawtooth::new();
+    let mut plots = AvalanchePlots::default();
+    let mut harness = Harness::builder()
+        .with_size([width, 500.0])
+        .build_ui(move |ui| {
+            assert_eq!(
+                plots.curves_ui(ui, &data.curves(), &mut ViewSettings::default()),
+                None
+            );
+        });
+    harness.run_steps(2);
+    harness.get_by_label("All").click();
+    harness.run_steps(3);
+    let longest = longest_line(&harness.output().shapes);
+    assert!(longest > 200, "the curve is drawn: {longest} points");
+    assert!(
+        longest < 2 * width as usize + 10,
+        "{longest} points for {width} pixels"
+    );
+}
+
+#[test]
+fn plots_without_samples_draw_nothing_and_do_not_fail() {
+    let mut plots = AvalanchePlots::default();
+    let series = Series::default();
+    let mut harness = Harness::new_ui(move |ui| {
+        let empty = Curves {
+            series: &series,
+            compared: None,
+            avalanches: &[],
+            changes: &[],
+            kept: &[],
+            shown: None,
+        };
+        assert_eq!(
+            plots.curves_ui(ui, &empty, &mut ViewSettings::default()),
+            None
+        );
+    });
+    harness.run_steps(3);
+    harness.get_by_label("Surface angle θ [°]");
+}
+
+/// Points of the longest line among `shapes`.
+fn longest_line(shapes: &[egui::epaint::ClippedShape]) -> usize {
+    fn points(shape: &Shape) -> usize {
+        match shape {
+            Shape::Path(path) => path.points.len(),
+            Shape::Vec(shapes) => shapes.iter().map(points).max().unwrap_or(0),
+            _ => 0,
+        }
+    }
+    shapes
+        .iter()
+        .map(|clipped| points(&clipped.shape))
+        .max()
+        .unwrap_or(0)
+}
+
+#[test]
+fn velocities_are_seen_from_the_laboratory_and_from_the_drum() {
+    let mut harness = Window::of(prepared());
+    harness.get_by_label("Velocity map").click();
+    harness.run_steps(12);
+    // At time zero the grains rest while the drum turns at 0.209 rad/s, 20 to 21.5 mm from its
+    // axis.
+    harness.get_by_label("Velocity map, up to 0 m/s");
+    harness.get_by_label("Relative to the drum").click();
+    harness.run_steps(4);
+    let map = harness.get_by_label_contains("Velocity map, up to 4.");
+    let label = map.accesskit_node().label().unwrap_or_default();
+    let number = label.trim_start_matches("Velocity map, up to ");
+    let speed: f64 = number.trim_end_matches(" mm/s").parse().unwrap();
+    assert!((4.18..4.51).contains(&speed), "{label}");
+}
+
+#[test]
+fn a_panel_that_opens_scrolls_into_view_and_asks_to_export_its_plot() {
+    let mut simulation = prepared();
+    simulation.send(Command::Step(2000));
+    let mut harness = Window::of(ready(simulation));
+    harness.set_size(egui::vec2(1280.0, 640.0));
+    harness.run_steps(4);
+    harness.get_by_label("Any quantity").click();
+    harness.run_steps(60);
+    let export = harness.get_by_label("Export…");
+    assert!(export.rect().bottom() < 640.0, "{:?}", export.rect());
+    export.click();
+    harness.run_steps(2);
+    assert!(matches!(
+        harness.state().asked[..],
+        [Request::ExportPlot(_)]
+    ));
+}
+
+#[test]
+fn any_quantity_is_plotted_over_any_other_and_can_be_taken_home() {
+    let mut harness = Window::of(with_samples());
+    harness.get_by_label("Any quantity").click();
+    harness.run_steps(10);
+    harness.get_by_label_contains("Kinetic energy E_kin [J] over Time t [s], now ");
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Over")
+        .click();
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::Button, "Coordination number Z")
+        .click();
+    harness.run_steps(5);
+    harness.get_by_label_contains("Kinetic energy E_kin [J] over Coordination number Z, now ");
+    harness.get_by_label("Export…").click();
+    harness.run_steps(2);
+    let asked = std::mem::take(&mut harness.state_mut().asked);
+    let [Request::ExportPlot(export)] = &asked[..] else {
+        panic!("{asked:?}");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let samples = harness.state().simulation.series().len();
+    let path = folder.path().join("plot.csv");
+    export.write(&path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().count(), samples + 1);
+    assert!(text.starts_with("run,time [s],coordination number [1],kinetic energy [J]\n"));
+    let path = folder.path().join("plot.svg");
+    export.write(&path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("Coordination number Z") && text.contains("</svg>"));
+}
+
+#[test]
+fn grains_without_a_bed_are_seen_by_their_energy() {
+    let scene = Scene::open("two-grains").unwrap();
+    let mut simulation = ready(Simulation::open(scene, standing()));
+    carried_out(&mut simulation, Command::Step(2000));
+    let harness = Window::of(simulation);
+    harness.get_by_label("Kinetic energy E_kin [J] over Time t [s]");
+    harness.get_by_label_contains("Where the energy is and went");
+    assert!(harness.query_by_label("Surface angle θ [°]").is_none());
+    let bed = Window::of(prepared());
+    bed.get_by_label("Surface angle θ [°]");
+    assert!(
+        bed.query_by_label_contains("Where the energy is and went")
+            .is_none()
+    );
+}
+
+#[test]
+fn energy_stands_as_a_stack_with_its_residual() {
+    let mut harness = Window::of(with_samples());
+    harness.get_by_label("Energy").click();
+    harness.run_steps(10);
+    harness.get_by_label("Energy over time");
+    harness.get_by_label_contains("Dashpot loss D_d: ");
+    // Here, and among the results.
+    let residuals = harness.get_all_by_label("Energy residual ΔE").count();
+    assert_eq!(residuals, 2);
+}

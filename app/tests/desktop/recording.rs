@@ -1,0 +1,179 @@
+//! Claims about films: every picture of one stands at its simulated time, and a film is whole or
+//! not there.
+
+use crate::view::{laboratory, studio};
+use crate::window_of_panels::standing;
+use bevy::math::UVec2;
+use bevy::prelude::*;
+use grainfall::parameters::Parameter;
+use grainfall::run::Command;
+use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::{FilmState, ScreenshotOrder, ScreenshotOrders};
+use grainfall_app::view::FILM_RATE;
+use grainfall_app::window::ScreenshotPlugin;
+use std::path::Path;
+
+/// A laboratory that takes pictures.
+fn studio_with_camera() -> App {
+    laboratory(UVec2::new(160, 120), standing(), ScreenshotPlugin)
+}
+
+/// Updates until `done`.
+fn until(app: &mut App, done: impl Fn(&App) -> bool) {
+    for _ in 0..5000 {
+        app.update();
+        if done(app) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    panic!("it does not come to an end");
+}
+
+fn order(app: &mut App, order: ScreenshotOrder) {
+    (app.world_mut().resource_mut::<ScreenshotOrders>())
+        .asked
+        .push(order);
+}
+
+fn state(app: &App) -> FilmState {
+    app.world().resource::<ScreenshotOrders>().film
+}
+
+fn pictures(app: &App) -> usize {
+    match state(app) {
+        FilmState::Recording { pictures, .. } => pictures,
+        _ => 0,
+    }
+}
+
+/// Records the state that stands, then what follows, until there are `count` pictures.
+fn record(app: &mut App, path: &Path, count: usize) {
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Speed(1.0));
+    order(app, ScreenshotOrder::Film(path.to_owned()));
+    until(app, |app| pictures(app) == 1);
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Play);
+    until(app, |app| pictures(app) >= count);
+}
+
+#[test]
+fn film_has_a_picture_for_every_frame_of_simulated_time() {
+    let Some(_studio) = studio("film_has_a_picture_for_every_frame_of_simulated_time") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film");
+    let mut app = studio_with_camera();
+    let begun = app.world().resource::<Simulation>().world().unwrap().time();
+    record(&mut app, &path, 4);
+    let FilmState::Recording { pictures, time } = state(&app) else {
+        panic!("{:?}", state(&app));
+    };
+    // One 25th of a second from picture to picture, to a step.
+    let expected = (pictures - 1) as f64 / f64::from(FILM_RATE);
+    assert!((time - expected).abs() < 1e-3, "{time} {expected}");
+    // The run waits for its next picture.
+    let world = app
+        .world()
+        .resource::<Simulation>()
+        .world()
+        .unwrap()
+        .clone();
+    let reached = (world.time() - begun) * f64::from(FILM_RATE);
+    assert!(reached < pictures as f64 + 0.01, "{reached}");
+    order(&mut app, ScreenshotOrder::EndFilm);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    let written: Vec<_> = std::fs::read_dir(&path).unwrap().collect();
+    assert!(written.len() >= 4, "{}", written.len());
+    let [first, last] = ["00000.png", "00003.png"].map(|name| {
+        let picture = image::open(path.join(name)).unwrap().to_rgb8();
+        assert_eq!(picture.dimensions(), (160, 120));
+        picture
+    });
+    assert!(first != last, "the grain has fallen");
+    // Afterwards the run goes on by itself.
+    let before = app.world().resource::<Simulation>().step();
+    until(&mut app, |app| {
+        app.world().resource::<Simulation>().step() > before
+    });
+}
+
+#[test]
+fn film_keeps_its_pace_where_the_time_step_changes() {
+    let Some(_studio) = studio("film_keeps_its_pace_where_the_time_step_changes") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = studio_with_camera();
+    let now = |app: &App| {
+        app.world()
+            .resource::<Simulation>()
+            .world()
+            .unwrap()
+            .clone()
+    };
+    let (begun, step) = (now(&app).time(), now(&app).clock.time_step);
+    record(&mut app, &folder.path().join("film"), 2);
+    (app.world_mut().resource_mut::<Simulation>()).send(Command::Set {
+        parameter: Parameter::TimeStep,
+        value: (0.25 * step).into(),
+    });
+    let so_far = pictures(&app);
+    until(&mut app, |app| pictures(app) >= so_far + 4);
+    // The run waits for its next picture, one 25th of a second after the last one.
+    let taken = pictures(&app) as f64;
+    until(&mut app, |app| {
+        pictures(app) as f64 > taken
+            || (now(app).time() - begun) * f64::from(FILM_RATE) > taken - 1.01
+    });
+    let reached = (now(&app).time() - begun) * f64::from(FILM_RATE);
+    let taken = pictures(&app) as f64;
+    assert!(
+        taken - 2.0 < reached && reached < taken + 0.01,
+        "{reached} {taken}"
+    );
+    assert_eq!(now(&app).clock.time_step, 0.25 * step);
+    order(&mut app, ScreenshotOrder::CancelFilm);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+}
+
+#[test]
+fn cancelled_film_leaves_nothing_and_lets_the_run_go() {
+    let Some(_studio) = studio("cancelled_film_leaves_nothing_and_lets_the_run_go") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = studio_with_camera();
+    record(&mut app, &folder.path().join("film.gif"), 2);
+    order(&mut app, ScreenshotOrder::CancelFilm);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    // A film of a kind that there is not is refused.
+    order(
+        &mut app,
+        ScreenshotOrder::Film(folder.path().join("film.avi")),
+    );
+    app.update();
+    app.update();
+    assert_eq!(state(&app), FilmState::Idle);
+}
+
+#[test]
+fn picture_is_taken_beside_a_film_and_shows_the_state_that_it_names() {
+    let Some(_studio) = studio("picture_is_taken_beside_a_film_and_shows_the_state_that_it_names")
+    else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [film, picture] = ["film.gif", "picture.png"].map(|name| folder.path().join(name));
+    let mut app = studio_with_camera();
+    record(&mut app, &film, 2);
+    order(&mut app, ScreenshotOrder::Picture(picture.clone()));
+    until(&mut app, |_| picture.exists());
+    let size = image::open(&picture).unwrap().to_rgb8().dimensions();
+    assert_eq!(size, (160, 120));
+    assert!(pictures(&app) >= 2, "the film goes on: {:?}", state(&app));
+    order(&mut app, ScreenshotOrder::EndFilm);
+    until(&mut app, |app| state(app) == FilmState::Idle);
+    assert!(film.exists());
+}

@@ -1,0 +1,16 @@
+//! Claims about the program without a window: its command line, its files, its endings.
+
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may be computed with the platform's own functions"
+)]
+
+mod command_line;
+mod headless;
+#[cfg(unix)]
+mod outputs;
+mod reliability;
+#[path = "../../../tests/common/runs.rs"]
+mod runs;
+#[path = "../../../tests/common/vtk_file.rs"]
+mod vtk_file;
