@@ -10,7 +10,9 @@ mod headless;
 #[cfg(unix)]
 mod outputs;
 mod reliability;
+#[allow(dead_code, reason = "tests of the library use more of it")]
 #[path = "../../../tests/common/runs.rs"]
 mod runs;
+#[allow(dead_code, reason = "tests of the library use more of it")]
 #[path = "../../../tests/common/vtk_file.rs"]
 mod vtk_file;

@@ -440,7 +440,7 @@ fn full_disk_is_told_and_loses_nothing() {
 #[test]
 fn titles_break_neither_files_nor_terminals() {
     let place = Place::new();
-    let scene = fs::read_to_string("scenes/gallery/bouncing-grain.ron").unwrap();
+    let scene = include_str!("../../../scenes/gallery/bouncing-grain.ron");
     let title = r#"title: "Drum --- wet -->\u{1b}[31m\u{0}","#;
     let begin = scene.find("title:").unwrap();
     let end = begin + scene[begin..].find('\n').unwrap();
