@@ -2,6 +2,8 @@
 
 use crate::refused;
 use grainfall::parameters::Settings;
+use grainfall::run::ScriptedCommand;
+use grainfall::runner::apply_settings;
 use grainfall::scene::built_in;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -21,9 +23,21 @@ pub fn scenes() -> BTreeMap<&'static str, String> {
 }
 
 /// What is to be run: container, grains, materials, liquid, gravity, how long.
-#[pyclass(skip_from_py_object)]
-#[derive(Clone)]
-pub struct Scene(pub grainfall::scene::Scene);
+#[pyclass]
+pub struct Scene {
+    pub scene: grainfall::scene::Scene,
+    /// Live parameters that were set: commands at the first step.
+    pub script: Vec<ScriptedCommand>,
+}
+
+impl From<grainfall::scene::Scene> for Scene {
+    fn from(scene: grainfall::scene::Scene) -> Self {
+        Self {
+            scene,
+            script: Vec::new(),
+        }
+    }
+}
 
 #[pymethods]
 impl Scene {
@@ -31,7 +45,7 @@ impl Scene {
     #[new]
     fn open(name: PathBuf) -> PyResult<Self> {
         grainfall::scene::Scene::open(name)
-            .map(Self)
+            .map(Self::from)
             .map_err(refused)
     }
 
@@ -39,38 +53,40 @@ impl Scene {
     #[staticmethod]
     fn parse(text: &str) -> PyResult<Self> {
         grainfall::scene::Scene::parse("the text", text)
-            .map(Self)
+            .map(Self::from)
             .map_err(refused)
     }
 
     /// Gives the setting called `key` the value that `text` states, with its unit where it has one, as `--set KEY=VALUE` does.
     fn set(&mut self, key: &str, text: &Bound<'_, PyAny>) -> PyResult<()> {
-        let text = text.str()?;
-        self.0.set(key, text.to_str()?).map_err(refused)
+        let setting = format!("{key}={}", text.str()?.to_str()?);
+        let live = apply_settings(&mut self.scene, &[setting]).map_err(refused)?;
+        self.script.extend(live);
+        Ok(())
     }
 
     /// Its title.
     #[getter]
     fn title(&self) -> &str {
-        &self.0.title
+        &self.scene.title
     }
 
     /// How many grains it has.
     #[getter]
     fn grain_count(&self) -> usize {
-        self.0.grain_count()
+        self.scene.grain_count()
     }
 
     /// How long it runs [s].
     #[getter]
     fn duration(&self) -> f64 {
-        self.0.duration
+        self.scene.duration
     }
 
     /// All settings with their values, as text that `set` takes.
     #[getter]
     fn settings(&self) -> BTreeMap<String, String> {
-        let settings = Settings::of(&self.0);
+        let settings = Settings::of(&self.scene);
         let list = settings.list().iter();
         list.map(|setting| (setting.key.clone(), setting.shown.clone()))
             .collect()
@@ -79,9 +95,9 @@ impl Scene {
     fn __repr__(&self) -> String {
         format!(
             "<Scene {:?}: {} grains, {} s>",
-            self.0.title,
-            self.0.grain_count(),
-            self.0.duration
+            self.scene.title,
+            self.scene.grain_count(),
+            self.scene.duration
         )
     }
 }

@@ -42,6 +42,18 @@ walls = contacts["force"][contacts["partner"] < 0].sum(axis=0)
 weight = grains["mass"].sum() * 9.81
 assert abs(walls[1] / weight - 1) < 0.2, (walls, weight)
 
+# A live parameter acts from the moment of the change on.
+scene.set("drum-speed", "6rpm")
+runs = [grainfall.Run(scene) for _ in range(2)]
+runs[1].set("gravity", 3.0)
+for other in runs:
+    other.advance(0.01)
+assert runs[0].hash != runs[1].hash and runs[0].step == runs[1].step
+turned = grainfall.Run(grainfall.Scene("small-drum"))
+turned.set("drum-speed", "6rpm")
+turned.advance(0.01)
+assert turned.hash == runs[0].hash
+
 # A state that was read stays what it was.
 position = grains["position"].copy()
 run.advance(0.01)
