@@ -9,6 +9,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `made_beside` | folders, and files by other programs, that appear whole or not at all |
 //! | `growing` | files that grow at their end |
 //! | `whole` | files that appear whole or not at all |
 //! | `reading` | regular files of bounded size |
@@ -20,6 +21,7 @@
 mod attempt;
 mod growing;
 mod lock;
+mod made_beside;
 #[cfg(all(test, unix))]
 mod power_cut;
 mod reading;
@@ -30,6 +32,7 @@ mod whole;
 pub(crate) use attempt::FailingCalls;
 pub use growing::GrowingFile;
 pub use lock::{FolderLock, LOCK, LockError};
+pub use made_beside::{make_whole_file, make_whole_folder};
 #[cfg(all(test, unix))]
 pub(crate) use power_cut::{PowerCuts, Stop};
 pub use reading::{open_regular, read_whole};

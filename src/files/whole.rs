@@ -147,6 +147,7 @@ pub fn folder_beside(path: &Path) -> io::Result<TempDir> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o777));
     }
+    attempt(folder)?;
     builder.prefix(TEMPORARY).tempdir_in(folder)
 }
 
@@ -158,7 +159,7 @@ fn folder_of(path: &Path) -> io::Result<&Path> {
 }
 
 /// The folder that `path` is in.
-fn above(path: &Path) -> &Path {
+pub(super) fn above(path: &Path) -> &Path {
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     folder.unwrap_or(Path::new("."))
 }

@@ -271,3 +271,20 @@ fn named_values_are_those_of_the_scenes_own_materials() {
     let glass = names("small-drum", ["glass", "glass"]);
     assert!(glass.contains(&("dry glass".to_owned(), 0.4)));
 }
+
+/// Each of the two alone is refused: a hundred thousand seconds have a million outputs at most.
+#[test]
+fn values_that_hold_together_only_all_at_once_are_taken_all_at_once() {
+    let open = || Scene::open("small-drum").unwrap();
+    let both = [("duration", "1000000s"), ("output-interval", "1s")];
+    assert!(open().set(both[0].0, both[0].1).is_err());
+    for order in [both, [both[1], both[0]]] {
+        let mut scene = open();
+        scene.set_all(&order).unwrap();
+        assert_eq!((scene.duration, scene.output_interval), (1e6, 1.0));
+    }
+    let mut scene = open();
+    let refused = scene.set_all(&[("duration", "1000000s"), ("output-interval", "0.5s")]);
+    assert!(refused.is_err());
+    assert_eq!(scene, open(), "nothing is changed by what is refused");
+}
