@@ -49,6 +49,12 @@ const PROGRAM: f64 = 20e6;
 const TABLE_CELL: f64 = 14.0;
 /// Simulated time that settling takes, about, in `√(r/g)` of the mean radius.
 const SETTLING: f64 = 80.0;
+/// Settling from which on people are told how long it takes [s].
+const LONG_SETTLING: f64 = 60.0;
+/// Settling before which a window asks whether that is meant [s].
+const LONGEST_UNASKED: f64 = 900.0;
+/// What makes a bed settle sooner.
+const SETTLES_SOONER: &str = "fewer, larger or softer small grains settle sooner";
 /// Part of the memory, or of the disk, that is free which a run may take.
 const SHARE: f64 = 0.9;
 
@@ -67,6 +73,8 @@ pub struct Estimate {
     frames: f64,
     /// Time of one thread, a settling where there is one included [s].
     pub time: f64,
+    /// What of it is settling [s].
+    pub settling: f64,
 }
 
 /// More than the machine has.
@@ -130,11 +138,12 @@ impl Estimate {
         Self {
             grains,
             steps,
-            // The samples of a run are kept, in vectors that double.
+            // A run has all its samples at its end, in vectors that double.
             memory: PROGRAM + grain * cost.memory + points * LATTICE_POINT + 1.5 * 8.0 * series,
             files: frames + checkpoints + series * TABLE_CELL,
             frames,
             time: (steps + settling) * grain * cost.time,
+            settling: settling * grain * cost.time,
         }
     }
 
@@ -144,6 +153,40 @@ impl Estimate {
             duration: 0.0,
             ..scene.clone()
         })
+    }
+
+    /// The same where the grains stay as they are placed: nothing settles.
+    #[must_use]
+    pub fn unsettled(self) -> Self {
+        Self {
+            time: self.time - self.settling,
+            settling: 0.0,
+            ..self
+        }
+    }
+
+    /// What a window asks before it opens what this is the start of ([`Estimate::of_start`]); none
+    /// where nothing speaks against it.
+    pub fn question(&self) -> Option<String> {
+        self.question_with(free_memory())
+    }
+
+    fn question_with(&self, free: Option<f64>) -> Option<String> {
+        let mut text = String::new();
+        if let Err(BeyondMachine::Memory { free, .. }) = self.fits_into(free) {
+            let (asked, free) = (bytes(self.memory), bytes(free));
+            text += &format!(
+                "This scene asks for {asked} of memory, and {free} are free: the machine may come to a halt. Fewer \
+                 grains or larger cells take less. "
+            );
+        }
+        if self.settling > LONGEST_UNASKED {
+            let settling = duration(self.settling);
+            text += &format!(
+                "Its bed takes some {settling} of one thread to settle before anything moves; {SETTLES_SOONER}. "
+            );
+        }
+        (!text.is_empty()).then(|| text + "Open it all the same?")
     }
 
     /// Whether the memory that is free now holds it; where that is not known, it does.
@@ -202,6 +245,7 @@ impl Estimate {
             files: sum(|case| case.files - case.frames),
             frames: 0.0,
             time: sum(|case| case.time),
+            settling: sum(|case| case.settling),
         }
     }
 }
@@ -218,7 +262,8 @@ fn taken(folder: &Path) -> f64 {
 }
 
 impl fmt::Display for Estimate {
-    /// `470 grains, 1.2 million steps: some 21 MB of memory, 14 MB of files, 25 s on one thread`.
+    /// `470 grains, 1.2 million steps: some 21 MB of memory, 14 MB of files, 25 s on one thread`,
+    /// and how much of that is settling where it is long.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} grains", self.grains)?;
         if self.steps > 0.0 {
@@ -230,7 +275,15 @@ impl fmt::Display for Estimate {
             bytes(self.memory),
             bytes(self.files),
             duration(self.time)
-        )
+        )?;
+        if self.settling <= LONG_SETTLING {
+            return Ok(());
+        }
+        write!(f, ", {} of these to settle", duration(self.settling))?;
+        if self.settling > LONGEST_UNASKED {
+            write!(f, " ({SETTLES_SOONER})")?;
+        }
+        Ok(())
     }
 }
 
@@ -296,6 +349,46 @@ mod tests {
             "{refusal}"
         );
     }
+
+    /// Twenty thousand grains, the small ones a thousand times smaller: a step of nanoseconds.
+    #[test]
+    fn settling_that_takes_hours_is_told_with_the_way_out_and_asked_about() {
+        let text = "(title: \"dust\", materials: {\"m\": ()}, container: Box(min: (0, 0, 0), max: (0.02, 0.1, 0.02), \
+                    material: \"m\"), grains: Fill(count: 20000, species: [(name: \"large\", radius_mm: 5, \
+                    material: \"m\", share: 0.0001), (name: \"small\", radius_mm: 0.005, material: \"m\", share: 0.9999)]))";
+        let scene = Scene::parse("dust.ron", text).unwrap();
+        let start = Estimate::of_start(&scene);
+        assert!(start.settling > LONGEST_UNASKED, "{start}");
+        assert_eq!(start.time, start.settling);
+        let said = start.to_string();
+        assert!(
+            said.contains("to settle") && said.contains(SETTLES_SOONER),
+            "{said}"
+        );
+        let asked = start.question_with(None).unwrap();
+        assert!(
+            asked.contains(SETTLES_SOONER) && asked.ends_with('?'),
+            "{asked}"
+        );
+        let placed = start.unsettled();
+        assert_eq!(
+            (placed.settling, placed.time, placed.question_with(None)),
+            (0.0, 0.0, None)
+        );
+        let small = Estimate::of_start(&Scene::open("small-drum").unwrap());
+        assert_eq!(small.question_with(Some(1e9)), None);
+        assert!(!small.to_string().contains("settle"), "{small}");
+        let asked = small.question_with(Some(1e6)).unwrap();
+        assert!(
+            asked.contains("1 MB are free") || asked.contains("1000 kB"),
+            "{asked}"
+        );
+        assert!(
+            !asked.contains("--beyond"),
+            "a window has no options: {asked}"
+        );
+    }
+
     #[test]
     fn files_that_no_disk_holds_are_refused_but_for_those_that_are_there() {
         let folder = tempfile::tempdir().unwrap();
