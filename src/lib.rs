@@ -52,6 +52,10 @@
     )
 )]
 
+// What tests of this package share with those inside it names the package as those outside do.
+#[cfg(test)]
+extern crate self as grainfall;
+
 #[allow(
     clippy::disallowed_methods,
     reason = "what it computes reaches no trajectory"

@@ -1,8 +1,11 @@
 //! Every call about a file fails once, or is the last one before the program or the power stops:
 //! what is said, what is left, and that the same comes of the same command afterwards.
 
+#[path = "../../tests/common/small_export.rs"]
+mod small_export;
+
 use super::{Job, RunnerError, run};
-use crate::engines::{Export, ImportSource, MpiEngine, export, import};
+use crate::engines::{ImportSource, import};
 use crate::files::{FailingCalls, is_temporary};
 #[cfg(unix)]
 use crate::files::{PowerCuts, Stop};
@@ -11,6 +14,7 @@ use crate::scene::Scene;
 use crate::solver::advise;
 use crate::sweep::{self, Sweep, Variation};
 use crate::world::{World, build};
+use small_export::export_drum;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -60,11 +64,32 @@ fn said(error: RunnerError) -> String {
 }
 
 fn run_once(out: &Path) -> Result<String, String> {
-    let (_, run) = run(&job(out), &mut (), &|| false).map_err(said)?;
+    act(&job(out))
+}
+
+fn act(job: &Job) -> Result<String, String> {
+    let (_, run) = run(job, &mut (), &|| false).map_err(said)?;
     let run = run.into_run().map_err(|_| ()).unwrap();
-    let summary = fs::read_to_string(out.join("run/summary.json")).unwrap();
+    let summary = fs::read_to_string(job.out.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     Ok(format!("{} {}", run.world().hash(), summary["files"]))
+}
+
+/// The same in the place of whatever run is there.
+fn restart_once(out: &Path) -> Result<String, String> {
+    act(&Job {
+        restart: true,
+        ..job(out)
+    })
+}
+
+/// Leaves a longer run of another scene with files that the run has none of, done.
+fn another_run(out: &Path) {
+    let mut other = job(out);
+    let values = [("duration", "12ms"), ("sample-interval", "2ms")];
+    other.scene.set_all(&values).unwrap();
+    act(&other).unwrap();
+    fs::write(out.join("run/flow.csv"), "of the other run\n").unwrap();
 }
 
 /// Leaves a run that was stopped at its second output.
@@ -141,18 +166,7 @@ fn texts(folder: &Path) -> String {
 }
 
 fn export_once(out: &Path) -> Result<String, String> {
-    let mut scene = Scene::open("small-drum").unwrap();
-    scene.set_all(&[("count", "3"), ("radius", "4mm")]).unwrap();
-    let world = build(&scene, advise(&scene).time_step);
-    let handed = Export {
-        name: "drum",
-        scene: &scene,
-        commands: &[],
-        world: &world,
-        is_settled: false,
-    };
-    let exported = export(handed, MpiEngine::Liggghts, &out.join("deck"));
-    exported.map_err(|error| error.to_string())?;
+    export_drum(&out.join("deck")).map_err(|error| error.to_string())?;
     Ok(texts(&out.join("deck")))
 }
 
@@ -308,6 +322,19 @@ fn any_call_of_a_run_that_goes_on_may_fail_or_be_its_last() {
         ..RUN
     };
     try_all("a run that goes on", &task);
+}
+
+/// Nothing of the run that is replaced is taken for the new one's, wherever that stops.
+#[test]
+fn any_call_of_a_run_that_replaces_another_may_fail_or_be_its_last() {
+    let task = Task {
+        before: another_run,
+        act: restart_once,
+        does_without: false,
+    };
+    let home = folder();
+    assert_eq!(task.undisturbed(), run_once(home.path()).unwrap());
+    try_all("a run in the place of another", &task);
 }
 
 #[test]

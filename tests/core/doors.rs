@@ -1,12 +1,12 @@
 //! Claims about files that somebody else made: what is read of them, what they may name, what they
 //! may ask for.
 
-use grainfall::engines::{Export, ExportRecord, MpiEngine, export};
+use crate::small_export::export_drum;
+use grainfall::engines::ExportRecord;
 use grainfall::run::{RunRecord, Session};
 use grainfall::runner::read_commands;
 use grainfall::scene::{Scene, StoredCells, within_folders};
-use grainfall::solver::advise;
-use grainfall::world::{Packing, build};
+use grainfall::world::Packing;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -154,18 +154,8 @@ fn a_record_opens_packings_in_the_folders_of_its_reader_alone() {
 #[test]
 fn the_record_of_an_export_opens_no_packing_elsewhere() {
     let (_folder, scenes, other) = packing();
-    let mut scene = Scene::open("small-drum").unwrap();
-    scene.set("count", "3").unwrap();
-    let world = build(&scene, advise(&scene).time_step);
-    let handed = Export {
-        name: "drum",
-        scene: &scene,
-        commands: &[],
-        world: &world,
-        is_settled: false,
-    };
     let deck = scenes.join("deck");
-    export(handed, MpiEngine::Liggghts, &deck).unwrap();
+    export_drum(&deck).unwrap();
     fs::copy(other.join("cells.pack"), scenes.join("cells.pack")).unwrap();
     fs::write(scenes.join("scene.ron"), scene_of("cells.pack")).unwrap();
     let forged = Scene::load(scenes.join("scene.ron")).unwrap();

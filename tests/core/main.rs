@@ -20,6 +20,8 @@ mod runs;
 mod same_bits;
 mod scene;
 mod session;
+#[path = "../common/small_export.rs"]
+mod small_export;
 mod solver;
 mod step;
 mod sweep;

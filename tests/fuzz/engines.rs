@@ -1,11 +1,9 @@
 //! Files of other engines, mutated: dumps, data files, and the record of an export beside them.
 
+use super::small_export::{drum, export_drum};
 use super::targets::{Place, Target, one_of};
 use super::{byte_mutator, mutator};
-use grainfall::engines::{Export, ImportSource, MpiEngine, export, import, read_frames};
-use grainfall::scene::Scene;
-use grainfall::solver::advise;
-use grainfall::world::build;
+use grainfall::engines::{ImportSource, import, read_frames};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::fs;
@@ -13,13 +11,6 @@ use std::path::Path;
 
 /// Grains up to which what is read is also measured and written.
 const FEW_GRAINS: usize = 300;
-
-/// A drum of three grains.
-fn drum() -> Scene {
-    let mut scene = Scene::open("small-drum").expect("it is built in");
-    scene.set("count", "3").expect("it can be set");
-    scene
-}
 
 /// Dumps and data files, some of them with a byte that is no text. What is accepted becomes a run.
 pub struct EngineFiles {
@@ -75,16 +66,7 @@ pub struct ExportRecords {
 impl ExportRecords {
     pub fn new() -> Self {
         let place = Place::new();
-        let scene = drum();
-        let world = build(&scene, advise(&scene).time_step);
-        let handed = Export {
-            name: "drum",
-            scene: &scene,
-            commands: &[],
-            world: &world,
-            is_settled: false,
-        };
-        export(handed, MpiEngine::Liggghts, &place.path("deck")).expect("it can be written");
+        export_drum(&place.path("deck")).expect("it can be written");
         let text = fs::read(place.path("deck/export.json")).expect("it was written");
         Self {
             place,

@@ -16,6 +16,8 @@ mod allocator;
 mod byte_mutator;
 mod engines;
 mod mutator;
+#[path = "../common/small_export.rs"]
+mod small_export;
 mod targets;
 
 use rand::SeedableRng;
