@@ -8,6 +8,7 @@
 use super::atom_frame::{Atom, AtomFrame, FrameError};
 use super::lines::{Lines, shortened};
 use crate::physics::limits;
+use crate::world::MOST_STEPS;
 use glam::DVec3;
 
 /// Rows for which room is made before they are read.
@@ -98,6 +99,17 @@ impl Columns {
     }
 }
 
+/// A number of steps that a run can come to.
+fn step_number(lines: &mut Lines) -> Result<u64, FrameError> {
+    let step = lines.number("a number of steps")?;
+    if step <= MOST_STEPS {
+        return Ok(step);
+    }
+    Err(lines.wrong(format!(
+        "step {step}; expected at most {MOST_STEPS}, as no run has more"
+    )))
+}
+
 /// The next instant in `lines`; none at the end.
 ///
 /// # Errors
@@ -119,7 +131,7 @@ pub fn next_frame(lines: &mut Lines) -> Result<Option<AtomFrame>, FrameError> {
             return Err(lines.wrong(format!("`{}`; expected `ITEM: …`", shortened(&line))));
         };
         match item.split_whitespace().next().unwrap_or_default() {
-            "TIMESTEP" => step = Some(lines.number("a number of steps")?),
+            "TIMESTEP" => step = Some(step_number(lines)?),
             "TIME" => time = Some(lines.number("a time")?),
             "UNITS" => expect_si(lines)?,
             "NUMBER" => count = Some(atom_count(lines)?),

@@ -19,7 +19,7 @@ use crate::run::{
 };
 use crate::scene::{Scene, built_in};
 use crate::solver::advise;
-use crate::world::{Polyhedron, World};
+use crate::world::{MOST_STEPS, Polyhedron, World};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -384,7 +384,7 @@ fn stamped(commands: &[ScriptedCommand]) -> Result<Vec<StampedCommand>, String> 
     for (index, scripted) in commands.iter().enumerate() {
         let when = scripted.step.zip(scripted.time);
         let follows = |(step, time): &(u64, f64)| {
-            last.0 <= *step && last.1 <= *time && time.is_finite() && *step <= 1 << 53
+            last.0 <= *step && last.1 <= *time && time.is_finite() && *step <= MOST_STEPS
         };
         let Some((step, time)) = when.filter(follows) else {
             return Err(format!("change {} in it is not in order", index + 1));

@@ -28,7 +28,9 @@ pub enum CommandError {
     #[error(transparent)]
     Unsuited(#[from] Unsuited),
     /// The value lies outside the parameter's range.
-    #[error("`{parameter}` cannot be {value} {unit}; expected {low} … {high} {unit}")]
+    #[error(
+        "`{parameter}` cannot be {} {unit}; expected {low} … {high} {unit}", readable(*.value)
+    )]
     OutOfRange {
         /// Which parameter.
         parameter: Parameter,
@@ -75,5 +77,25 @@ pub(crate) fn accept(
             parameter,
         }),
         Values::Range(_) | Values::Choices(_) => Ok(Command::Set { parameter, value }),
+    }
+}
+
+/// A number without hundreds of zeros.
+fn readable(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() || (1e-6..1e9).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable;
+
+    #[test]
+    fn numbers_that_are_refused_are_told_in_a_few_letters() {
+        let told = [0.0, 999.0, -0.5, 1e300, 1e-300, f64::NAN].map(readable);
+        assert_eq!(told, ["0", "999", "-0.5", "1e300", "1e-300", "NaN"]);
     }
 }

@@ -29,6 +29,9 @@ pub struct RunRecord {
     pub version: String,
     /// What the scene was called.
     pub name: String,
+    /// Seed of everything random, where it is stated beside the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
     /// The scene as it was run.
     pub scene: Scene,
     /// What was changed, in order; those after the state too.
@@ -131,6 +134,7 @@ impl RunRecord {
             time: world.time(),
             state_hash: Some(world.hash().to_string()),
             status: None,
+            seed: None,
             fault: None,
             grains: None,
             results: None,

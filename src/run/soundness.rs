@@ -13,15 +13,13 @@ use super::{Checkpoint, Command, RunRecord};
 use crate::measure::{FlowHistory, Series};
 use crate::parameters::{ParameterInfo, live_parameters};
 use crate::scene::{Scene, SceneGrains};
-use crate::world::World;
+use crate::world::{MOST_STEPS, World};
 
 /// Most branches that a file holds, kept ones and those that changes lead back to.
 const MOST_BRANCHES: usize = 4096;
 /// Most branches that were ever begun: their numbers go on from there.
 const MOST_BEGUN: u32 = 1 << 30;
 
-/// Most steps of a run: as floats, later ones are no numbers of their own.
-const MOST_STEPS: u64 = 1 << 53;
 /// Longest time of a run, beyond what scenes may ask for because a window goes on [s].
 const LONGEST: f64 = 2e6;
 

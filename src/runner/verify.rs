@@ -173,6 +173,12 @@ impl RunRecord {
             format!("{:?} s", self.time),
             format!("{:?} s", world.time()),
         );
+        if let Some(seed) = self.seed {
+            compare("seed", seed.to_string(), self.scene.seed.to_string());
+        }
+        if self.fault.is_some() && self.status.as_deref() != Some("fault") {
+            compare("fault", "one".into(), "none".into());
+        }
         if let Some(grains) = self.grains {
             compare("grains", grains.to_string(), world.grains.len().to_string());
         }
@@ -302,5 +308,50 @@ fn are_same(stated: &Value, is: &Value) -> bool {
     match (stated.as_f64(), is.as_f64()) {
         (Some(a), Some(b)) => (a - b).abs() <= SAME_RESULT * a.abs().max(b.abs()),
         _ => stated == is,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Job, run};
+    use super::*;
+    use crate::scene::Scene;
+    use serde_json::json;
+
+    /// A seed beside the scene's, and a fault of a run that is said to be done, were passed over.
+    #[test]
+    fn seed_and_fault_that_are_forged_with_a_fingerprint_that_fits_are_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut scene = Scene::open("bouncing-grain").unwrap();
+        let values = [("duration", "6ms"), ("output-interval", "2ms")];
+        scene.set_all(&values).unwrap();
+        let job = Job {
+            threads: 1,
+            beds: BedStore::none(),
+            ..Job::new("grain", scene, folder.path())
+        };
+        run(&job, &mut (), &|| false).unwrap();
+        let path = folder.path().join("summary.json");
+        let whole: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+        let verdict = |key: &str, value: Value| {
+            let mut record = whole.clone();
+            record[key] = value;
+            record["fingerprint"] = fingerprint(&record).into();
+            fs::write(&path, record.to_string()).unwrap();
+            let record = RunRecord::read(&path).unwrap();
+            record
+                .verify(1, BedStore::none(), &mut (), &|| false)
+                .unwrap()
+        };
+        assert_eq!(verdict("seed", whole["seed"].clone()), Verdict::Same);
+        for (key, value, expected) in [
+            ("seed", json!(99), "seed: 99 is stated, the run comes to 1"),
+            ("fault", json!({"time": 0.001}), "fault: one is stated"),
+        ] {
+            let Verdict::Differs(what) = verdict(key, value) else {
+                panic!("a forged {key} is found");
+            };
+            assert!(what[0].contains(expected) && what.len() == 1, "{what:?}");
+        }
     }
 }

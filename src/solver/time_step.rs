@@ -16,6 +16,7 @@
 pub use crate::physics::law::StepLimit as Limit;
 
 use crate::physics::law::{Circumstances, SmallestGrain, lubrication_limit};
+use crate::physics::limits::TIME_STEP;
 use crate::physics::{ContactLaw, Integrator, Liquid, MaterialId, Materials};
 use crate::scene::{Scene, SceneGrains, TimeStep};
 use crate::world::{self, World};
@@ -47,11 +48,9 @@ impl TimeStepAdvice {
         }
     }
 
-    /// The largest step that every limit allows [s].
+    /// The largest step that every limit allows and a run can have [s].
     pub fn largest(&self) -> f64 {
-        self.limits
-            .first()
-            .map_or(UNLIMITED, |limit| limit.time_step)
+        largest(&self.limits)
     }
 
     /// By which share the step exceeds its limit, 0.29 for 29 %; none where it does not.
@@ -82,10 +81,7 @@ pub fn advise(scene: &Scene) -> TimeStepAdvice {
     let limits = limits(&grains, scene.law, scene.liquid.as_ref(), &at);
     match scene.time_step {
         TimeStep::Given(given) => TimeStepAdvice::of(given, limits),
-        TimeStep::Automatic | TimeStep::Following => {
-            let largest = limits.first().map_or(UNLIMITED, |limit| limit.time_step);
-            TimeStepAdvice::of(largest, limits)
-        }
+        TimeStep::Automatic | TimeStep::Following => TimeStepAdvice::of(largest(&limits), limits),
     }
 }
 
@@ -164,6 +160,14 @@ fn limits(
     limits.sort_by(|a, b| a.time_step.total_cmp(&b.time_step));
     limits.dedup_by(|later, earlier| later.name == earlier.name);
     limits
+}
+
+/// The largest step within all `limits`, the binding one first, that is one of [`TIME_STEP`]:
+/// grains of metres that are as soft as foam would allow minutes. A stiff dust asks for less than a
+/// run can have; then the least exceeds its limit, and the warning says so.
+fn largest(limits: &[Limit]) -> f64 {
+    let largest = limits.first().map_or(UNLIMITED, |limit| limit.time_step);
+    largest.clamp(TIME_STEP.least, TIME_STEP.most)
 }
 
 fn excess(time_step: f64, limit: &Limit) -> Option<f64> {

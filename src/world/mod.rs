@@ -31,7 +31,7 @@ pub use ledger::Ledger;
 pub use mixture::{label_order, set_share};
 pub use packing::Packing;
 pub use polyhedra::{Feature, FeatureContact, PlacedPolyhedron, Polyhedra};
-pub use soundness::Unsound;
+pub use soundness::{MOST_STEPS, Unsound};
 pub use voronoi::{Boundary, Tessellation};
 pub use wetting::Bridge;
 

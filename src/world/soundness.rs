@@ -16,7 +16,7 @@ const LARGEST: f64 = 1e30;
 /// Farthest place of a grain [m]: what moves at the greatest speed for the longest time.
 const FARTHEST: f64 = 1e12;
 /// Most steps that a clock may show: beyond, steps are no numbers of their own as floats.
-const MOST_STEPS: u64 = 1 << 53;
+pub const MOST_STEPS: u64 = 1 << 53;
 /// Features of one kind that a shape may have.
 const MOST_FEATURES: usize = 1 << 12;
 

@@ -111,6 +111,10 @@ fn faults_of_files_are_told_with_their_place() {
             ":2: `zero`".to_owned(),
         ),
         (
+            good.replace("ITEM: TIMESTEP\n0", "ITEM: TIMESTEP\n18446744073709551615"),
+            ":2: step 18446744073709551615; expected at most".to_owned(),
+        ),
+        (
             good.replace("ATOMS\n3", "ATOMS\n4"),
             format!(":{last_row}: the file ends"),
         ),

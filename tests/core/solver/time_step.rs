@@ -184,3 +184,26 @@ fn restitution_of_a_pair_limits_the_step_of_polyhedra_where_it_is_changed() {
     let expected = dashpots.unwrap().time_step * share(own) / share(0.01);
     assert_relative("limit", damped.largest(), expected, 1e-12);
 }
+
+/// Found by mutated packings: an automatic step of minutes, which no run can have.
+#[test]
+fn step_is_one_that_a_run_can_have_however_soft_or_stiff_its_grains() {
+    let grain = |material: &str, radius: f64| {
+        let text = format!(
+            "(title: \"A grain\", materials: {{\"m\": ({material})}}, container: Nothing, grains: \
+             List([(position: (0, 0, 0), radius: {radius:?}, material: \"m\")]))"
+        );
+        let scene = Scene::parse("test", &text).unwrap();
+        let advice = advise(&scene);
+        build(&scene, advice.time_step).check().unwrap();
+        advice
+    };
+    let soft = grain("youngs_modulus: 1e3, density: 1e6", 10.0);
+    assert!(soft.limits[0].time_step > 1.0, "{soft:?}");
+    assert_eq!((soft.time_step, soft.largest()), (1.0, 1.0));
+    assert_eq!(soft.warning, None);
+    let stiff = grain("youngs_modulus: 1e13, density: 0.1", 1e-6);
+    assert!(stiff.limits[0].time_step < 1e-12, "{stiff:?}");
+    assert_eq!(stiff.time_step, 1e-12);
+    assert!(stiff.warning.unwrap().contains("exceeds the limit"));
+}
