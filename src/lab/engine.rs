@@ -14,10 +14,10 @@ use super::{Half, Options, Status};
 use crate::recording::Recording;
 use crate::run::{
     Command, CommandError, Parameter, Pieces, Preparation, Prepared, Run, Script, ScriptedCommand,
-    Session, Timeline, Value,
+    Session, Stored, Timeline, Value,
 };
 use crate::scene::Scene;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -57,6 +57,8 @@ pub struct Engine {
     /// Whether values that are set belong to one change now, and whether one was set in it.
     open_change: Option<bool>,
     answered: u64,
+    /// Whether it was said that work cannot be kept for the case that the program ends unasked.
+    is_beyond_rescue: bool,
     news: Update,
     profiled: Instant,
 }
@@ -112,6 +114,7 @@ impl Engine {
             waiting: Vec::new(),
             open_change: None,
             answered: 0,
+            is_beyond_rescue: false,
             news: Update::default(),
             profiled: Instant::now(),
         }
@@ -261,7 +264,9 @@ impl Engine {
             LabCommand::CloseChange => self.open_change = None,
             LabCommand::Hold(step) => self.clock.hold_at(step),
             LabCommand::Threads(threads) => self.use_threads(threads),
+            LabCommand::ForgetMeasured(stored) => self.forget_measured(stored),
             LabCommand::Save { path, look } => self.save(path, look),
+            LabCommand::Rescue { path, look } => self.rescue(&path, look),
             LabCommand::Compare { parameter, value } => self.compare(parameter, value),
             LabCommand::EndComparison { keep } => self.end_comparison(keep),
             LabCommand::SetIn {
@@ -391,6 +396,28 @@ impl Engine {
         self.news.saved.push(SavedFile { path, outcome });
     }
 
+    /// Writes the whole session where it is found again if the program ends unasked; says once why
+    /// that cannot be.
+    fn rescue(&mut self, path: &Path, look: String) {
+        let LabStage::Ready(runs) = &mut self.stage else {
+            return;
+        };
+        if let Err(error) = runs.save(path, &self.original, look)
+            && !std::mem::replace(&mut self.is_beyond_rescue, true)
+        {
+            self.news.warnings.push(format!(
+                "What is done here would be lost if the program were stopped: {} cannot be written: {error}",
+                path.display()
+            ));
+        }
+    }
+
+    fn forget_measured(&mut self, stored: Stored) {
+        if let LabStage::Ready(runs) = &mut self.stage {
+            runs.forget_measured(stored);
+        }
+    }
+
     fn use_threads(&mut self, threads: usize) {
         self.threads = threads;
         if let LabStage::Ready(runs) = &mut self.stage {
@@ -434,6 +461,8 @@ fn parts_changes(command: &LabCommand) -> bool {
         LabCommand::SetIn { .. }
         | LabCommand::OpenChange
         | LabCommand::CloseChange
+        | LabCommand::ForgetMeasured(_)
+        | LabCommand::Rescue { .. }
         | LabCommand::Hold(_)
         | LabCommand::Threads(_) => false,
         LabCommand::Compare { .. } | LabCommand::EndComparison { .. } | LabCommand::Save { .. } => {

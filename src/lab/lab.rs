@@ -262,9 +262,11 @@ impl Lab {
             LabCommand::Save { .. } if self.recording.is_some() => {}
             LabCommand::Save { .. } => self.saved.pending.push(self.sent),
             LabCommand::Compare { .. }
+            | LabCommand::Rescue { .. }
             | LabCommand::OpenChange
             | LabCommand::CloseChange
             | LabCommand::EndComparison { .. }
+            | LabCommand::ForgetMeasured(_)
             | LabCommand::Hold(_)
             | LabCommand::Threads(_) => {}
         }

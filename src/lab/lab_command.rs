@@ -5,7 +5,7 @@
 //! by the engine, not here.
 
 use super::Half;
-use crate::run::{Command, Parameter, Value};
+use crate::run::{Command, Parameter, Stored, Value};
 use std::path::PathBuf;
 
 /// Everything that can be asked of a lab.
@@ -47,8 +47,18 @@ pub enum LabCommand {
         /// How the window looks, in its own words.
         look: String,
     },
+    /// Write the session to a file for the case that the program ends unasked
+    /// ([`crate::run::Rescue`]): it does not count as saved.
+    Rescue {
+        /// The file.
+        path: PathBuf,
+        /// How the window looks, in its own words.
+        look: String,
+    },
     /// Go no further than this step for now, or as far as the clock allows.
     Hold(Option<u64>),
+    /// Forget so much of what was measured: it stands in files, and nobody goes back.
+    ForgetMeasured(Stored),
     /// Work on so many threads in all.
     Threads(usize),
 }

@@ -110,7 +110,11 @@ impl Playback {
     /// When it would change something, or compute.
     pub fn take(&mut self, command: &LabCommand, clock: &mut LabClock) -> Result<(), CommandError> {
         match command {
-            LabCommand::OpenChange | LabCommand::CloseChange | LabCommand::Threads(_) => {}
+            LabCommand::OpenChange
+            | LabCommand::CloseChange
+            | LabCommand::ForgetMeasured(_)
+            | LabCommand::Rescue { .. }
+            | LabCommand::Threads(_) => {}
             LabCommand::Hold(step) => clock.hold_at(*step),
             LabCommand::All(command) => match command {
                 Command::Play => {

@@ -12,7 +12,9 @@
 use super::Half;
 use super::clock::LabClock;
 use super::update::{RunNews, RunsNews};
-use crate::run::{Branch, Command, CommandError, Parameter, Run, Session, Timeline, Turned, Value};
+use crate::run::{
+    Branch, Command, CommandError, Parameter, Run, Session, Stored, Timeline, Turned, Value,
+};
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
 use crate::world::{self, World};
@@ -272,6 +274,13 @@ impl Runs {
     /// Shows the branch of this index again.
     pub fn take_up(&mut self, index: usize) {
         self.list[0].timeline.take_up(index);
+    }
+
+    /// Forgets what is `stored` in files of what was measured, where there is one run.
+    pub fn forget_measured(&mut self, stored: Stored) {
+        if !self.is_pair() {
+            self.list[0].timeline.forget_measured(stored);
+        }
     }
 
     /// Keeps the branch of this index no longer.

@@ -26,6 +26,9 @@ const DEEPEST: f64 = 0.06;
 /// fastest moments.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowHistory {
+    /// Profiles that were forgotten, before the first that is here.
+    #[serde(skip)]
+    forgotten: usize,
     seconds: Vec<FlowProfile>,
     /// The hottest sample of all, then the hottest after that second, and so on.
     fastest: Vec<FastMoment>,
@@ -53,11 +56,68 @@ impl FlowHistory {
             return;
         }
         let second = sample.time.max(0.0) as usize;
-        if self.seconds.len() <= second {
-            self.seconds.resize_with(second + 1, FlowProfile::default);
+        // The last second is never forgotten, and time goes on.
+        let index = second.saturating_sub(self.forgotten);
+        if self.seconds.len() <= index {
+            self.seconds.resize_with(index + 1, FlowProfile::default);
         }
-        self.seconds[second].add(world, line);
+        self.seconds[index].add(world, line);
         self.keep_if_fast(world, temperature, second);
+    }
+
+    /// Seconds whose profiles nothing is added to any more.
+    pub fn done(&self) -> usize {
+        self.forgotten + self.seconds.len().saturating_sub(1)
+    }
+
+    /// Whether profiles were forgotten.
+    pub fn is_part(&self) -> bool {
+        self.forgotten > 0
+    }
+
+    /// Forgets the profiles of the first `seconds`, as far as nothing is added to them any more.
+    pub fn forget(&mut self, seconds: usize) {
+        let count = seconds.min(self.done()).saturating_sub(self.forgotten);
+        self.seconds.drain(..count);
+        self.forgotten += count;
+    }
+
+    /// The profiles from this second on, counted from time zero; those that are here.
+    pub fn profiles_since(&self, second: usize) -> &[FlowProfile] {
+        let first = second.saturating_sub(self.forgotten);
+        self.seconds.get(first..).unwrap_or_default()
+    }
+
+    /// The same without the profiles of the first `seconds`.
+    #[must_use]
+    pub fn rest(&self, seconds: usize) -> Self {
+        Self {
+            forgotten: seconds,
+            seconds: self.profiles_since(seconds).to_vec(),
+            fastest: self.fastest.clone(),
+        }
+    }
+
+    /// The same, its first profile being that of this `second`: files hold a [`FlowHistory::rest`]
+    /// and not from when on.
+    #[must_use]
+    pub fn counted_from(self, second: usize) -> Self {
+        Self {
+            forgotten: second,
+            ..self
+        }
+    }
+
+    /// The same with the profiles of the first seconds, which were kept elsewhere: `earlier` ones,
+    /// followed by those that are here after them.
+    #[must_use]
+    pub fn behind(&self, mut earlier: Vec<FlowProfile>) -> Self {
+        earlier.extend_from_slice(self.profiles_since(earlier.len()));
+        Self {
+            forgotten: 0,
+            seconds: earlier,
+            fastest: self.fastest.clone(),
+        }
     }
 
     /// Keeps the map of `world` where none of its second and none after it was hotter.

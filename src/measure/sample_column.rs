@@ -91,6 +91,14 @@ impl Column {
         };
     }
 
+    /// Forgets the first `count` values.
+    pub fn forget(&mut self, count: usize) {
+        match self {
+            Self::Same(value, len, _) => *self = Self::same(*value, len.saturating_sub(count)),
+            Self::Values(values) => drop(values.drain(..count.min(values.len()))),
+        }
+    }
+
     /// Keeps the first `len` values.
     pub fn truncate(&mut self, len: usize) {
         match self {

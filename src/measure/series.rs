@@ -7,9 +7,12 @@ use serde::{Deserialize, Serialize};
 
 /// Samples in order of time, column by column. All of a run are kept, so that any part of it can
 /// be plotted and averaged: at most 20 kB for a simulated second of a bed, as a column that never
-/// changes takes no room.
+/// changes takes no room. Those that stand in a file may be forgotten ([`Series::forget`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
+    /// Samples that were forgotten, before the first that is here.
+    #[serde(skip)]
+    forgotten: usize,
     steps: Vec<u64>,
     time: Vec<f64>,
     #[serde(with = "columns")]
@@ -19,6 +22,7 @@ pub struct Series {
 impl Default for Series {
     fn default() -> Self {
         Self {
+            forgotten: 0,
             steps: Vec::new(),
             time: Vec::new(),
             columns: std::array::from_fn(|_| Column::default()),
@@ -34,6 +38,47 @@ impl Series {
         for (column, value) in self.columns.iter_mut().zip(sample.values) {
             column.push(value);
         }
+    }
+
+    /// Samples that were taken: those that are here and those that were forgotten.
+    pub fn taken(&self) -> usize {
+        self.forgotten + self.len()
+    }
+
+    /// Whether some were forgotten.
+    pub fn is_part(&self) -> bool {
+        self.forgotten > 0
+    }
+
+    /// Forgets the first `samples` of all that were taken, but for the last one.
+    pub fn forget(&mut self, samples: usize) {
+        let count = samples.min(self.taken().saturating_sub(1));
+        let count = count.saturating_sub(self.forgotten);
+        self.steps.drain(..count);
+        self.time.drain(..count);
+        for column in &mut self.columns {
+            column.forget(count);
+        }
+        self.forgotten += count;
+    }
+
+    /// All of `earlier`, the first samples of the same run, and what follows them here.
+    #[must_use]
+    pub fn behind(&self, mut earlier: Self) -> Self {
+        let new = self.since(earlier.taken());
+        new.for_each(|sample| earlier.push(sample));
+        earlier
+    }
+
+    /// The samples from this one on, counted from the first that was taken; those that are here.
+    pub fn since(&self, taken: usize) -> impl Iterator<Item = Sample> {
+        let first = taken.saturating_sub(self.forgotten);
+        (first..self.len()).filter_map(|index| self.get(index))
+    }
+
+    /// How many of the samples that were taken were so until this `step`.
+    pub fn taken_until(&self, step: u64) -> usize {
+        self.forgotten + self.steps.partition_point(|taken| *taken <= step)
     }
 
     /// Memory that it takes [bytes].
@@ -52,7 +97,7 @@ impl Series {
             && self.time.iter().all(|time| time.is_finite())
     }
 
-    /// Number of samples.
+    /// Number of samples that are here.
     pub fn len(&self) -> usize {
         self.time.len()
     }
@@ -99,6 +144,7 @@ impl Series {
     /// Becomes the first `len` samples of `other`.
     pub fn copy_first(&mut self, other: &Self, len: usize) {
         let len = len.min(other.len());
+        self.forgotten = other.forgotten;
         self.steps.clear();
         self.steps.extend_from_slice(&other.steps[..len]);
         self.time.clear();

@@ -43,7 +43,7 @@ impl CollectionFile {
     pub fn begin(
         folder: &OutputFolder,
         name: &'static str,
-        frames: &[CollectedFile],
+        frames: impl Iterator<Item = CollectedFile>,
         from: &Provenance,
     ) -> Result<Self, OutputError> {
         let head = from.in_xml(&opening(frames));
@@ -77,7 +77,7 @@ impl CollectionFile {
 pub fn write_collection(
     folder: &OutputFolder,
     name: &str,
-    frames: &[CollectedFile],
+    frames: impl Iterator<Item = CollectedFile>,
     from: &Provenance,
 ) -> Result<String, OutputError> {
     let text = from.in_xml(&(opening(frames) + TAIL));
@@ -85,7 +85,7 @@ pub fn write_collection(
 }
 
 /// All but the end of the list of `frames`.
-fn opening(frames: &[CollectedFile]) -> String {
-    let entries: String = frames.iter().map(CollectedFile::entry).collect();
+fn opening(frames: impl Iterator<Item = CollectedFile>) -> String {
+    let entries: String = frames.map(|frame| frame.entry()).collect();
     format!("{HEAD}{entries}")
 }

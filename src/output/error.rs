@@ -42,6 +42,14 @@ pub enum OutputError {
         /// Why.
         source: io::Error,
     },
+    /// What was written to a file cannot be read back.
+    #[error("cannot read {}", .path.display())]
+    Read {
+        /// Which one.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
 }
 
 impl OutputError {

@@ -22,6 +22,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const CHECKPOINT: &str = "checkpoint.bin";
 /// The samples that belong to [`CHECKPOINT`].
 pub const SAMPLES: &str = "checkpoint-samples.bin";
+/// The profiles of the flowing layer that belong to [`CHECKPOINT`].
+pub const PROFILES: &str = "checkpoint-profiles.bin";
 /// Largest summary that is read [bytes].
 const LARGEST: u64 = 256 << 20;
 /// The kinds of frames, each with a folder of its own.
@@ -256,7 +258,9 @@ fn is_foreign(path: &Path) -> io::Result<bool> {
     }
     for entry in fs::read_dir(path)? {
         let name = entry?.file_name();
-        let own = [CHECKPOINT, SAMPLES, LOCK].into_iter().chain(FRAMES);
+        let own = [CHECKPOINT, SAMPLES, PROFILES, LOCK]
+            .into_iter()
+            .chain(FRAMES);
         if !own.into_iter().any(|own| name == *own) && !name.to_str().is_some_and(is_temporary) {
             return Ok(true);
         }

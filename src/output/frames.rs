@@ -43,25 +43,46 @@ pub const LISTS: [&str; 2] = [KINDS[0].list, KINDS[1].list];
 /// All that is not in those folders.
 pub const OTHERS: [&str; 4] = [KINDS[0].list, KINDS[1].list, SHAPES, CONTAINER];
 
+/// What is kept of a file of an instant: it is called by its number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Frame {
+    /// Simulated time of the state in it [s].
+    time: f64,
+    /// The digest of its bytes.
+    digest: [u8; blake3::OUT_LEN],
+}
+
 /// The files that were written.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WrittenFrames {
     /// Those of each instant, by their kinds.
-    frames: [Vec<CollectedFile>; FRAMES.len()],
+    frames: [Vec<Frame>; FRAMES.len()],
     /// Those that hold for the whole run.
     lasting: Vec<CollectedFile>,
 }
 
 impl WrittenFrames {
     /// The first of the files that `folder` does not hold.
-    pub fn missing(&self, folder: &Path) -> Option<&str> {
-        let mut names = self.files().map(|frame| frame.name.as_str());
+    pub fn missing(&self, folder: &Path) -> Option<String> {
+        let mut names = self.files().map(|frame| frame.name);
         names.find(|name| !folder.join(name).is_file())
     }
 
     /// Every file.
-    pub fn files(&self) -> impl Iterator<Item = &CollectedFile> {
-        self.frames.iter().flatten().chain(&self.lasting)
+    pub fn files(&self) -> impl Iterator<Item = CollectedFile> {
+        let kinds = 0..FRAMES.len();
+        let frames = kinds.flat_map(|kind| self.of_kind(kind));
+        frames.chain(self.lasting.iter().cloned())
+    }
+
+    /// Those of each instant that are of the kind at this index of [`KINDS`].
+    fn of_kind(&self, kind: usize) -> impl Iterator<Item = CollectedFile> {
+        let frames = self.frames[kind].iter().enumerate();
+        frames.map(move |(index, frame)| CollectedFile {
+            time: frame.time,
+            name: OutputFolder::frame_name(FRAMES[kind], index),
+            digest: blake3::Hash::from(frame.digest).to_hex().to_string(),
+        })
     }
 
     /// Simulated time of the last [s].
@@ -88,10 +109,10 @@ impl FrameFiles {
         written: WrittenFrames,
         from: &Provenance,
     ) -> Result<Self, OutputError> {
-        let lists = KINDS.iter().zip(&written.frames);
-        let lists = lists
-            .map(|(kind, frames)| CollectionFile::begin(folder, kind.list, frames, from))
-            .collect::<Result<_, _>>()?;
+        let lists = KINDS.iter().enumerate().map(|(index, kind)| {
+            CollectionFile::begin(folder, kind.list, written.of_kind(index), from)
+        });
+        let lists = lists.collect::<Result<_, _>>()?;
         Ok(Self {
             written,
             lists,
@@ -122,12 +143,14 @@ impl FrameFiles {
             let name = OutputFolder::frame_name(name, frames.len());
             let digest = folder.write_unsynced(&name, |file| (kind.write)(world, from, file))?;
             self.unsynced.push(name.clone());
-            let frame = CollectedFile {
-                time: world.time(),
-                name,
-                digest,
+            let time = world.time();
+            let kept = blake3::Hash::from_hex(&digest).map_err(io::Error::other);
+            let frame = Frame {
+                time,
+                digest: folder.named(&name, kept)?.into(),
             };
-            list.add(folder, &frame)?;
+            let digest = String::new();
+            list.add(folder, &CollectedFile { time, name, digest })?;
             frames.push(frame);
         }
         Ok(())
@@ -180,10 +203,9 @@ impl FrameFiles {
         from: &Provenance,
     ) -> Result<Vec<(String, String)>, OutputError> {
         let files = self.written.files();
-        let mut files: Vec<_> = files
-            .map(|frame| (frame.name.clone(), frame.digest.clone()))
-            .collect();
-        for (kind, frames) in KINDS.iter().zip(&self.written.frames) {
+        let mut files: Vec<_> = files.map(|frame| (frame.name, frame.digest)).collect();
+        for (index, kind) in KINDS.iter().enumerate() {
+            let frames = self.written.of_kind(index);
             let digest = write_collection(folder, kind.list, frames, from)?;
             files.push((kind.list.into(), digest));
         }

@@ -45,7 +45,7 @@ pub use container_file::write_container;
 pub use digest::{digest_of, digest_of_file};
 pub use ending::Ending;
 pub use error::OutputError;
-pub use folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY, is_own_name, write_file};
+pub use folder::{CHECKPOINT, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_own_name, write_file};
 pub use frames::LISTS;
 pub use grains_file::write_grains;
 pub use recorder::{IMPORTED, Recorder, Subject, Written};

@@ -5,7 +5,7 @@
 //! of frames grow with the run, and are made durable with them at an output, at most once a
 //! second. Bytes written grow like what there is to say: nothing but the summary is written twice.
 
-use super::folder::{CHECKPOINT, OutputFolder, SAMPLES, SUMMARY};
+use super::folder::{CHECKPOINT, OutputFolder, PROFILES, SAMPLES, SUMMARY};
 use super::frames::{self, FrameFiles, WrittenFrames};
 use super::profile_files::{
     FLOW, Flow, PROFILE, flow_table, profile_table, write_flow, write_profile,
@@ -32,9 +32,10 @@ const SYNC_TIME: Duration = Duration::from_secs(1);
 const SHARE_OF_TIME: u32 = 20;
 /// Files by these names, and the frames', are a run's own; those of an earlier run give way to a
 /// later one.
-const OWN: [&str; 7] = [
+const OWN: [&str; 8] = [
     CHECKPOINT,
     SAMPLES,
+    PROFILES,
     SERIES,
     FLOW,
     VELOCITY,
@@ -77,7 +78,7 @@ pub struct Written {
 
 impl Written {
     /// The first of the frames' files that `folder` does not hold.
-    pub fn missing(&self, folder: &Path) -> Option<&str> {
+    pub fn missing(&self, folder: &Path) -> Option<String> {
         self.frames.missing(folder)
     }
 
@@ -133,11 +134,13 @@ impl Recorder {
         let mut recorder = Self::new(subject, folder, written);
         recorder.mark()?;
         recorder.begin_frames()?;
-        let files = recorder.written.frames.files();
-        let kept: Vec<&str> = [CHECKPOINT, SAMPLES, SERIES]
+        let files: Vec<String> = (recorder.written.frames.files())
+            .map(|frame| frame.name)
+            .collect();
+        let kept: Vec<&str> = [CHECKPOINT, SAMPLES, PROFILES, SERIES]
             .into_iter()
             .chain(frames::LISTS)
-            .chain(files.map(|frame| frame.name.as_str()))
+            .chain(files.iter().map(String::as_str))
             .collect();
         recorder.folder.clear(&own(), &kept)?;
         Ok(recorder)
@@ -219,6 +222,11 @@ impl Recorder {
     pub fn record_output(&mut self, run: RunSoFar) -> Result<(), OutputError> {
         self.write_series(Some(run))?;
         self.write_frame(run.world)
+    }
+
+    /// Whether the table of samples is to be written anew with all of them at the present state.
+    pub fn rewrites_series(&self, run: RunSoFar) -> bool {
+        (self.series.as_ref()).is_some_and(|series| series.begins_anew(run))
     }
 
     /// Makes all that was written durable.

@@ -8,7 +8,6 @@ use crate::files::GrowingFile;
 use crate::measure::{Measure, Series};
 use crate::run::{Cells, Column, Table};
 use std::io::{self, Write};
-use std::ops::Range;
 
 /// The file's name.
 pub const SERIES: &str = "series.csv";
@@ -29,10 +28,10 @@ impl SeriesFile {
     /// When it cannot be written.
     pub fn begin(folder: &OutputFolder, run: Option<RunSoFar>) -> Result<Self, OutputError> {
         let measures = run.map_or_else(Vec::new, |run| Measure::of(run.world));
-        let rows = run.map_or(0, |run| run.series.len());
+        let rows = run.map_or(0, |run| run.series.taken());
         let mut text = Vec::new();
         let written = write_head(&measures, &mut text).and_then(|()| match run {
-            Some(run) => write_rows(run.series, 0..rows, &measures, &mut text),
+            Some(run) => write_rows(run.series, 0, &measures, &mut text),
             None => Ok(()),
         });
         folder.named(SERIES, written)?;
@@ -52,21 +51,25 @@ impl SeriesFile {
     /// # Errors
     /// When it cannot be written.
     pub fn go_on(&mut self, folder: &OutputFolder, run: RunSoFar) -> Result<(), OutputError> {
-        if run.series.len() == self.rows {
+        if run.series.taken() == self.rows {
             return Ok(());
         }
-        if Measure::of(run.world) != self.measures {
+        if self.begins_anew(run) {
             *self = Self::begin(folder, Some(run))?;
             return Ok(());
         }
         let mut text = Vec::new();
-        let new = self.rows..run.series.len();
-        let added = write_rows(run.series, new, &self.measures, &mut text)
+        let added = write_rows(run.series, self.rows, &self.measures, &mut text)
             .and_then(|()| self.file.add(&text));
         folder.named(SERIES, added)?;
         self.digest.update(&text);
-        self.rows = run.series.len();
+        self.rows = run.series.taken();
         Ok(())
+    }
+
+    /// Whether the next samples need other columns: then it takes all samples to go on.
+    pub fn begins_anew(&self, run: RunSoFar) -> bool {
+        run.series.taken() != self.rows && Measure::of(run.world) != self.measures
     }
 
     /// Makes it durable.
@@ -105,14 +108,15 @@ fn write_head(measures: &[Measure], file: &mut dyn Write) -> io::Result<()> {
     writer.flush()
 }
 
+/// Writes a row for each sample from the `first` on.
 fn write_rows(
     series: &Series,
-    rows: Range<usize>,
+    first: usize,
     measures: &[Measure],
     file: &mut dyn Write,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
-    for sample in rows.filter_map(|index| series.get(index)) {
+    for sample in series.since(first) {
         writer.write_field(sample.step.to_string())?;
         writer.write_field(format!("{:?}", sample.time))?;
         // The shortest text that reads back as the same bits.

@@ -22,9 +22,11 @@
 //! | `method` | which solver and measures computed a run |
 //! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left |
 //! | `tables` | what the columns of tables hold, for programs that read them |
+//! | `measured` | what was measured, and how much of it stands in files |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
+//! | `rescue` | what a window was about, for the case that it ends unasked |
 //! | `steps` | which step was when, where the time step changed |
 //! | `command` | everything a person can ask for |
 //! | `shared` | what is shared in memory, in a file |
@@ -38,6 +40,7 @@ mod estimate;
 mod history;
 mod keyframes;
 mod machine;
+mod measured;
 mod method;
 mod opening;
 mod orientations;
@@ -46,6 +49,7 @@ mod pieces;
 mod preparation;
 mod provenance;
 mod record;
+mod rescue;
 mod sampling;
 mod script;
 mod session;
@@ -73,6 +77,7 @@ pub(crate) use check::accept;
 pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMachine, Estimate};
 pub use history::{History, Moment};
+pub use measured::{Measured, Stored};
 pub use method::method;
 pub use opening::{OPENING_SCENE, OpeningError, make_opening, opening};
 pub use orientations::Turned;
@@ -81,6 +86,7 @@ pub use pieces::Pieces;
 pub use preparation::{BedError, Preparation, Prepared, make_bed};
 pub use provenance::{Provenance, printable};
 pub use record::{RunRecord, VERSION, fingerprint};
+pub use rescue::Rescue;
 pub use sampling::Sampling;
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};

@@ -7,7 +7,7 @@
 use super::StampedCommand;
 use super::orientations::Turned;
 use super::sampling::Sampling;
-use crate::measure::{FlowHistory, Series};
+use crate::measure::{FlowHistory, FlowProfile, Series};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -61,8 +61,9 @@ impl Snapshot {
     }
 }
 
-/// A run as a file can keep it: all it takes to go on in another process, to the same bits. Its
-/// samples, which only ever become more, are kept apart from the rest.
+/// A run as a file can keep it: all it takes to go on in another process, to the same bits. What
+/// only ever becomes more, samples and profiles of seconds that are over, is kept apart from the
+/// rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Checkpoint {
     pub(super) world: World,
@@ -107,11 +108,14 @@ impl Checkpoint {
         &self.world
     }
 
-    /// The same with the samples of the run until then.
+    /// The same with the samples of the run until then, and the profiles of its flowing layer in
+    /// the first seconds, which are kept apart.
     #[must_use]
-    pub fn with_series(self, series: Series) -> Self {
+    pub fn with_measured(self, series: Series, seconds: Vec<FlowProfile>) -> Self {
+        let rest = Arc::unwrap_or_clone(self.flow).counted_from(seconds.len());
         Self {
             series: Arc::new(series),
+            flow: Arc::new(rest.behind(seconds)),
             ..self
         }
     }

@@ -10,6 +10,7 @@ use super::archive::{Archive, ArchivedEntry, ArchivedState, Table};
 use super::branch::Branch;
 use super::history::{Moment, Position};
 use super::keyframes::Keyframes;
+use super::measured::Stored;
 use super::past::{Journey, News, Past};
 use super::undo::{Changed, Destination, UndoEntry, UndoList};
 use super::{Command, CommandError, Parameter, Run, Script, Snapshot, Value};
@@ -376,6 +377,11 @@ impl Timeline {
     /// Keeps these branches and no others beside the present one.
     pub(crate) fn keep_only(&mut self, kept: Vec<Arc<Branch>>) {
         self.kept = kept;
+    }
+
+    /// Forgets what is `stored` in files of what was measured in the present branch.
+    pub(crate) fn forget_measured(&mut self, stored: Stored) {
+        self.run.forget(stored);
     }
 
     /// Goes on with `threads` threads.

@@ -8,6 +8,7 @@
 use super::branch::Branch;
 use super::check::accept;
 use super::history::Moment;
+use super::measured::{Measured, Stored};
 use super::orientations::{Orientations, Turned};
 use super::sampling::{Pace, Sampling};
 use super::script::Script;
@@ -282,6 +283,22 @@ impl Run {
         outcome
     }
 
+    /// Forgets what is `stored` in files of what was measured, but for the last sample and second:
+    /// the run goes on as it would, and [`Run::series`] and [`Run::flow`] are parts from then on.
+    /// For a run at its end, to which nobody goes back.
+    pub fn forget(&mut self, stored: Stored) {
+        Arc::make_mut(&mut self.branch.series).forget(stored.samples);
+        let flow = self.flow.as_mut().unwrap_or(&mut self.branch.flow);
+        Arc::make_mut(flow).forget(stored.seconds);
+    }
+
+    /// Has all that was `measured` again, after some of it was forgotten.
+    pub fn remember(&mut self, measured: Measured) {
+        self.branch.series = measured.series;
+        self.branch.flow = measured.flow;
+        self.flow = None;
+    }
+
     /// All it takes to go on from here in another process.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
@@ -299,7 +316,7 @@ impl Run {
         self.world = checkpoint.world;
         self.script.forget_past(&self.world.clock);
         self.commands = checkpoint.commands.len();
-        self.samples = checkpoint.series.len();
+        self.samples = checkpoint.series.taken();
         self.branch = Branch {
             history: Arc::new(checkpoint.commands.into_iter().collect()),
             series: checkpoint.series,
@@ -335,7 +352,7 @@ impl Run {
     pub(crate) fn show(&mut self, snapshot: &Snapshot) {
         self.world.clone_from(&snapshot.world);
         self.commands = snapshot.commands.min(self.branch.history.commands().len());
-        self.samples = snapshot.samples.min(self.branch.series.len());
+        self.samples = snapshot.samples.min(self.branch.series.taken());
         self.flow = Some(snapshot.flow.clone());
         self.sampling = snapshot.sampling;
         (self.orientations).jump(&self.world, snapshot.turned.as_deref());
@@ -485,8 +502,7 @@ impl Run {
         if known.is_none_or(|last| *last < sample.step) {
             Arc::make_mut(&mut self.branch.series).push(*sample);
         }
-        let steps = self.branch.series.steps();
-        self.samples = steps.partition_point(|step| *step <= sample.step);
+        self.samples = self.branch.series.taken_until(sample.step);
     }
 
     /// Notes the state as the branch's end, where it is at or beyond it.

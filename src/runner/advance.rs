@@ -5,7 +5,8 @@
 
 use crate::output::RunSoFar;
 use crate::run::{
-    BedStore, Checkpoint, Pieces, Preparation, Prepared, Run, Script, ScriptedCommand,
+    BedStore, Checkpoint, Measured, Pieces, Preparation, Prepared, Run, Script, ScriptedCommand,
+    Stored,
 };
 use crate::scene::Scene;
 use crate::solver::{Fault, advise};
@@ -28,6 +29,12 @@ pub trait Advance {
 
     /// What people should know, in sentences.
     fn warnings(&self) -> Vec<String>;
+
+    /// May forget what is `stored` in files of what was measured; what forgets, remembers.
+    fn forget(&mut self, _stored: Stored) {}
+
+    /// Shows all that was `measured`, after some of it was forgotten.
+    fn remember(&mut self, _measured: Measured) {}
 }
 
 /// Where a run is.
@@ -200,5 +207,17 @@ impl Advance for DirectRun {
         let warning = advice.and_then(|advice| advice.warning);
         warnings.extend(warning.filter(|_| !self.is_warned));
         warnings
+    }
+
+    fn forget(&mut self, stored: Stored) {
+        if let RunStage::Standing(run) = &mut self.stage {
+            run.forget(stored);
+        }
+    }
+
+    fn remember(&mut self, measured: Measured) {
+        if let RunStage::Standing(run) = &mut self.stage {
+            run.remember(measured);
+        }
     }
 }

@@ -1,27 +1,30 @@
 //! Checkpoints: a run as it stood, kept in its folder, so that a run that was stopped can go on.
 //!
-//! In: a run and what was written of it. Out: two files, and from them the same: a log of samples
-//! that grows at its end, and the rest, with how much of the log belongs to it. A finished run
+//! In: a run and what was written of it. Out: three files, and from them the same: logs of samples
+//! and of profiles that grow at their ends, and the rest, with how much of the logs belongs to it.
+//! So a run may forget what it measured, and has it read again at its end. A finished run
 //! keeps its last checkpoint: a longer duration goes on from there. Whether what is found belongs
 //! to the run that is asked for is said with the reason; what to do then is decided by the caller.
 
 use super::Job;
-use crate::files::{GrowingFile, open_regular, read_whole, write_whole};
-use crate::measure::{Measure, Sample, Series};
-use crate::output::{CHECKPOINT, OutputError, RunSoFar, SAMPLES, Written};
-use crate::run::{Checkpoint, CheckpointParts, VERSION};
+use super::log::{Log, LogPart};
+use crate::files::{open_regular, read_whole, write_whole};
+use crate::measure::{FlowProfile, Measure, Sample, Series};
+use crate::output::{CHECKPOINT, OutputError, PROFILES, RunSoFar, SAMPLES, Written};
+use crate::run::{Checkpoint, CheckpointParts, Measured, Stored, VERSION};
 use crate::scene::Scene;
 use crate::solver::advise;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Read};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What the file begins with.
 const MARK: &str = "grainfall checkpoint";
 /// Raised whenever the file is laid out otherwise.
-const LAYOUT: &str = "6";
+const LAYOUT: &str = "7";
 /// Largest file of a checkpoint that is read [bytes].
 const LARGEST: u64 = 16 << 30;
 /// Most of the file in which its first line ends.
@@ -49,9 +52,9 @@ pub struct Kept {
 struct Contents<R> {
     run: R,
     written: Written,
-    /// How many samples of the log belong to it, and the digest of these.
-    samples: u64,
-    digest: [u8; blake3::OUT_LEN],
+    /// What of the logs belongs to it.
+    samples: LogPart,
+    profiles: LogPart,
 }
 
 /// What became of looking for a checkpoint.
@@ -70,10 +73,14 @@ pub struct CheckpointFile {
     /// What the run is: scene and script. How long it goes on does not matter, nor, where no grains
     /// are written, how often they would be.
     key: blake3::Hash,
-    log: SampleLog,
+    samples: Log,
+    /// Profiles of the flowing layer in seconds that are over.
+    profiles: Log,
     written: Instant,
     /// Wall-clock time that the last one took.
     cost: Duration,
+    /// Whether one is due at every look, as tests ask for.
+    is_always_due: bool,
 }
 
 impl CheckpointFile {
@@ -98,11 +105,19 @@ impl CheckpointFile {
             .map_err(|error| OutputError::write(&path, io::Error::other(error)))?;
         Ok(Self {
             key: blake3::hash(&all),
-            log: SampleLog::new(job.out.join(SAMPLES)),
+            samples: Log::new(job.out.join(SAMPLES)),
+            profiles: Log::new(job.out.join(PROFILES)),
             path,
             written: Instant::now(),
             cost: Duration::ZERO,
+            is_always_due: false,
         })
+    }
+
+    /// Makes a checkpoint due at every look.
+    #[cfg(test)]
+    pub fn keep_always(&mut self) {
+        self.is_always_due = true;
     }
 
     /// Why what is there cannot be gone on with by this run, as far as its first line says.
@@ -132,13 +147,38 @@ impl CheckpointFile {
             Ok(contents) => contents,
             Err(error) => return CheckpointLookup::Unusable(damaged(&error)),
         };
-        match self.log.read(contents.samples, contents.digest) {
-            Ok(series) => CheckpointLookup::Kept(Box::new(Kept {
-                checkpoint: contents.run.with_series(series),
+        let samples = self.samples.go_on(contents.samples);
+        let profiles = self.profiles.go_on(contents.profiles);
+        let measured = samples.and_then(|samples| Ok((series(&samples), seconds(&profiles?)?)));
+        match measured {
+            Ok((series, seconds)) => CheckpointLookup::Kept(Box::new(Kept {
+                checkpoint: contents.run.with_measured(series, seconds),
                 written: contents.written,
             })),
-            Err(reason) => CheckpointLookup::Unusable(damaged(&reason)),
+            Err(error) => CheckpointLookup::Unusable(damaged(&error)),
         }
+    }
+
+    /// How much of what was measured is kept.
+    pub fn stored(&self) -> Stored {
+        Stored {
+            samples: self.samples.records(),
+            seconds: self.profiles.records(),
+        }
+    }
+
+    /// All that was measured of `run`, which may have forgotten what is kept.
+    ///
+    /// # Errors
+    /// When that cannot be read.
+    pub fn measured(&self, run: RunSoFar) -> Result<Measured, OutputError> {
+        let samples = self.samples.read()?;
+        let seconds = seconds(&self.profiles.read()?);
+        let seconds = seconds.map_err(|error| self.profiles.unreadable(error))?;
+        Ok(Measured {
+            series: Arc::new(run.series.behind(series(&samples))),
+            flow: Arc::new(run.flow.behind(seconds)),
+        })
     }
 
     /// What stands behind the first line of `bytes`.
@@ -193,7 +233,7 @@ impl CheckpointFile {
         } else {
             affordable.max(CHECKPOINT_TIME)
         };
-        self.written.elapsed() >= spacing
+        self.is_always_due || self.written.elapsed() >= spacing
     }
 
     /// Keeps `run`, of which so much was `written`; the work for it `started` then.
@@ -206,15 +246,13 @@ impl CheckpointFile {
         written: Written,
         started: Instant,
     ) -> Result<(), OutputError> {
-        self.log
-            .add(run.series)
-            .map_err(|source| OutputError::write(&self.log.path, source))?;
-        let parts = CheckpointParts::of(run.world, run.commands, run.sampling, run.flow);
+        self.add_measured(run)?;
+        let rest = run.flow.rest(self.profiles.records());
         let contents = Contents {
-            run: parts,
+            run: CheckpointParts::of(run.world, run.commands, run.sampling, &rest),
             written,
-            samples: run.series.len() as u64,
-            digest: *self.log.digest.finalize().as_bytes(),
+            samples: self.samples.part(),
+            profiles: self.profiles.part(),
         };
         let failed = |source| OutputError::write(&self.path, source);
         let contents =
@@ -229,68 +267,44 @@ impl CheckpointFile {
         self.cost = started.elapsed();
         Ok(())
     }
+
+    /// Adds what was measured of `run` since the last checkpoint to the logs.
+    fn add_measured(&mut self, run: RunSoFar) -> Result<(), OutputError> {
+        let new = run.series.since(self.samples.records());
+        let bytes: Vec<u8> = new.flat_map(|sample| bytes_of(&sample)).collect();
+        self.samples.add(&bytes, run.series.taken())?;
+        let (known, done) = (self.profiles.records(), run.flow.done());
+        let new = run.flow.profiles_since(known).iter();
+        let mut bytes = Vec::new();
+        for profile in new.take(done.saturating_sub(known)) {
+            let failed = |error| OutputError::write(&self.path, io::Error::other(error));
+            bytes.extend(postcard::to_stdvec(profile).map_err(failed)?);
+        }
+        self.profiles.add(&bytes, known.max(done))
+    }
 }
 
 fn damaged(reason: &dyn Display) -> String {
     format!("its checkpoint cannot be used: {reason}")
 }
 
-/// Samples one behind the other, each with as many bytes.
-struct SampleLog {
-    path: PathBuf,
-    file: Option<GrowingFile>,
-    /// Samples that are in it.
-    samples: usize,
-    /// Of these.
-    digest: blake3::Hasher,
+/// The samples that the `bytes` of the log hold.
+fn series(bytes: &[u8]) -> Series {
+    let mut series = Series::default();
+    let samples = bytes.chunks_exact(SAMPLE_SIZE);
+    samples.for_each(|bytes| series.push(sample(bytes)));
+    series
 }
 
-impl SampleLog {
-    fn new(path: PathBuf) -> Self {
-        Self {
-            path,
-            file: None,
-            samples: 0,
-            digest: blake3::Hasher::new(),
-        }
+/// The profiles that the `bytes` of the log hold.
+fn seconds(mut bytes: &[u8]) -> io::Result<Vec<FlowProfile>> {
+    let mut seconds = Vec::new();
+    while !bytes.is_empty() {
+        let (profile, rest) = postcard::take_from_bytes(bytes).map_err(io::Error::other)?;
+        seconds.push(profile);
+        bytes = rest;
     }
-
-    /// The first `samples` of the file, which have this `digest`; what follows them is forgotten.
-    fn read(&mut self, samples: u64, digest: [u8; blake3::OUT_LEN]) -> Result<Series, String> {
-        let bytes =
-            read_whole(&self.path, LARGEST).map_err(|error| format!("{SAMPLES}: {error}"))?;
-        let length = usize::try_from(samples).ok();
-        let length = length.and_then(|samples| samples.checked_mul(SAMPLE_SIZE));
-        let bytes = length.and_then(|length| bytes.get(..length));
-        let bytes = bytes.ok_or_else(|| format!("{SAMPLES} was cut off"))?;
-        self.digest.update(bytes);
-        if *self.digest.finalize().as_bytes() != digest {
-            return Err(format!("the digest of {SAMPLES} does not fit"));
-        }
-        let mut series = Series::default();
-        bytes
-            .chunks_exact(SAMPLE_SIZE)
-            .for_each(|bytes| series.push(sample(bytes)));
-        let file = GrowingFile::go_on(&self.path, bytes.len() as u64);
-        self.file = Some(file.map_err(|error| format!("{SAMPLES}: {error}"))?);
-        self.samples = series.len();
-        Ok(series)
-    }
-
-    /// Adds what of `series` is not in it yet, durably.
-    fn add(&mut self, series: &Series) -> io::Result<()> {
-        let new = (self.samples..series.len()).filter_map(|index| series.get(index));
-        let bytes: Vec<u8> = new.flat_map(|sample| bytes_of(&sample)).collect();
-        if let Some(file) = &mut self.file {
-            file.add(&bytes)?;
-            file.sync()?;
-        } else {
-            self.file = Some(GrowingFile::begin(&self.path, &bytes, b"")?);
-        }
-        self.digest.update(&bytes);
-        self.samples = series.len();
-        Ok(())
-    }
+    Ok(seconds)
 }
 
 fn bytes_of(sample: &Sample) -> Vec<u8> {

@@ -7,7 +7,7 @@ use super::checkpoint::{CheckpointFile, CheckpointLookup, Kept};
 use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
 use crate::measure::Summary;
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
-use crate::run::{Checkpoint, method};
+use crate::run::{Checkpoint, Measured, Stored, method};
 use crate::world::Clock;
 use std::fmt;
 use std::sync::Arc;
@@ -209,6 +209,15 @@ impl Runner {
         })
     }
 
+    /// The same with a checkpoint kept at every look, after which all may be forgotten.
+    #[cfg(test)]
+    pub fn keeping_always(mut self) -> Self {
+        if let Some(file) = &mut self.checkpoints {
+            file.keep_always();
+        }
+        self
+    }
+
     /// Whether the folder holds all of the run already: then it is only read.
     pub fn is_done(&self) -> bool {
         self.is_done
@@ -251,7 +260,11 @@ impl Runner {
         }
         if let Some(view) = view {
             self.keep(view)?;
+            if let Some(measured) = self.forgotten(view)? {
+                run.remember(measured);
+            }
         }
+        let view = run.at().state();
         let results = self.recorder.finish(view, &ending, &self.warnings)?;
         Ok(Finished {
             ending,
@@ -264,12 +277,34 @@ impl Runner {
 
     /// Writes what is due at the present state; returns the step of the next output.
     fn record(&mut self, run: RunSoFar) -> Result<Option<u64>, RunnerError> {
-        let is_output = self.recorder.record(run)?;
+        let all = if self.recorder.rewrites_series(run) {
+            self.forgotten(run)?
+        } else {
+            None
+        };
+        let with_all = all.as_ref().map(|all| RunSoFar {
+            series: &all.series,
+            flow: &all.flow,
+            ..run
+        });
+        let is_output = self.recorder.record(with_all.unwrap_or(run))?;
         let checkpoints = self.checkpoints.as_ref();
         if checkpoints.is_some_and(|file| file.is_due(is_output)) {
             self.keep(run)?;
         }
         Ok(self.recorder.next_output(&run.world.clock))
+    }
+
+    /// All that was measured of `run`, where some of it was forgotten.
+    fn forgotten(&self, run: RunSoFar) -> Result<Option<Measured>, OutputError> {
+        let is_part = run.series.is_part() || run.flow.is_part();
+        let file = self.checkpoints.as_ref().filter(|_| is_part);
+        file.map(|file| file.measured(run)).transpose()
+    }
+
+    /// What of the run may be forgotten: it stands in the table of samples and in the checkpoint.
+    fn stored(&self) -> Stored {
+        (self.checkpoints.as_ref()).map_or_else(Stored::default, CheckpointFile::stored)
     }
 
     /// Keeps a checkpoint, if any is to be kept.
@@ -386,6 +421,7 @@ pub fn drive(
     stop: &dyn Fn() -> bool,
 ) -> Result<Ending, RunnerError> {
     let mut pace = Pace::new();
+    let mut told = Stored::default();
     loop {
         let goal = match run.at() {
             At::Preparing { stage, share } => {
@@ -408,6 +444,11 @@ pub fn drive(
         };
         if stop() {
             return Ok(Ending::Interrupted);
+        }
+        let stored = (runner.as_ref()).map_or(told, |runner| runner.stored());
+        if stored != told {
+            run.forget(stored);
+            told = stored;
         }
         match run.advance(goal) {
             Ok(()) => {}

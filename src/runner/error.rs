@@ -41,7 +41,10 @@ impl RunnerError {
                 exit::BAD_INPUT
             }
             Self::Output(OutputError::Taken { .. }) => exit::IN_USE,
-            Self::System(_) | Self::Output(OutputError::Write { .. }) => exit::NOT_WRITTEN,
+            Self::System(_)
+            | Self::Output(OutputError::Write { .. } | OutputError::Read { .. }) => {
+                exit::NOT_WRITTEN
+            }
         }
     }
 }

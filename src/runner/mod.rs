@@ -12,6 +12,7 @@
 //! | `verify` | computing again what a file states |
 //! | `drive` | the loop, and how a run ended |
 //! | `checkpoint` | going on after a stop |
+//! | `log` | what was measured, in files that grow |
 //! | `advance` | what the loop moves: a run in short pieces |
 //! | `job` | what to run and where its files go |
 //! | `setting`, `commands_file` | `--set`, `--commands`: what is changed about a run |
@@ -26,6 +27,7 @@ mod drive;
 mod error;
 pub mod exit;
 mod job;
+mod log;
 mod setting;
 mod verify;
 mod watch;
@@ -41,3 +43,5 @@ pub use watch::{Watch, spoken};
 
 #[cfg(test)]
 mod faults;
+#[cfg(test)]
+mod forgetting;

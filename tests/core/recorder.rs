@@ -1,12 +1,14 @@
 //! Claims about when a run is measured: samples follow what happens, and nothing else.
 
 use crate::runs::{prepared, shared_beds};
+use grainfall::lab::{DriverKind, Lab, LabCommand, Options};
 use grainfall::measure::{Measure, Sample, Series};
-use grainfall::run::{Command, Parameter, Run};
+use grainfall::run::{BedStore, Command, Parameter, Run, Stored};
 use grainfall::scene::{SAMPLE_INTERVAL, Scene};
 use grainfall::solver::{Solver, advise};
 use grainfall::world;
 use std::ops::Range;
+use std::time::Duration;
 
 /// Fewest samples of an impact.
 const OF_IMPACT: usize = 20;
@@ -196,4 +198,39 @@ fn a_stated_interval_is_kept_and_moves_no_grain() {
         .unwrap_err()
         .to_string();
     assert!(refused.contains("at most a million samples"), "{refused}");
+}
+
+/// A run without a window whose samples stand in files keeps only the last ones.
+#[test]
+fn a_lab_forgets_what_it_is_told_to_and_samples_on_as_before() {
+    let mut scene = scene("small-drum");
+    scene.set("count", "20").unwrap();
+    let come = |forgets: bool| {
+        let options = Options {
+            driver: DriverKind::Inline,
+            threads: 1,
+            beds: BedStore::none(),
+            ..Options::headless()
+        };
+        let mut lab = Lab::open(scene.clone(), options);
+        for step in [2000, 4000, 6000] {
+            lab.send(LabCommand::Hold(Some(step)));
+            while lab.world().is_none_or(|world| world.clock.step < step) {
+                lab.tick(Duration::from_millis(1));
+            }
+            if forgets {
+                let (samples, seconds) = (lab.series().taken(), 0);
+                lab.send(LabCommand::ForgetMeasured(Stored { samples, seconds }));
+            }
+        }
+        lab.tick(Duration::ZERO);
+        lab
+    };
+    let [all, part] = [false, true].map(come);
+    assert_eq!(all.world().unwrap().hash(), part.world().unwrap().hash());
+    assert_eq!((all.series().is_part(), part.series().len()), (false, 1));
+    assert_eq!(part.series().taken(), all.series().len());
+    assert_eq!(part.sampling(), all.sampling());
+    let last = |lab: &Lab| lab.sample().map(|sample| sample.values.map(f64::to_bits));
+    assert_eq!(last(&part), last(&all));
 }

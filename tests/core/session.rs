@@ -306,8 +306,22 @@ fn simulation_knows_what_no_file_holds_and_reopens_as_it_was() {
             "a file is no folder"
         );
         assert!(simulation.is_unsaved());
+        // Kept for the case that the program is killed, it does not count as saved.
+        let aside = path.with_file_name("rescued.grainfall");
+        for path in [&aside, &nowhere, &nowhere] {
+            let (path, look) = (path.clone(), "a look".into());
+            simulation.send(LabCommand::Rescue { path, look });
+        }
+        tick_until(&mut simulation, held);
+        assert!(simulation.is_unsaved() && simulation.take_saved().is_empty());
+        let warnings = simulation.warnings().iter();
+        let told = warnings.filter(|text| text.contains("would be lost"));
+        assert_eq!(told.count(), 1, "{:?}", simulation.warnings());
+        let rescued = Session::read(&aside).unwrap().record().state_hash.clone();
         assert_eq!(saved(&mut simulation, &path), None);
         assert!(!simulation.is_unsaved());
+        let kept = Session::read(&path).unwrap().record().state_hash.clone();
+        assert_eq!(rescued, kept);
 
         let session = Session::read(&path).unwrap();
         assert_eq!(*session.original(), original);
