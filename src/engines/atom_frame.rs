@@ -4,7 +4,7 @@
 //! numbers, or a [`FrameError`] that says what is wrong and where.
 
 use crate::physics::limits::{self, Limits};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -21,8 +21,10 @@ pub struct Atom {
     pub velocity: DVec3,
     /// Angular velocity [rad/s].
     pub spin: DVec3,
-    /// Radius [m].
+    /// Radius; of a polyhedron the distance of its farthest point from its centroid [m].
     pub radius: f64,
+    /// Rotation from body axes to the world's, of polyhedra.
+    pub orientation: Option<DQuat>,
     /// Density [kg/m³], where the file states it.
     pub density: Option<f64>,
     /// Force, weight included [N], where the file states it.

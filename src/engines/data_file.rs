@@ -92,6 +92,7 @@ fn atom([id, kind, diameter, density, x, y, z]: &[f64; 7]) -> Atom {
         velocity: DVec3::ZERO,
         spin: DVec3::ZERO,
         radius: 0.5 * diameter,
+        orientation: None,
         density: Some(*density),
         force: None,
     }

@@ -7,7 +7,7 @@
 use super::atoms_file::DomainBox;
 use super::wall_mesh::WallMesh;
 use crate::scene::{Scene, TimeStep};
-use crate::world::{Shape, Surface, Wall, World};
+use crate::world::{Clock, Shape, Surface, Wall, World};
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -54,11 +54,10 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Those of `handed`.
-    pub fn of(handed: Handed) -> Self {
-        let clock = &handed.world.clock;
-        let output = clock.step_at(handed.scene.output_interval).max(1);
-        let run = clock.step_at(handed.scene.duration).max(1);
+    /// Those of `scene` by this `clock`.
+    pub fn of(scene: &Scene, clock: &Clock) -> Self {
+        let output = clock.step_at(scene.output_interval).max(1);
+        let run = clock.step_at(scene.duration).max(1);
         Self {
             run: run.div_ceil(output).saturating_mul(output),
             output,
@@ -70,7 +69,7 @@ impl Steps {
 /// run.
 pub fn run_lines(handed: Handed, format: &str) -> String {
     let world = handed.world;
-    let steps = Steps::of(handed);
+    let steps = Steps::of(handed.scene, &world.clock);
     let mut text = format!(
         "timestep {:e}\nfix motion all nve/sphere\n",
         world.clock.time_step
@@ -92,13 +91,20 @@ pub fn run_lines(handed: Handed, format: &str) -> String {
     )
 }
 
-/// What no engine can take of `handed`, in sentences.
+/// What engines of spheres cannot take of `handed`, in sentences.
 pub fn refused(handed: Handed) -> Vec<String> {
+    let mut refused = refused_by_all(handed);
+    if handed.world.polyhedra.is_some() {
+        let reason = "its grains are polyhedra: this engine computes spheres; `--to exadem` computes polyhedra";
+        refused.insert(0, reason.to_owned());
+    }
+    refused
+}
+
+/// What no engine can take of `handed`, in sentences.
+pub fn refused_by_all(handed: Handed) -> Vec<String> {
     let Handed { scene, world, .. } = handed;
     let mut refused = Vec::new();
-    if world.polyhedra.is_some() {
-        refused.push("its grains are polyhedra: these engines compute spheres".to_owned());
-    }
     if scene.time_step == TimeStep::Following {
         refused.push(
             "its time step follows its limit: the engine's is fixed; `--time-step automatic` or a time fixes it"
@@ -148,16 +154,21 @@ pub fn common_deviations(handed: Handed) -> Vec<String> {
          (docs/validation.md)."
             .to_owned(),
     );
-    let clock = &world.clock;
-    let steps = Steps::of(handed);
+    found.extend(uneven_dumps(scene, &world.clock));
+    found
+}
+
+/// That outputs are no whole number of steps of `clock` apart, where that is so.
+pub fn uneven_dumps(scene: &Scene, clock: &Clock) -> Option<String> {
+    let steps = Steps::of(scene, clock);
     let output = steps.output as f64 * clock.time_step;
-    if (output / scene.output_interval - 1.0).abs() > 1e-9 {
-        found.push(format!(
+    let is_uneven = (output / scene.output_interval - 1.0).abs() > 1e-9;
+    is_uneven.then(|| {
+        format!(
             "Dumps are {} steps, {output:e} s, apart, no whole number of steps being {:e} s.",
             steps.output, scene.output_interval
-        ));
-    }
-    found
+        )
+    })
 }
 
 /// The box round walls and grains, wide enough for squares and drums that turn, and how it ends:

@@ -93,6 +93,7 @@ impl Columns {
             velocity: vector(self.velocity)?,
             spin: self.spin.map_or(Ok(DVec3::ZERO), vector)?,
             radius: number(self.radius.0)? * self.radius.1,
+            orientation: None,
             density: self.density.map(number).transpose()?,
             force: self.force.map(vector).transpose()?,
         })

@@ -7,15 +7,17 @@
 use super::atom_types::{AtomTypes, GrainType};
 use super::atoms_file::write_atoms;
 use super::deck::{DUMPS, Deck, GRAINS, Handed, Steps};
+use super::exadem_deck::{self, exadem_deck};
 use super::lammps_deck::{self, lammps_deck};
 use super::liggghts_deck::{self, liggghts_deck};
 use super::mpi_engine::MpiEngine;
+use super::rockable_files::{BODIES, BodyKinds, SHAPES};
 use crate::files::{holds_files, read_whole, write_whole};
 use crate::output::OutputError;
 use crate::physics::limits;
 use crate::run::{Provenance, ScriptedCommand, VERSION, printable};
 use crate::scene::{Scene, within_folders};
-use crate::world::World;
+use crate::world::{Clock, World};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use std::fs;
@@ -105,6 +107,25 @@ pub struct Exported {
     pub deviations: Vec<String>,
     /// Steps that the engine is to compute, and between two dumps.
     pub steps: Steps,
+    /// The engine's time step [s].
+    pub time_step: f64,
+}
+
+/// What an engine takes.
+struct Package {
+    types: AtomTypes,
+    script: String,
+    clock: Clock,
+    deviations: Vec<String>,
+    grains: GrainFiles,
+}
+
+/// The files of grains, and of what moves beside them.
+enum GrainFiles {
+    /// A data file of spheres, and meshes of walls.
+    Spheres(Box<Deck>),
+    /// Shapes and bodies.
+    Polyhedra(BodyKinds),
 }
 
 /// Writes what `engine` takes to compute `export` to the folder `out`.
@@ -126,9 +147,9 @@ pub fn export(export: Export, engine: MpiEngine, out: &Path) -> Result<Exported,
         engine,
         reasons: reasons.iter().map(|reason| printable(reason)).collect(),
     };
-    let (types, mut deck) = deck(handed, engine).map_err(refuse)?;
+    let mut package = package(handed, engine).map_err(refuse)?;
     // They name walls as the scene does.
-    (deck.deviations.iter_mut()).for_each(|deviation| *deviation = printable(deviation));
+    (package.deviations.iter_mut()).for_each(|deviation| *deviation = printable(deviation));
     open(out)?;
     let record = ExportRecord {
         program: PROGRAM.to_owned(),
@@ -137,76 +158,137 @@ pub fn export(export: Export, engine: MpiEngine, out: &Path) -> Result<Exported,
         name: export.name.to_owned(),
         scene: export.scene.clone(),
         commands: export.commands.to_vec(),
-        time_step: export.world.clock.time_step,
-        types: types.grains.clone(),
-        deviations: deck.deviations.clone(),
+        time_step: package.clock.time_step,
+        types: package.types.grains.clone(),
+        deviations: package.deviations.clone(),
     };
-    let mut files = Vec::new();
-    let mut write = |name: &str, fill: &dyn Fn(&mut dyn Write) -> io::Result<()>| {
-        let path = out.join(name);
-        files.push(name.to_owned());
-        write_whole(&path, fill).map_err(|source| OutputError::write(&path, source))
-    };
+    let mut files = Files::new(out);
     // First, so that a folder that was begun is known as one of ours.
-    write(RECORD, &|file| {
+    files.write(RECORD, &|file| {
         serde_json::to_writer_pretty(&mut *file, &record)?;
         file.write_all(b"\n")
     })?;
-    write(GRAINS, &|file| {
-        write_atoms(
-            export.world,
-            (&types, deck.types),
-            &deck.domain,
-            &from,
-            file,
-        )
+    write_grains(&package, handed, &mut files)?;
+    files.write(&script_name(engine), &|file| {
+        file.write_all(package.script.as_bytes())
     })?;
-    for mesh in &deck.meshes {
-        write(&format!("{}.stl", mesh.name), &|file| mesh.write(file))?;
-    }
-    let script = script_name(engine);
-    write(&script, &|file| file.write_all(deck.script.as_bytes()))?;
-    write(RUN, &|file| file.write_all(run_script(engine).as_bytes()))?;
-    write(DEVIATIONS, &|file| {
-        file.write_all(deviations_text(engine, &from, &deck.deviations).as_bytes())
+    files.write(RUN, &|file| file.write_all(run_script(engine).as_bytes()))?;
+    files.write(DEVIATIONS, &|file| {
+        file.write_all(deviations_text(engine, &from, &package.deviations).as_bytes())
     })?;
     Ok(Exported {
-        files,
-        deviations: deck.deviations,
-        steps: Steps::of(handed),
+        files: files.names,
+        deviations: package.deviations,
+        steps: Steps::of(export.scene, &package.clock),
+        time_step: package.clock.time_step,
     })
 }
 
-/// The types and the deck for `engine`.
-fn deck(handed: Handed, engine: MpiEngine) -> Result<(AtomTypes, Deck), Vec<String>> {
+/// Files that are written to a folder, each whole or not at all.
+struct Files<'a> {
+    folder: &'a Path,
+    names: Vec<String>,
+}
+
+impl<'a> Files<'a> {
+    fn new(folder: &'a Path) -> Self {
+        let names = Vec::new();
+        Self { folder, names }
+    }
+
+    /// Writes the file called `name`, as `fill` does.
+    fn write(
+        &mut self,
+        name: &str,
+        fill: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let path = self.folder.join(name);
+        self.names.push(name.to_owned());
+        write_whole(&path, fill).map_err(|source| OutputError::write(&path, source))
+    }
+}
+
+/// Writes the files of the grains of `package`.
+fn write_grains(package: &Package, handed: Handed, files: &mut Files) -> Result<(), OutputError> {
+    let (world, title) = (handed.world, handed.title);
+    match &package.grains {
+        GrainFiles::Spheres(deck) => {
+            let types = (&package.types, deck.types);
+            files.write(GRAINS, &|file| {
+                write_atoms(world, types, &deck.domain, title, file)
+            })?;
+            for mesh in &deck.meshes {
+                files.write(&format!("{}.stl", mesh.name), &|file| mesh.write(file))?;
+            }
+        }
+        GrainFiles::Polyhedra(kinds) => {
+            if let Some(bodies) = &world.polyhedra {
+                files.write(SHAPES, &|file| kinds.write_shapes(bodies, title, file))?;
+            }
+            let step = package.clock.time_step;
+            files.write(BODIES, &|file| {
+                kinds.write_bodies(world, &package.types, step, title, file)
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// What `engine` takes of `handed`.
+fn package(handed: Handed, engine: MpiEngine) -> Result<Package, Vec<String>> {
     let alone = |reason| vec![reason];
+    let world = handed.world;
+    let of_spheres = |types, mut deck: Deck| Package {
+        types,
+        script: std::mem::take(&mut deck.script),
+        clock: world.clock,
+        deviations: std::mem::take(&mut deck.deviations),
+        grains: GrainFiles::Spheres(Box::new(deck)),
+    };
     match engine {
         MpiEngine::Liggghts => {
-            let types = liggghts_deck::types(handed.world).map_err(alone)?;
+            let types = liggghts_deck::types(world).map_err(alone)?;
             let deck = liggghts_deck(handed, &types)?;
-            Ok((types, deck))
+            Ok(of_spheres(types, deck))
         }
         MpiEngine::Lammps => {
-            let types = lammps_deck::types(handed.world).map_err(alone)?;
+            let types = lammps_deck::types(world).map_err(alone)?;
             let deck = lammps_deck(handed, &types)?;
-            Ok((types, deck))
+            Ok(of_spheres(types, deck))
+        }
+        MpiEngine::Exadem => {
+            let types = exadem_deck::types(world).map_err(alone)?;
+            let deck = exadem_deck(handed, &types)?;
+            Ok(Package {
+                types,
+                script: deck.script,
+                clock: deck.clock,
+                deviations: deck.deviations,
+                grains: GrainFiles::Polyhedra(BodyKinds::of(world)),
+            })
         }
     }
 }
 
-/// `in.liggghts`.
+/// `in.liggghts`, or `grains.msp`.
 fn script_name(engine: MpiEngine) -> String {
-    format!("in.{}", engine.word())
+    match engine {
+        MpiEngine::Liggghts | MpiEngine::Lammps => format!("in.{}", engine.word()),
+        MpiEngine::Exadem => "grains.msp".to_owned(),
+    }
 }
 
 fn run_script(engine: MpiEngine) -> String {
-    let (name, program) = (engine.name(), engine.program());
+    let (name, program, variable) = (engine.name(), engine.program(), engine.variable());
+    let option = match engine {
+        MpiEngine::Liggghts | MpiEngine::Lammps => "-in ",
+        MpiEngine::Exadem => "",
+    };
     format!(
-        "#!/bin/sh\n# Runs {name} on as many processes as are asked for (2): sh run.sh 8\n# MPIRUN and {upper} name \
-         other programs: MPIRUN='mpirun --oversubscribe' {upper}=/opt/{program} sh run.sh 8\nset -e\ncd \"$(dirname \
-         \"$0\")\"\nmkdir -p {DUMPS}\nexec ${{MPIRUN:-mpirun}} -np \"${{1:-2}}\" ${{{upper}:-{program}}} -in {}\n",
+        "#!/bin/sh\n# Runs {name} on as many processes as are asked for (2): sh run.sh 8\n# MPIRUN and {variable} name \
+         other programs: MPIRUN='mpirun --oversubscribe' {variable}=/opt/{program} sh run.sh 8\nset -e\ncd \"$(dirname \
+         \"$0\")\"\nmkdir -p {DUMPS}\nexec ${{MPIRUN:-mpirun}} -np \"${{1:-2}}\" ${{{variable}:-{program}}} {option}{}\n",
         script_name(engine),
-        upper = name
     )
 }
 

@@ -1,4 +1,4 @@
-//! Files of an engine, whichever of both kinds they are.
+//! Files of an engine, whichever of the kinds they are.
 //!
 //! In: paths. Out: the instants that they hold, one at a time, in order of their steps.
 
@@ -6,18 +6,25 @@ use super::atom_frame::{AtomFrame, FrameError};
 use super::data_file::read_data_file;
 use super::dump_file::next_frame;
 use super::lines::Lines;
+use super::xyz_file::read_xyz_file;
 use std::path::Path;
+
+/// How names of dumps end.
+pub const DUMP: &str = "dump";
+/// How names of extended XYZ end.
+pub const XYZ: &str = "xyz";
 
 /// A file that is being read.
 pub enum FrameFile {
     /// A dump.
     Dump(Box<Lines>),
-    /// A data file, which holds one instant; none once it was taken.
-    Data(Option<AtomFrame>),
+    /// A data file or extended XYZ, which hold one instant; none once it was taken.
+    One(Option<AtomFrame>),
 }
 
 impl FrameFile {
-    /// The file at `path`: a dump where it begins with `ITEM:`, else a data file.
+    /// The file at `path`: a dump where it begins with `ITEM:`, extended XYZ where it is called so,
+    /// else a data file.
     ///
     /// # Errors
     /// When it cannot be read, or is neither.
@@ -31,7 +38,12 @@ impl FrameFile {
         if is_dump {
             return Ok(Self::Dump(Box::new(lines)));
         }
-        Ok(Self::Data(Some(read_data_file(&mut lines)?)))
+        let frame = if path.extension().is_some_and(|word| word == XYZ) {
+            read_xyz_file(&mut lines)?
+        } else {
+            read_data_file(&mut lines)?
+        };
+        Ok(Self::One(Some(frame)))
     }
 
     /// The next instant; none at the end.
@@ -41,15 +53,15 @@ impl FrameFile {
     pub fn next_frame(&mut self) -> Result<Option<AtomFrame>, FrameError> {
         match self {
             Self::Dump(lines) => next_frame(lines),
-            Self::Data(frame) => Ok(frame.take()),
+            Self::One(frame) => Ok(frame.take()),
         }
     }
 
-    /// Bytes of a dump that were read until now; a data file is read as a whole.
+    /// Bytes of a dump that were read until now; other files are read as a whole.
     pub fn taken(&self) -> u64 {
         match self {
             Self::Dump(lines) => lines.taken(),
-            Self::Data(_) => 0,
+            Self::One(_) => 0,
         }
     }
 }

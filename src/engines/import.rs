@@ -8,7 +8,7 @@
 use super::atom_types::GrainType;
 use super::deck::DUMPS;
 use super::export::{ExportRecord, RECORD};
-use super::frames::FrameFile;
+use super::frames::{DUMP, FrameFile, XYZ};
 use super::imported_state::{StateBuilder, without_unknown};
 use super::mpi_engine::MpiEngine;
 use super::{AtomFrame, FrameError};
@@ -24,8 +24,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most that a stated time may differ from that of its step, relative to it.
-const SAME_TIME: f64 = 1e-6;
+/// Most that a stated time may differ from that of its step, relative to it; some state six digits.
+const SAME_TIME: f64 = 1e-5;
 
 /// Why an engine's files cannot be taken in.
 #[derive(Debug, thiserror::Error)]
@@ -111,12 +111,6 @@ impl ImportSource {
 
     /// The scene's world at time zero, with what was changed then.
     fn template(&self) -> Result<(World, Vec<StampedCommand>), ImportError> {
-        if self.scene.is_polyhedral() {
-            return Err(ImportError::Unfit(format!(
-                "the grains of {} are polyhedra; dumps of spheres belong to a scene of spheres",
-                self.name
-            )));
-        }
         let world = build(&self.scene, self.time_step);
         let unfit = |reason: String| ImportError::Unfit(format!("{}: {reason}", self.name));
         let script = Script::new(&self.commands, &world.clock);
@@ -171,13 +165,16 @@ pub fn named_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, ImportError> {
         let before = files.len();
         for entry in fs::read_dir(&folder).map_err(unread)? {
             let path = entry.map_err(unread)?.path();
-            if path.extension().is_some_and(|word| word == "dump") {
+            if path
+                .extension()
+                .is_some_and(|word| word == DUMP || word == XYZ)
+            {
                 files.push(path);
             }
         }
         if files.len() == before {
             return Err(ImportError::Unfit(format!(
-                "{} holds no dumps (files `*.dump`): has the engine run?",
+                "{} holds no dumps (files `*.{DUMP}` or `*.{XYZ}`): has the engine run?",
                 folder.display()
             )));
         }
@@ -341,7 +338,15 @@ impl Recording {
 
 /// A scene that begins with the grains of `world`, a state of `scene`: each as it is then, in the
 /// same container.
-pub fn scene_from(scene: &Scene, world: &World) -> Scene {
+///
+/// # Errors
+/// In words, where they are polyhedra, which no list states.
+pub fn scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
+    if world.polyhedra.is_some() {
+        return Err(
+            "A run goes on from a state of spheres alone: run this scene from its start".into(),
+        );
+    }
     let grains = &world.grains;
     let listed = |i: usize| {
         let species = &world.species[usize::from(grains.species[i].0)];
@@ -356,10 +361,10 @@ pub fn scene_from(scene: &Scene, world: &World) -> Scene {
             film: world.wetting().map(|_| grains.film[i]),
         }
     };
-    Scene {
+    Ok(Scene {
         grains: SceneGrains::List((0..grains.len()).map(listed).collect()),
         ..scene.clone()
-    }
+    })
 }
 
 /// The same, where that is a scene that can be run.
@@ -367,11 +372,6 @@ pub fn scene_from(scene: &Scene, world: &World) -> Scene {
 /// # Errors
 /// In words, why it is none.
 pub fn sound_scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
-    if world.polyhedra.is_some() {
-        return Err(
-            "A run goes on from a state of spheres alone: run this scene from its start".into(),
-        );
-    }
     let moves = |wall: &Wall| wall.motion.velocity != DVec3::ZERO;
     if world.time() > 0.0 && world.container.walls.iter().any(moves) {
         return Err(
@@ -379,7 +379,7 @@ pub fn sound_scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
                 .into(),
         );
     }
-    let mut scene = scene_from(scene, world);
+    let mut scene = scene_from(scene, world)?;
     scene.title = format!("{}, from t = {:.3} s", scene.title, world.time());
     scene.check().map_err(|error| error.to_string())?;
     Ok(scene)

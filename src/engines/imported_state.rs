@@ -8,7 +8,7 @@ use super::atom_frame::{Atom, AtomFrame};
 use super::atom_types::GrainType;
 use crate::measure::{Measure, Sample};
 use crate::solver::Solver;
-use crate::world::{Clock, Grains, Ledger, World};
+use crate::world::{Clock, Grains, Ledger, Polyhedra, World};
 use glam::DVec3;
 
 /// What a sample of an imported state has no value of: it takes forces, or what contacts remember.
@@ -25,6 +25,9 @@ const UNKNOWN: [Measure; 11] = [
     Measure::EnergyResidual,
     Measure::DrumTorque,
 ];
+
+/// Most that the stated radius of a body may differ from its shape's, relative to it.
+const SAME_RADIUS: f64 = 1e-6;
 
 /// Makes states of frames.
 pub struct StateBuilder {
@@ -55,10 +58,13 @@ impl StateBuilder {
     pub fn state(&mut self, frame: &AtomFrame, time_step: f64) -> Result<World, String> {
         let mut world = World {
             clock: Clock::new(time_step),
-            grains: self.grains(frame)?,
             contacts: Vec::new(),
             ..self.template.clone()
         };
+        match &mut world.polyhedra {
+            Some(polyhedra) => place_bodies(frame, &mut world.grains, polyhedra)?,
+            None => world.grains = self.grains(frame)?,
+        }
         if let Some(volume) = world.liquid.map(|liquid| liquid.volume) {
             // From none, it is spread over the grains that there are.
             world.set_liquid_volume(0.0);
@@ -79,6 +85,9 @@ impl StateBuilder {
 
     fn grains(&self, frame: &AtomFrame) -> Result<Grains, String> {
         let mut grains = Grains::default();
+        if frame.atoms.iter().any(|atom| atom.orientation.is_some()) {
+            return Err("its grains are polyhedra; the scene's are spheres".to_owned());
+        }
         for atom in &frame.atoms {
             let kind = (atom.kind as usize)
                 .checked_sub(1)
@@ -102,6 +111,43 @@ impl StateBuilder {
     }
 }
 
+/// Puts the bodies that there are at time zero where `frame` has them.
+fn place_bodies(
+    frame: &AtomFrame,
+    grains: &mut Grains,
+    polyhedra: &mut Polyhedra,
+) -> Result<(), String> {
+    if frame.atoms.len() != grains.len() {
+        let (stated, known) = (frame.atoms.len(), grains.len());
+        return Err(format!("{stated} bodies; the scene has {known} grains"));
+    }
+    for (i, atom) in frame.atoms.iter().enumerate() {
+        let id = atom.id;
+        if id != i as u64 + 1 {
+            let last = grains.len() - 1;
+            return Err(format!(
+                "there is no body {i}; expected each from 0 to {last}"
+            ));
+        }
+        let turn = atom.orientation.ok_or_else(|| {
+            format!("grain {id} has no orientation: files of spheres belong to a scene of spheres")
+        })?;
+        let (stated, known) = (atom.radius, grains.radius[i]);
+        if (stated / known - 1.0).abs() > SAME_RADIUS {
+            return Err(format!(
+                "the farthest point of grain {id} is {stated:e} m from its centroid, in the scene {known:e} m: is it \
+                 the scene, and its seed, that was run?"
+            ));
+        }
+        grains.position[i] = atom.position;
+        grains.velocity[i] = atom.velocity;
+        grains.spin[i] = atom.spin;
+        polyhedra.orientation[i] = turn;
+        polyhedra.set_spin(i, atom.spin);
+    }
+    Ok(())
+}
+
 /// What the frame does not state is no number: forces of contacts, and those of grains where the
 /// engine did not write them. It adds the weight to them.
 fn forget_forces(world: &mut World, frame: &AtomFrame) {
@@ -111,6 +157,10 @@ fn forget_forces(world: &mut World, frame: &AtomFrame) {
         contact.spring = DVec3::NAN;
         contact.rolling = DVec3::NAN;
         contact.bridge = None;
+    }
+    for feature in (world.polyhedra.iter_mut()).flat_map(|all| &mut all.features) {
+        feature.spring = DVec3::NAN;
+        feature.dashpot = f64::NAN;
     }
     let (gravity, grains) = (world.gravity, &mut world.grains);
     for (i, atom) in frame.atoms.iter().enumerate() {

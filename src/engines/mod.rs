@@ -1,8 +1,9 @@
 //! Scenes for engines that run on many machines, and what they computed.
 //!
-//! In: a scene and its world at time zero. Out: a folder that LIGGGHTS or LAMMPS runs under MPI.
-//! What the engine does not have is refused, what it does otherwise is said. And back: dumps and data
-//! files of these engines as grains at an instant.
+//! In: a scene and its world at time zero. Out: a folder that LIGGGHTS, LAMMPS or, of polyhedra,
+//! exaDEM runs under MPI.
+//! What the engine does not have is refused, what it does otherwise is said. And back: files of these
+//! engines as grains at an instant.
 //!
 //! Each row of the table uses only rows below it.
 //!
@@ -11,12 +12,13 @@
 //! | `import` | what an engine computed, measured as a run of ours |
 //! | `imported_state` | a frame as a state of a scene |
 //! | `export` | the folder that an engine runs |
-//! | `liggghts_deck`, `lammps_deck` | the engines' scripts |
+//! | `liggghts_deck`, `lammps_deck`, `exadem_deck` | the engines' scripts |
 //! | `liggghts_walls` | walls in the words of LIGGGHTS |
 //! | `deck`, `liggghts_model` | what both have in common; contact laws in the words of LIGGGHTS |
 //! | `atoms_file`, `wall_mesh` | the grains as a data file, walls as triangles |
+//! | `rockable_files` | polyhedra as shapes and bodies |
 //! | `frames` | what engines wrote, read back: instant by instant |
-//! | `dump_file`, `data_file` | dumps and data files |
+//! | `dump_file`, `data_file`, `xyz_file` | dumps, data files, extended XYZ |
 //! | `lines` | a file line by line |
 //! | `atom_frame` | grains at an instant, as a file states them |
 //! | `atom_types` | what an engine's coefficients belong to |
@@ -28,6 +30,7 @@ mod atoms_file;
 mod data_file;
 mod deck;
 mod dump_file;
+mod exadem_deck;
 mod export;
 mod frames;
 mod import;
@@ -38,7 +41,9 @@ mod liggghts_model;
 mod liggghts_walls;
 mod lines;
 mod mpi_engine;
+mod rockable_files;
 mod wall_mesh;
+mod xyz_file;
 
 pub use atom_frame::{Atom, AtomFrame, FrameError};
 pub use atom_types::{AtomTypes, GrainType};

@@ -3,6 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+/// Millimetres, in which exaDEM is told of grains and tells of them.
+pub const PER_METRE: f64 = 1e3;
+
 /// An engine that computes grains on many machines, by MPI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MpiEngine {
@@ -10,17 +13,20 @@ pub enum MpiEngine {
     Liggghts,
     /// LAMMPS with its package GRANULAR, from 2023 on.
     Lammps,
+    /// exaDEM, later than 1.2.2: the one with rounded polyhedra.
+    Exadem,
 }
 
 impl MpiEngine {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Liggghts, Self::Lammps];
+    pub const ALL: [Self; 3] = [Self::Liggghts, Self::Lammps, Self::Exadem];
 
     /// What people call it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Liggghts => "LIGGGHTS",
             Self::Lammps => "LAMMPS",
+            Self::Exadem => "exaDEM",
         }
     }
 
@@ -29,6 +35,7 @@ impl MpiEngine {
         match self {
             Self::Liggghts => "liggghts",
             Self::Lammps => "lammps",
+            Self::Exadem => "exadem",
         }
     }
 
@@ -37,6 +44,16 @@ impl MpiEngine {
         match self {
             Self::Liggghts => "liggghts",
             Self::Lammps => "lmp",
+            Self::Exadem => "exaDEM",
+        }
+    }
+
+    /// The variable by which its export's script is told of another program.
+    pub fn variable(self) -> &'static str {
+        match self {
+            Self::Liggghts => "LIGGGHTS",
+            Self::Lammps => "LAMMPS",
+            Self::Exadem => "EXADEM",
         }
     }
 }
@@ -52,6 +69,6 @@ impl FromStr for MpiEngine {
 
     fn from_str(word: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|engine| engine.word() == word);
-        known.ok_or_else(|| "expected `liggghts` or `lammps`".to_owned())
+        known.ok_or_else(|| "expected `liggghts`, `lammps` or `exadem`".to_owned())
     }
 }

@@ -2,6 +2,7 @@
 //! program is installed, its run beside ours.
 
 mod beside;
+mod exadem;
 pub mod import;
 mod scene_text;
 

@@ -175,7 +175,7 @@ pub enum Task {
         /// The scene.
         #[command(flatten)]
         what: What,
-        /// The engine: liggghts or lammps
+        /// The engine: liggghts, lammps or exadem
         #[arg(long, value_name = "ENGINE")]
         to: MpiEngine,
         /// The folder
@@ -190,7 +190,7 @@ pub enum Task {
     },
     /// Measure what another engine computed and write it as a run's folder
     ///
-    /// Dumps and data files of LIGGGHTS and LAMMPS become series.csv, summary.json, grains.pvd …; what
+    /// Dumps and data files of LIGGGHTS and LAMMPS and XYZ of exaDEM become series.csv, summary.json, grains.pvd …; what
     /// takes forces or the memory of contacts is left out.
     Import(ImportTask),
     /// Print what a shell needs to complete commands and options

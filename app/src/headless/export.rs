@@ -55,7 +55,7 @@ pub fn hand_over(
             "{} grains for {engine}: {} steps of {:e} s, a dump every {}",
             world.grains.len(),
             exported.steps.run,
-            world.clock.time_step,
+            exported.time_step,
             exported.steps.output
         ));
         say(&format!("what {engine} does otherwise:"));

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// What to take in, what it is of, and where it goes.
 #[derive(clap::Args)]
 pub struct ImportTask {
-    /// Dumps and data files of LIGGGHTS and LAMMPS, or folders of dumps
+    /// Dumps and data files of LIGGGHTS and LAMMPS, XYZ of exaDEM, or folders of dumps
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// The scene that they are of [default: that of the export beside them]
@@ -52,6 +52,7 @@ impl ImportTask {
         let imported = imported.map_err(refused)?;
         if let Some(path) = &self.start {
             let scene = scene_from(&imported.scene, &imported.last);
+            let scene = scene.map_err(RunnerError::Input)?;
             let text = scene.to_text().map_err(RunnerError::Input)?;
             write_file(path, |file| file.write_all(text.as_bytes()))?;
         }
