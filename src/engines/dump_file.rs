@@ -1,11 +1,13 @@
 //! Dumps of LIGGGHTS and LAMMPS in text, as `dump custom` writes them.
 //!
 //! In: a file with one or several instants. Out: an [`AtomFrame`] for each, one at a time. Needed are
-//! the columns `id x y z vx vy vz` and `radius` or `diameter`; `type`, `omegax omegay omegaz`,
+//! the columns `id x y z vx vy vz` and `radius` or `diameter`; positions may be unwrapped (`xu`) or in
+//! parts of the box (`xs`, `xsu`), see [`super::dump_box`]; `type`, `omegax omegay omegaz`,
 //! `fx fy fz` and `density` are read where they are there, others passed over. Values are in SI
 //! units; a file that says otherwise is refused.
 
 use super::atom_frame::{Atom, AtomFrame, FrameError};
+use super::dump_box::{DumpBox, PositionColumns};
 use super::lines::{Lines, shortened};
 use crate::physics::limits;
 use crate::world::MOST_STEPS;
@@ -19,7 +21,7 @@ struct Columns {
     count: usize,
     id: usize,
     kind: Option<usize>,
-    position: [usize; 3],
+    position: PositionColumns,
     velocity: [usize; 3],
     spin: Option<[usize; 3]>,
     force: Option<[usize; 3]>,
@@ -46,9 +48,12 @@ impl Columns {
         };
         let radius = place("radius").map(|at| (at, 1.0));
         let radius = radius.or_else(|| place("diameter").map(|at| (at, 0.5)));
-        let position = match three(["xu", "yu", "zu"]) {
-            Some(unwrapped) => unwrapped,
-            None => needed(["x", "y", "z"])?,
+        let position = match PositionColumns::of(words) {
+            Some(known) => known,
+            None => PositionColumns {
+                at: needed(["x", "y", "z"])?,
+                is_scaled: false,
+            },
         };
         Ok(Self {
             count: words.len(),
@@ -89,7 +94,7 @@ impl Columns {
         Ok(Atom {
             id: whole(self.id)?,
             kind: u32::try_from(kind).map_err(|_| format!("a type is {kind}"))?,
-            position: vector(self.position)?,
+            position: vector(self.position.at)?,
             velocity: vector(self.velocity)?,
             spin: self.spin.map_or(Ok(DVec3::ZERO), vector)?,
             radius: number(self.radius.0)? * self.radius.1,
@@ -117,6 +122,7 @@ fn step_number(lines: &mut Lines) -> Result<u64, FrameError> {
 /// What is wrong with the file, and where.
 pub fn next_frame(lines: &mut Lines) -> Result<Option<AtomFrame>, FrameError> {
     let (mut step, mut time, mut count) = (None, None, None);
+    let mut domain = DumpBox::default();
     loop {
         let Some(line) = lines.next_line()? else {
             return match step {
@@ -136,14 +142,25 @@ pub fn next_frame(lines: &mut Lines) -> Result<Option<AtomFrame>, FrameError> {
             "TIME" => time = Some(lines.number("a time")?),
             "UNITS" => expect_si(lines)?,
             "NUMBER" => count = Some(atom_count(lines)?),
-            "BOX" => (0..3).try_for_each(|_| lines.line("the bounds of the box").map(drop))?,
+            "BOX" => {
+                let kind = item.trim_start_matches("BOX").trim_start();
+                let kind = kind.trim_start_matches("BOUNDS").trim();
+                domain = DumpBox::read(lines, kind)?;
+            }
             "ATOMS" => {
                 let words: Vec<&str> = item.split_whitespace().skip(1).collect();
                 let columns = Columns::of(&words).map_err(|reason| lines.wrong(reason))?;
                 let (Some(step), Some(count)) = (step, count) else {
                     return Err(lines.wrong("expected TIMESTEP and NUMBER OF ATOMS before"));
                 };
-                let atoms = rows(lines, &columns, count)?;
+                let scale = columns.position.is_scaled.then(|| domain.scale());
+                let scale = scale.transpose().map_err(|reason| lines.wrong(reason))?;
+                let mut atoms = rows(lines, &columns, count)?;
+                if let Some((corner, edges)) = scale {
+                    for atom in &mut atoms {
+                        atom.position = corner + edges * atom.position;
+                    }
+                }
                 let frame = AtomFrame { step, time, atoms };
                 return frame.ordered().map(Some).map_err(|r| lines.wrong(r));
             }

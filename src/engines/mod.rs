@@ -19,6 +19,7 @@
 //! | `rockable_files` | polyhedra as shapes and bodies |
 //! | `frames` | what engines wrote, read back: instant by instant |
 //! | `dump_file`, `data_file`, `xyz_file` | dumps, data files, extended XYZ |
+//! | `dump_box` | the box of a dump, and where grains stand in it |
 //! | `lines` | a file line by line |
 //! | `atom_frame` | grains at an instant, as a file states them |
 //! | `atom_types` | what an engine's coefficients belong to |
@@ -29,6 +30,7 @@ mod atom_types;
 mod atoms_file;
 mod data_file;
 mod deck;
+mod dump_box;
 mod dump_file;
 mod exadem_deck;
 mod export;

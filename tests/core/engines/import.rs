@@ -90,6 +90,85 @@ fn dumps_of_both_engines_are_read_whatever_the_order_of_their_columns() {
     assert_eq!(frames[1].atoms[0], *first);
 }
 
+/// A dump of `world` with its positions in these columns, in a box from −1, −2, −4 to 1, 6, 4 m.
+fn dump_in_box(world: &World, names: [&str; 3], bounds: &str) -> String {
+    let place = |x: DVec3| match names[0] {
+        "xs" | "xsu" => (x - DVec3::new(-1.0, -2.0, -4.0)) / DVec3::new(2.0, 8.0, 8.0),
+        _ => x,
+    };
+    let mut text = format!(
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {bounds}\nITEM: ATOMS id type {} vx vy vz radius\n",
+        world.grains.len(),
+        names.join(" ")
+    );
+    for (i, x) in world.grains.position.iter().enumerate() {
+        let (x, r) = (place(*x), world.grains.radius[i]);
+        let _ = writeln!(
+            text,
+            "{} 1 {:e} {:e} {:e} 0 0 0 {r:e}",
+            i + 1,
+            x.x,
+            x.y,
+            x.z
+        );
+    }
+    text
+}
+
+#[test]
+fn one_state_written_with_any_coordinates_reads_equal() {
+    let (_, world) = built(&dry_drum());
+    let folder = tempfile::tempdir().unwrap();
+    let read = |text: &str| read_frames(&written(folder.path(), "a.dump", text));
+    let bounds = "ff pp ss\n-1 1\n-2 6\n-4 4";
+    for names in [
+        ["x", "y", "z"],
+        ["xu", "yu", "zu"],
+        ["xs", "ys", "zs"],
+        ["xsu", "ysu", "zsu"],
+    ] {
+        let frames = read(&dump_in_box(&world, names, bounds)).unwrap();
+        for (atom, x) in frames[0].atoms.iter().zip(&world.grains.position) {
+            // Places are some centimetres in a box of metres: a few roundings of the box.
+            assert!(
+                (atom.position - *x).length() < 4e-15,
+                "{names:?}: {}",
+                atom.position
+            );
+        }
+    }
+    // A box that might be tilted and is not.
+    let straight = "xy xz yz ff ff ff\n-1 1 0\n-2 6 0\n-4 4 0.0";
+    let scaled = ["xs", "ys", "zs"];
+    assert!(read(&dump_in_box(&world, scaled, straight)).is_ok());
+    let tilted = "xy xz yz ff ff ff\n-1 1 0\n-2 6 0.5\n-4 4 0";
+    assert!(read(&dump_in_box(&world, ["x", "y", "z"], tilted)).is_ok());
+    let cases = [
+        (
+            tilted,
+            "the box is tilted (`xy xz yz ff ff ff`): dump `x y z`",
+        ),
+        (
+            "abc origin\n1 0 0 0\n0 1 0 0\n0 0 1 0",
+            "general parallelepiped",
+        ),
+        ("ff ff ff\n1 1\n-2 6\n-4 4", "from 1.0 to 1.0"),
+        ("ff ff ff\n-1 inf\n-2 6\n-4 4", "to inf"),
+        ("ff ff ff\n-1 x\n-2 6\n-4 4", "to NaN"),
+        ("ff ff ff\n-1\n-2 6\n-4 4", "has 1 numbers"),
+    ];
+    for (bounds, expected) in cases {
+        let error = read(&dump_in_box(&world, scaled, bounds))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    let text = dump_in_box(&world, scaled, bounds);
+    let unbound = text.replace(&format!("ITEM: BOX BOUNDS {bounds}\n"), "");
+    let error = read(&unbound).unwrap_err().to_string();
+    assert!(error.contains("no `ITEM: BOX BOUNDS`"), "{error}");
+}
+
 #[test]
 fn faults_of_files_are_told_with_their_place() {
     let (_, world) = built(&dry_drum());
