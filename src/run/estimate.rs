@@ -172,21 +172,21 @@ impl Estimate {
     }
 
     fn question_with(&self, free: Option<f64>) -> Option<String> {
-        let mut text = String::new();
+        let mut said = Vec::new();
         if let Err(BeyondMachine::Memory { free, .. }) = self.fits_into(free) {
             let (asked, free) = (bytes(self.memory), bytes(free));
-            text += &format!(
+            said.push(format!(
                 "This scene asks for {asked} of memory, and {free} are free: the machine may come to a halt. Fewer \
-                 grains or larger cells take less. "
-            );
+                 grains or larger cells take less."
+            ));
         }
         if self.settling > LONGEST_UNASKED {
             let settling = duration(self.settling);
-            text += &format!(
-                "Its bed takes some {settling} of one thread to settle before anything moves; {SETTLES_SOONER}. "
-            );
+            said.push(format!(
+                "Its bed takes some {settling} of one thread to settle before anything moves; {SETTLES_SOONER}."
+            ));
         }
-        (!text.is_empty()).then(|| text + "Open it all the same?")
+        (!said.is_empty()).then(|| said.join(" ") + " Open it all the same?")
     }
 
     /// Whether the memory that is free now holds it; where that is not known, it does.

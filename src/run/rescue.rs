@@ -101,7 +101,7 @@ mod tests {
         );
         let path = first.path();
         drop(first);
-        assert_eq!(Rescue::left(home), [path.clone()]);
+        assert_eq!(Rescue::left(home), std::slice::from_ref(&path));
         // A new one does not write over it.
         let third = Rescue::begin(home).unwrap();
         assert_ne!(third.path(), path);

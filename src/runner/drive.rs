@@ -211,6 +211,7 @@ impl Runner {
 
     /// The same with a checkpoint kept at every look, after which all may be forgotten.
     #[cfg(test)]
+    #[must_use]
     pub fn keeping_always(mut self) -> Self {
         if let Some(file) = &mut self.checkpoints {
             file.keep_always();
