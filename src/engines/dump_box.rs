@@ -54,7 +54,7 @@ impl DumpBox {
         for _ in 0..3 {
             let line = lines.line("the bounds of the box")?;
             // What is no number is told of where the bounds are needed.
-            let numbers = line.split_whitespace().map(|word| word.parse::<f64>());
+            let numbers = line.split_whitespace().map(str::parse::<f64>);
             rows.push(numbers.map(|number| number.unwrap_or(f64::NAN)).collect());
         }
         let kind = kind.to_owned();
