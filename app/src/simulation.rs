@@ -37,6 +37,12 @@ impl Simulation {
         Self(Lab::play_back(recording, options))
     }
 
+    /// As [`Lab::unsaved`].
+    #[must_use]
+    pub fn unsaved(self) -> Self {
+        Self(self.0.unsaved())
+    }
+
     /// As [`Lab::made_of`].
     #[must_use]
     pub fn made_of(self, original: Arc<Scene>) -> Self {

@@ -101,6 +101,13 @@ impl Lab {
         })
     }
 
+    /// It, as work that is in no file.
+    #[must_use]
+    pub fn unsaved(mut self) -> Self {
+        self.saved.worked = 2 * LONG_RUN;
+        self
+    }
+
     /// Plays `recording` from its start. What `options` say of threads, beds and scripts means
     /// nothing for it.
     pub fn play_back(recording: Recording, options: Options) -> Self {

@@ -19,6 +19,14 @@ const ONE_SIGNAL: Duration = Duration::from_millis(500);
 /// # Errors
 /// When the system gives no thread to listen on.
 pub fn interruption() -> Result<Arc<AtomicBool>, RunnerError> {
+    heard(|| tell("stopping: what is computed is being written; once more stops at once"))
+}
+
+/// As [`interruption`]; `said` is called at the first time.
+///
+/// # Errors
+/// As [`interruption`].
+pub fn heard(said: impl Fn() + Send + 'static) -> Result<Arc<AtomicBool>, RunnerError> {
     let flag = Arc::new(AtomicBool::new(false));
     let shared = flag.clone();
     let mut first = None;
@@ -28,7 +36,7 @@ pub fn interruption() -> Result<Arc<AtomicBool>, RunnerError> {
         let first: Instant = *first.get_or_insert_with(Instant::now);
         if is_first {
             shared.store(true, Ordering::Relaxed);
-            tell("stopping: what is computed is being written; once more stops at once");
+            said();
         } else if first.elapsed() > ONE_SIGNAL {
             std::process::exit(exit::INTERRUPTED.into());
         }

@@ -24,7 +24,7 @@ pub use allowed::Allowed;
 pub use confirm::confirm;
 pub use export::hand_over;
 pub use import::ImportTask;
-pub use interruption::{check_threads, interruption};
+pub use interruption::{check_threads, heard, interruption};
 pub use named_scene::{named_scene, short_name};
 pub use pack::{write_bed, write_opening, write_packing};
 pub use paper_task::PaperTask;

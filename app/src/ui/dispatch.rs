@@ -133,6 +133,12 @@ fn fulfil(
         (Request::ShowScenes, _) => dock.show_scenes(),
         (Request::Show(sheet), _) => dock.show_sheet(sheet),
         (Request::Open(name), _) => opener.open(name, dock),
+        (Request::OpenLeft(path), _) => opener.open_left(path, dock),
+        (Request::DiscardLeft(path), _) => {
+            if let Err(error) = grainfall::files::remove_file(&path) {
+                dock.notify(format!("{} cannot be removed: {error}", path.display()));
+            }
+        }
         (Request::ChooseFile, _) => dock.path_dialog.ask(Purpose::Open),
         (Request::ChoosePicture, _) => dock.path_dialog.ask(Purpose::Picture),
         (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
@@ -212,7 +218,7 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
             dock.show_open_error(error);
             None
         }
-        Request::Open(_) | Request::Start(_) | Request::Quit if unsaved => {
+        Request::Open(_) | Request::OpenLeft(_) | Request::Start(_) | Request::Quit if unsaved => {
             dock.ask_to_save(request);
             None
         }
@@ -335,6 +341,22 @@ impl Opener<'_, '_> {
                 dock.scene_opened(&name);
             }
             Err(error) => dock.show_open_error(error.to_string()),
+        }
+    }
+
+    /// Opens the session that an earlier window left at `path`, as work that is in no file.
+    fn open_left(&mut self, path: PathBuf, dock: &mut Dock) {
+        match Kept::read(&path) {
+            Ok(Kept::Session(session)) => {
+                let look = session.look().to_owned();
+                let options = self.options_for(session.record().scene.duration);
+                self.show(Simulation::resume(*session, options).unsaved());
+                dock.scene_changed();
+                self.take_up(&look, dock);
+                dock.taken_up = Some(path);
+            }
+            Ok(Kept::Recording(_)) => {}
+            Err(error) => dock.show_open_error(error),
         }
     }
 

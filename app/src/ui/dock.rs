@@ -12,7 +12,7 @@ use crate::ui::bars::transport::Transport;
 use crate::ui::detail::Detail;
 use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
 use crate::ui::dialogs::scene_gallery::Gallery;
-use crate::ui::dialogs::sheets::{open_error_ui, sheet_ui, unsaved_ui};
+use crate::ui::dialogs::sheets::{left_ui, open_error_ui, sheet_ui, unsaved_ui};
 use crate::ui::panels::about_scene::AboutScene;
 use crate::ui::panels::avalanche_plots::AvalanchePlots;
 use crate::ui::panels::beside_paper::BesidePaper;
@@ -72,6 +72,10 @@ pub struct Dock {
     open_error: Option<String>,
     /// The file of the session, where it has one.
     pub session: Option<PathBuf>,
+    /// Sessions that earlier windows left, which are offered.
+    left_behind: Vec<PathBuf>,
+    /// One of them that was opened and is not yet kept as this window's work.
+    pub taken_up: Option<PathBuf>,
     /// The request that would lose unsaved work, while the person is asked about it.
     leaving: Option<Request>,
     /// What to do when the session has been saved.
@@ -138,6 +142,8 @@ impl Default for Dock {
             sheet: None,
             open_error: None,
             session: None,
+            left_behind: Vec::new(),
+            taken_up: None,
             leaving: None,
             after_saving: None,
             notice: None,
@@ -186,7 +192,8 @@ impl Dock {
             || self.path_dialog.is_open()
             || self.sheet.is_some()
             || self.open_error.is_some()
-            || self.leaving.is_some();
+            || self.leaving.is_some()
+            || !self.left_behind.is_empty();
         let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
         let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
         self.stale_tooltips = match (has_dialog, self.stale_tooltips.take()) {
@@ -331,6 +338,11 @@ impl Dock {
         self.open_error = Some(reason);
     }
 
+    /// Offers the sessions that earlier windows `left`, one by one.
+    pub fn offer_left(&mut self, left: Vec<PathBuf>) {
+        self.left_behind = left;
+    }
+
     /// Why a file could not be opened, while that is shown.
     pub fn open_error(&self) -> Option<&str> {
         self.open_error.as_deref()
@@ -431,6 +443,11 @@ impl Dock {
         self.sheet = self.sheet.filter(|sheet| sheet_ui(ctx, *sheet));
         let open = |reason: &String| open_error_ui(ctx, reason);
         self.open_error = self.open_error.take().filter(open);
+        if let Some(path) = self.left_behind.first()
+            && !left_ui(ctx, path, out)
+        {
+            self.left_behind.remove(0);
+        }
         let asked = |next: &Request| unsaved_ui(ctx, next, out);
         self.leaving = self.leaving.take().filter(asked);
         self.notice_ui(ctx);

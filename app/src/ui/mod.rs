@@ -10,6 +10,7 @@
 //! | file or folder | holds |
 //! |---|---|
 //! | `plugin` | when panels are drawn, as systems of Bevy |
+//! | `rescue` | work that is in no file, kept for the case that the program ends unasked |
 //! | `dispatch` | what each request does |
 //! | `session_look` | how a window looked, as a session keeps it |
 //! | `dock`, `sections` | the register of panels, where they stand, what lies over them; one side of them |
@@ -41,6 +42,7 @@ mod plot_export;
 mod plots;
 mod plugin;
 mod request;
+mod rescue;
 mod screenshot_orders;
 mod sections;
 mod session_look;
@@ -76,6 +78,7 @@ pub use plot_export::Export;
 pub use plots::run_curves::{Curves, KeptRun};
 pub use plugin::{DockPlugin, UiPlugin};
 pub use request::{Request, Requests, Sheet};
+pub use rescue::RescuePlugin;
 pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
 pub use session_look::SessionLook;
 pub use user_memory::{Look, UserMemory};

@@ -51,6 +51,10 @@ pub enum Request {
     SaveSession(PathBuf),
     /// Save, and when that has succeeded do this, which leaves the session.
     SaveThen(Box<Request>),
+    /// Open the session that an earlier window left, as work that is in no file.
+    OpenLeft(PathBuf),
+    /// Remove the session that an earlier window left.
+    DiscardLeft(PathBuf),
     /// Do this, which leaves the session, without asking.
     Leave(Box<Request>),
     /// Let the person choose where the list of changes goes.

@@ -3,15 +3,18 @@
 //!
 //! In: a [`WindowJob`]. Out: the laboratory, until somebody closes it, or a picture.
 
+use crate::headless::heard;
 use crate::simulation::{Simulation, SimulationPlugin};
-use crate::ui::{Dock, SessionLook, UiPlugin, UserMemory, first_speed, title_in_words};
+use crate::ui::{
+    Dock, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, title_in_words,
+};
 use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
 use crate::window::screenshot_job::{Failure, ScreenshotJobs, ScreenshotPlugin};
 use crate::window::window_job::{Opened, PictureJob, WindowError, WindowJob};
-use bevy::app::ScheduleRunnerPlugin;
+use bevy::app::{ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, ClearColorConfig};
 use bevy::log::{Level, LogPlugin};
@@ -21,6 +24,7 @@ use bevy::render::RenderPlugin;
 use bevy::render::render_resource::BlendState;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
+use grainfall::run::Rescue;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::time::Duration;
 
@@ -93,7 +97,9 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     let mut dock = app.world_mut().resource_mut::<Dock>();
     if job.picture.is_none() {
         dock.remember(UserMemory::user());
+        keep_unsaved_work(&mut app);
     }
+    let mut dock = app.world_mut().resource_mut::<Dock>();
     match &job.opened {
         Opened::Scene(_) | Opened::Shipped(_) | Opened::Recording(_) => {
             dock.scene_opened(&job.name);
@@ -121,6 +127,14 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     app
 }
 
+/// Has work that is in no file kept for the case that the program ends unasked, where the system
+/// has a place for that.
+fn keep_unsaved_work(app: &mut App) {
+    if let (Some(home), Ok(stop)) = (Rescue::home(), heard(|| {})) {
+        app.add_plugins(RescuePlugin { home, stop });
+    }
+}
+
 fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGroup {
     let size = picture.map_or(UVec2::new(1440, 860), |picture| picture.size);
     DefaultPlugins
@@ -141,6 +155,8 @@ fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGro
             ..default()
         })
         .set(log())
+        // Ours keeps what is in no file first.
+        .disable::<TerminalCtrlCHandlerPlugin>()
 }
 
 /// Only what a person can act on; `RUST_LOG` shows more.

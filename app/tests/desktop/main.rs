@@ -12,6 +12,7 @@ mod panels;
 mod played;
 mod polyhedra;
 mod recording;
+mod rescue;
 mod session;
 mod timeline;
 mod turning;

@@ -8,6 +8,7 @@ use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::{GESTURES, SHORTCUTS};
 use crate::ui::theme::Palette;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
+use std::path::Path;
 
 /// Height of what stands round the content of a sheet, with some air [points].
 const AROUND_CONTENT: f32 = 140.0;
@@ -66,6 +67,52 @@ pub fn unsaved_ui(ctx: &egui::Context, next: &Request, out: &mut Vec<Request>) -
         answered
     });
     !(modal.inner || modal.should_close())
+}
+
+/// Offers the session that an earlier window left at `path`; false once that is answered.
+pub fn left_ui(ctx: &egui::Context, path: &Path, out: &mut Vec<Request>) -> bool {
+    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
+    let modal = Modal::new(Id::new("left behind"))
+        .frame(frame)
+        .show(ctx, |ui| {
+            ui.set_width(460.0_f32.min(0.9 * ui.ctx().content_rect().width()));
+            ui.heading("Go on with what was not saved?");
+            ui.add_space(4.0);
+            let age = std::fs::metadata(path).and_then(|file| file.modified());
+            let age = age.ok().and_then(|time| time.elapsed().ok());
+            let when = age.map_or_else(String::new, |age| format!(" {}", ago(age.as_secs())));
+            ui.label(format!(
+                "Grainfall ended{when} before its work was saved. What was kept of it opens as it was half a minute before the \
+                 end or less, with every change and every run."
+            ));
+            ui.add_space(8.0);
+            let mut answered = false;
+            ui.horizontal(|ui| {
+                let answers = [
+                    ("Open", Some(Request::OpenLeft(path.to_owned()))),
+                    ("Discard", Some(Request::DiscardLeft(path.to_owned()))),
+                    ("Later", None),
+                ];
+                for (name, answer) in answers {
+                    if ui.button(name).clicked() {
+                        out.extend(answer);
+                        answered = true;
+                    }
+                }
+            });
+            answered
+        });
+    !(modal.inner || modal.should_close())
+}
+
+/// How long ago something was, in words.
+fn ago(seconds: u64) -> String {
+    match seconds {
+        0..120 => "a moment ago".to_owned(),
+        120..7200 => format!("{} minutes ago", seconds / 60),
+        7200..172_800 => format!("{} hours ago", seconds / 3600),
+        _ => format!("{} days ago", seconds / 86_400),
+    }
 }
 
 /// A window that blocks everything else until it is closed; false once it is.
