@@ -167,7 +167,7 @@ pub enum Task {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Write what another engine takes to run a scene of spheres on many machines, by MPI
+    /// Write what another engine takes to run a scene on many machines, by MPI: spheres, columns of polyhedra
     ///
     /// A folder with script, data file of the settled bed, meshes and DEVIATIONS.txt, which says
     /// what the engine does otherwise. What it does not have is refused.
