@@ -275,7 +275,13 @@ fn export_scene(
         script,
         ..Job::new(short_name(&name), scene, out)
     };
-    allowed.begin(&Estimate::of_start(&job.scene), &job.out, report)?;
+    let estimate = Estimate::of_start(&job.scene);
+    let estimate = if settles {
+        estimate
+    } else {
+        estimate.unsettled()
+    };
+    allowed.begin(&estimate, &job.out, report)?;
     let is_done = headless::hand_over(&job, engine, settles, report, &*interruption()?)?;
     Ok(if is_done {
         exit::DONE

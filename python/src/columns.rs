@@ -7,18 +7,18 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// One number for each row.
-fn scalars<'py, T: numpy::Element>(
-    py: Python<'py>,
+fn scalars<T: numpy::Element>(
+    py: Python<'_>,
     values: impl IntoIterator<Item = T>,
-) -> Bound<'py, PyArray1<T>> {
+) -> Bound<'_, PyArray1<T>> {
     PyArray1::from_vec(py, values.into_iter().collect())
 }
 
 /// Three numbers for each row.
-fn vectors<'py>(
-    py: Python<'py>,
+fn vectors(
+    py: Python<'_>,
     values: impl ExactSizeIterator<Item = DVec3>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let count = values.len();
     let flat: Vec<f64> = values.flat_map(|v| v.to_array()).collect();
     PyArray1::from_vec(py, flat).reshape([count, 3])

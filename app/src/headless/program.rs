@@ -8,7 +8,7 @@ use bevy::app::{App, PluginGroup, TaskPoolOptions, TaskPoolPlugin};
 use bevy::time::TimeUpdateStrategy;
 use grainfall::lab::{DriverKind, LabCommand, Options, Status};
 use grainfall::output::{Ending, OutputError, RunSoFar};
-use grainfall::run::{Checkpoint, Run, Session, Timeline};
+use grainfall::run::{Checkpoint, Measured, Run, Session, Stored, Timeline};
 use grainfall::runner::{Advance, At, DirectRun, Halt, Job, Runner, RunnerError};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -56,6 +56,8 @@ struct RunInApp {
     resuming: Option<DirectRun>,
     name: String,
     options: Options,
+    /// All that was measured, once the run is over.
+    measured: Option<Measured>,
 }
 
 impl RunInApp {
@@ -78,6 +80,7 @@ impl RunInApp {
             resuming,
             name: job.name.clone(),
             options,
+            measured: None,
         }
     }
 
@@ -125,8 +128,8 @@ impl Advance for RunInApp {
             (_, None) => starting,
             (_, Some(world)) => At::State(RunSoFar {
                 world,
-                series: simulation.series(),
-                flow: simulation.flow(),
+                series: (self.measured.as_ref()).map_or(simulation.series(), |all| &all.series),
+                flow: (self.measured.as_ref()).map_or(simulation.flow(), |all| &all.flow),
                 commands: simulation.commands(),
                 sampling: simulation.sampling(),
             }),
@@ -156,5 +159,15 @@ impl Advance for RunInApp {
     fn warnings(&self) -> Vec<String> {
         let simulation = self.simulation();
         simulation.map_or_else(Vec::new, |simulation| simulation.warnings().to_vec())
+    }
+
+    fn forget(&mut self, stored: Stored) {
+        if let Some(mut simulation) = self.app.world_mut().get_resource_mut::<Simulation>() {
+            simulation.send(LabCommand::ForgetMeasured(stored));
+        }
+    }
+
+    fn remember(&mut self, measured: Measured) {
+        self.measured = Some(measured);
     }
 }

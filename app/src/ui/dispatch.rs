@@ -19,7 +19,7 @@ use bevy::tasks::{IoTaskPool, Task};
 use grainfall::engines::sound_scene_from;
 use grainfall::lab::{Half, Kept, LabCommand, Options, SavedFile};
 use grainfall::parameters::{Parameter, Value};
-use grainfall::run::{Command, CommandError, RunRecord, ScriptedCommand};
+use grainfall::run::{Command, CommandError, Estimate, RunRecord, ScriptedCommand};
 use grainfall::scene::Scene;
 use std::fmt::Display;
 use std::io;
@@ -94,6 +94,13 @@ fn fulfil(
     if is_recording && request.takes_a_run() {
         return dock.notify(CommandError::Recorded.to_string());
     }
+    let request = match request {
+        Request::Anyway(request) => *request,
+        request => match doubt(&request) {
+            Some(reason) => return dock.doubt(reason, request),
+            None => request,
+        },
+    };
     match (request, simulation) {
         (Request::Command(command), Some(simulation)) => simulation.send(command),
         (Request::StartComparison(parameter, value), Some(simulation)) => {
@@ -165,7 +172,7 @@ fn fulfil(
             | Request::SaveChanges(_),
             None,
         )
-        | (Request::SaveThen(_) | Request::Leave(_), _) => {}
+        | (Request::SaveThen(_) | Request::Leave(_) | Request::Anyway(_), _) => {}
     }
 }
 
@@ -228,6 +235,18 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
             Some(Request::Save)
         }
         request => Some(request),
+    }
+}
+
+/// What speaks against opening the scene that `request` asks for: memory or time that this machine
+/// has not.
+fn doubt(request: &Request) -> Option<String> {
+    match request {
+        Request::Open(name) if !Kept::is_at(name) => {
+            Estimate::of_start(&Scene::open(name).ok()?).question()
+        }
+        Request::Start(scene) => Estimate::of_start(scene).question(),
+        _ => None,
     }
 }
 

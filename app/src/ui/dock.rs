@@ -12,7 +12,7 @@ use crate::ui::bars::transport::Transport;
 use crate::ui::detail::Detail;
 use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
 use crate::ui::dialogs::scene_gallery::Gallery;
-use crate::ui::dialogs::sheets::{left_ui, open_error_ui, sheet_ui, unsaved_ui};
+use crate::ui::dialogs::sheets::{doubt_ui, left_ui, open_error_ui, sheet_ui, unsaved_ui};
 use crate::ui::panels::about_scene::AboutScene;
 use crate::ui::panels::avalanche_plots::AvalanchePlots;
 use crate::ui::panels::beside_paper::BesidePaper;
@@ -72,6 +72,8 @@ pub struct Dock {
     open_error: Option<String>,
     /// The file of the session, where it has one.
     pub session: Option<PathBuf>,
+    /// What is asked whether it is meant, and why.
+    doubted: Option<(String, Request)>,
     /// Sessions that earlier windows left, which are offered.
     left_behind: Vec<PathBuf>,
     /// One of them that was opened and is not yet kept as this window's work.
@@ -142,6 +144,7 @@ impl Default for Dock {
             sheet: None,
             open_error: None,
             session: None,
+            doubted: None,
             left_behind: Vec::new(),
             taken_up: None,
             leaving: None,
@@ -193,6 +196,7 @@ impl Dock {
             || self.sheet.is_some()
             || self.open_error.is_some()
             || self.leaving.is_some()
+            || self.doubted.is_some()
             || !self.left_behind.is_empty();
         let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
         let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
@@ -338,6 +342,11 @@ impl Dock {
         self.open_error = Some(reason);
     }
 
+    /// Asks whether `request`, against which `reason` speaks, is meant.
+    pub fn doubt(&mut self, reason: String, request: Request) {
+        self.doubted = Some((reason, request));
+    }
+
     /// Offers the sessions that earlier windows `left`, one by one.
     pub fn offer_left(&mut self, left: Vec<PathBuf>) {
         self.left_behind = left;
@@ -448,6 +457,8 @@ impl Dock {
         {
             self.left_behind.remove(0);
         }
+        self.doubted =
+            (self.doubted.take()).filter(|(reason, request)| doubt_ui(ctx, reason, request, out));
         let asked = |next: &Request| unsaved_ui(ctx, next, out);
         self.leaving = self.leaving.take().filter(asked);
         self.notice_ui(ctx);

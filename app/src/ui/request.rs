@@ -51,6 +51,8 @@ pub enum Request {
     SaveSession(PathBuf),
     /// Save, and when that has succeeded do this, which leaves the session.
     SaveThen(Box<Request>),
+    /// Do this though something speaks against it.
+    Anyway(Box<Request>),
     /// Open the session that an earlier window left, as work that is in no file.
     OpenLeft(PathBuf),
     /// Remove the session that an earlier window left.

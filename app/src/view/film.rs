@@ -7,9 +7,8 @@
 use crate::view::png::save_png;
 use bevy::image::Image;
 use bevy::math::URect;
-use grainfall::files::{folder_beside, write_whole};
+use grainfall::files::{make_whole_file, make_whole_folder, write_whole};
 use grainfall::run::Provenance;
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -267,18 +266,19 @@ fn write_gif(path: &Path, mut reel: Reel) -> io::Result<()> {
 }
 
 fn write_pictures(path: &Path, mut reel: Reel) -> io::Result<()> {
-    let folder = folder_beside(path)?;
-    let mut next = Some(reel.first()?);
-    let mut number = 0;
-    while let Some(FilmPicture { size, rgb }) = next {
-        let picture = image_of(size, rgb)?;
-        let file = folder.path().join(format!("{number:05}.png"));
-        save_png(&picture, Some(&reel.from), &file)?;
-        reel.done();
-        number += 1;
-        next = reel.next()?;
-    }
-    fs::rename(folder.path(), path)
+    make_whole_folder(path, |folder| {
+        let mut next = Some(reel.first()?);
+        let mut number = 0;
+        while let Some(FilmPicture { size, rgb }) = next {
+            let picture = image_of(size, rgb)?;
+            let file = folder.join(format!("{number:05}.png"));
+            save_png(&picture, Some(&reel.from), &file)?;
+            reel.done();
+            number += 1;
+            next = reel.next()?;
+        }
+        Ok(())
+    })
 }
 
 /// A picture as Bevy has them.
@@ -305,10 +305,13 @@ fn image_of([width, height]: [u32; 2], rgb: Vec<u8>) -> io::Result<Image> {
     ))
 }
 
-fn write_video(path: &Path, program: &Path, mut reel: Reel) -> io::Result<()> {
+fn write_video(path: &Path, program: &Path, reel: Reel) -> io::Result<()> {
+    make_whole_file(path, |file| make_video(file, program, reel))
+}
+
+/// Has the `program` make the video of the `reel` at `file`.
+fn make_video(file: &Path, program: &Path, mut reel: Reel) -> io::Result<()> {
     let first = reel.first()?;
-    let folder = folder_beside(path)?;
-    let file = folder.path().join("film.mp4");
     let [width, height] = first.size;
     let size = format!("{width}x{height}");
     let rate = FILM_RATE.to_string();
@@ -330,7 +333,7 @@ fn write_video(path: &Path, program: &Path, mut reel: Reel) -> io::Result<()> {
             "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18", "-y",
         ])
         .args(["-metadata", &origin])
-        .arg(&file)
+        .arg(file)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -345,7 +348,7 @@ fn write_video(path: &Path, program: &Path, mut reel: Reel) -> io::Result<()> {
     if !status.success() {
         return Err(io::Error::other(format!("ffmpeg ended with {status}")));
     }
-    fs::rename(file, path)
+    Ok(())
 }
 
 fn feed(child: &mut std::process::Child, first: FilmPicture, reel: &mut Reel) -> io::Result<()> {
@@ -363,6 +366,7 @@ fn feed(child: &mut std::process::Child, first: FilmPicture, reel: &mut Reel) ->
 mod tests {
     use super::*;
     use bevy::math::UVec2;
+    use std::fs;
 
     /// A picture of one colour, 10 × 8.
     fn plain(shade: u8) -> Image {

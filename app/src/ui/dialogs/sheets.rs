@@ -40,23 +40,62 @@ pub fn open_error_ui(ctx: &egui::Context, reason: &str) -> bool {
 /// Asks what becomes of work that is in no file before `next`, which leaves it; false once that is
 /// answered.
 pub fn unsaved_ui(ctx: &egui::Context, next: &Request, out: &mut Vec<Request>) -> bool {
+    let text = "Its changes and runs are in no file yet. Saved, it opens again as it is now, with every change, every run and \
+                this moment, to the bit.";
+    let answers = [
+        ("Save", Some(Request::SaveThen(Box::new(next.clone())))),
+        ("Discard", Some(Request::Leave(Box::new(next.clone())))),
+        ("Cancel", None),
+    ];
+    question_ui(ctx, "Save the session?", text, answers, out)
+}
+
+/// Asks whether `request`, against which `reason` speaks, is meant; false once that is answered.
+pub fn doubt_ui(
+    ctx: &egui::Context,
+    reason: &str,
+    request: &Request,
+    out: &mut Vec<Request>,
+) -> bool {
+    let anyway = Request::Anyway(Box::new(request.clone()));
+    let answers = [("Open it", Some(anyway)), ("Cancel", None)];
+    question_ui(ctx, "This is a large scene", reason, answers, out)
+}
+
+/// Offers the session that an earlier window left at `path`; false once that is answered.
+pub fn left_ui(ctx: &egui::Context, path: &Path, out: &mut Vec<Request>) -> bool {
+    let age = std::fs::metadata(path).and_then(|file| file.modified());
+    let age = age.ok().and_then(|time| time.elapsed().ok());
+    let when = age.map_or_else(String::new, |age| format!(" {}", ago(age.as_secs())));
+    let text = format!(
+        "Grainfall ended{when} before its work was saved. What was kept of it opens as it was half a minute before the end or \
+         less, with every change and every run."
+    );
+    let answers = [
+        ("Open", Some(Request::OpenLeft(path.to_owned()))),
+        ("Discard", Some(Request::DiscardLeft(path.to_owned()))),
+        ("Later", None),
+    ];
+    question_ui(ctx, "Go on with what was not saved?", &text, answers, out)
+}
+
+/// A question over everything else, its answers with what each asks for; false once it is answered.
+fn question_ui<const N: usize>(
+    ctx: &egui::Context,
+    question: &str,
+    text: &str,
+    answers: [(&str, Option<Request>); N],
+    out: &mut Vec<Request>,
+) -> bool {
     let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
-    let modal = Modal::new(Id::new("unsaved")).frame(frame).show(ctx, |ui| {
+    let modal = Modal::new(Id::new(question)).frame(frame).show(ctx, |ui| {
         ui.set_width(460.0_f32.min(0.9 * ui.ctx().content_rect().width()));
-        ui.heading("Save the session?");
+        ui.heading(question);
         ui.add_space(4.0);
-        ui.label(
-            "Its changes and runs are in no file yet. Saved, it opens again as it is now, with every change, every run and \
-             this moment, to the bit.",
-        );
+        ui.label(text);
         ui.add_space(8.0);
         let mut answered = false;
         ui.horizontal(|ui| {
-            let answers = [
-                ("Save", Some(Request::SaveThen(Box::new(next.clone())))),
-                ("Discard", Some(Request::Leave(Box::new(next.clone())))),
-                ("Cancel", None),
-            ];
             for (name, answer) in answers {
                 if ui.button(name).clicked() {
                     out.extend(answer);
@@ -66,42 +105,6 @@ pub fn unsaved_ui(ctx: &egui::Context, next: &Request, out: &mut Vec<Request>) -
         });
         answered
     });
-    !(modal.inner || modal.should_close())
-}
-
-/// Offers the session that an earlier window left at `path`; false once that is answered.
-pub fn left_ui(ctx: &egui::Context, path: &Path, out: &mut Vec<Request>) -> bool {
-    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
-    let modal = Modal::new(Id::new("left behind"))
-        .frame(frame)
-        .show(ctx, |ui| {
-            ui.set_width(460.0_f32.min(0.9 * ui.ctx().content_rect().width()));
-            ui.heading("Go on with what was not saved?");
-            ui.add_space(4.0);
-            let age = std::fs::metadata(path).and_then(|file| file.modified());
-            let age = age.ok().and_then(|time| time.elapsed().ok());
-            let when = age.map_or_else(String::new, |age| format!(" {}", ago(age.as_secs())));
-            ui.label(format!(
-                "Grainfall ended{when} before its work was saved. What was kept of it opens as it was half a minute before the \
-                 end or less, with every change and every run."
-            ));
-            ui.add_space(8.0);
-            let mut answered = false;
-            ui.horizontal(|ui| {
-                let answers = [
-                    ("Open", Some(Request::OpenLeft(path.to_owned()))),
-                    ("Discard", Some(Request::DiscardLeft(path.to_owned()))),
-                    ("Later", None),
-                ];
-                for (name, answer) in answers {
-                    if ui.button(name).clicked() {
-                        out.extend(answer);
-                        answered = true;
-                    }
-                }
-            });
-            answered
-        });
     !(modal.inner || modal.should_close())
 }
 
