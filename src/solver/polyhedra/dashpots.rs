@@ -74,14 +74,6 @@ pub struct Response {
     pub rest: Row,
 }
 
-impl Response {
-    /// The sum of the body's dashpots [N s/m].
-    #[inline(always)]
-    pub fn dashpots(&self) -> f64 {
-        self.spin[3]
-    }
-}
-
 /// How walls move, and how they respond to dashpots: not at all.
 pub fn responses_of_walls(motions: &[[Row; 3]]) -> Vec<([Row; 3], Response)> {
     let response = |[_, velocity, spin]: &[Row; 3]| Response {
@@ -99,24 +91,33 @@ impl Body {
     #[inline(always)]
     pub fn response(&self, load: &Load, dt: f64, gravity: Row, strength: f64) -> Response {
         let [xx, xy, xz, yy, yz, zz] = self.inverse_inertia();
-        let inverse_mass = self.inverse_mass();
-        let [mut velocity, mut spin] = [[0.0; 4]; 2];
+        let unloaded = Response {
+            velocity: [0.0, 0.0, 0.0, self.inverse_mass()],
+            spin: [0.0, 0.0, 0.0, strength],
+            inertia: [xx, xy, xz, yy],
+            rest: [yz, zz, 0.0, 0.0],
+        };
+        unloaded.under(self, load, dt, gravity)
+    }
+}
+
+impl Response {
+    /// The same under another `load` of the same `body`.
+    #[inline(always)]
+    #[must_use]
+    pub fn under(&self, body: &Body, load: &Load, dt: f64, gravity: Row) -> Self {
+        let ([xx, xy, xz, yy], [yz, zz, ..]) = (self.inertia, self.rest);
+        let mut found = *self;
+        let inverse_mass = self.velocity[3];
         let turn = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
         for axis in 0..3 {
             let [x, y, z] = turn[axis];
             let [tx, ty, tz, _] = load.torque;
             let acceleration = load.force[axis] * inverse_mass + gravity[axis];
-            velocity[axis] = self.velocity[axis] + dt * acceleration;
-            spin[axis] = self.spin[axis] + dt * (x * tx + y * ty + z * tz);
+            found.velocity[axis] = body.velocity[axis] + dt * acceleration;
+            found.spin[axis] = body.spin[axis] + dt * (x * tx + y * ty + z * tz);
         }
-        velocity[3] = inverse_mass;
-        spin[3] = strength;
-        Response {
-            velocity,
-            spin,
-            inertia: [xx, xy, xz, yy],
-            rest: [yz, zz, 0.0, 0.0],
-        }
+        found
     }
 }
 

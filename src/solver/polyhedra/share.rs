@@ -255,12 +255,8 @@ impl Share for PolyhedraShare<'_> {
                 *response = body.response(load, self.common.dt, self.common.gravity, strength);
             } else {
                 let resistance = incidence.resistance(i);
-                *response = body.response(
-                    &load.with(&resistance),
-                    self.common.dt,
-                    self.common.gravity,
-                    response.dashpots(),
-                );
+                let load = load.with(&resistance);
+                *response = response.under(body, &load, self.common.dt, self.common.gravity);
             }
         }
     }
@@ -289,6 +285,7 @@ impl Share for PolyhedraShare<'_> {
             loads: &mut *self.loads,
             vertices: self.vertices.write_first(phase),
             planes: self.planes.write_first(phase),
+            responses: self.responses.write_first(phase),
             incidence: Incidence {
                 forces: self.forces.read(phase),
                 acting: self.acting.read(phase),
@@ -325,6 +322,8 @@ struct Finish<'a> {
     loads: &'a mut [Load],
     vertices: &'a mut [Row],
     planes: &'a mut [Row],
+    /// How they respond to dashpots that are taken implicitly, where those are.
+    responses: &'a [Response],
     /// Where to find the forces.
     incidence: Incidence<'a>,
     common: Common<'a>,
@@ -341,11 +340,13 @@ impl Work for Finish<'_> {
         let half = 0.5 * common.dt;
         let mut outcome = Outcome::default();
         let from = shapes.places[self.own.start];
+        let start = self.own.start;
         for (i, (body, load)) in self.own.zip(self.bodies.iter_mut().zip(self.loads)) {
             if common.integrator == Integrator::Explicit {
                 self.incidence.sum(i, load);
             } else {
-                self.incidence.resist(i, body, load, common);
+                let response = &self.responses[i - start];
+                self.incidence.resist(i, body, load, response, common);
             }
             body.kick(load, half, common.gravity);
             if self.last {
@@ -417,10 +418,17 @@ impl Incidence<'_> {
     /// `½ Δt (F·(v⁻ + v⁺) + T·(ω⁻ + ω⁺))`: what they change of its kinetic energy from half step to
     /// half step, but for how its inertia turns meanwhile.
     #[inline(always)]
-    fn resist(&self, i: usize, body: &Body, load: &mut Load, common: &Common<'_>) {
+    fn resist(
+        &self,
+        i: usize,
+        body: &Body,
+        load: &mut Load,
+        response: &Response,
+        common: &Common<'_>,
+    ) {
         let resistance = self.resistance(i);
         *load = load.with(&resistance);
-        let after = body.response(load, common.dt, common.gravity, 0.0);
+        let after = response.under(body, load, common.dt, common.gravity);
         let mut work = 0.0;
         for axis in 0..3 {
             work += resistance.force[axis] * (body.velocity[axis] + after.velocity[axis]);
