@@ -35,6 +35,7 @@
 //! | [`recording`] | a run's folder read back: its states one by one, without computing them again |
 //! | [`sweep`] | variations of a scene side by side: cases, table, plots |
 //! | [`paper`] | a paper's cases in one command: what they are, their tables in files and documents |
+//! | [`lesson`] | lessons: steps of text, predictions, what a run answers |
 //! | [`lab`] | one run or two side by side, moved on by a driver, as panels and scripts see them |
 //!
 //! # Conventions
@@ -65,6 +66,11 @@ pub mod files;
 pub mod geometry;
 pub mod lab;
 pub mod lanes;
+#[allow(
+    clippy::disallowed_methods,
+    reason = "what it computes reaches no trajectory"
+)]
+pub mod lesson;
 #[allow(
     clippy::disallowed_methods,
     reason = "what it computes reaches no trajectory"

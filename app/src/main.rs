@@ -6,6 +6,7 @@
 use grainfall::engines::MpiEngine;
 use grainfall::lab::Kept;
 use grainfall::lab::Options;
+use grainfall::lesson::Lesson;
 use grainfall::parameters::Settings;
 use grainfall::run::{Estimate, ScriptedCommand};
 #[cfg(feature = "desktop")]
@@ -98,6 +99,15 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
             "{name} holds what was computed: it opens in a window, and `grainfall verify` computes it again without one"
         )));
     }
+    if Lesson::is_at(&name) {
+        #[cfg(feature = "desktop")]
+        if !arguments.no_render {
+            return open_lesson(name, &what, &allowed, arguments.picture);
+        }
+        return Err(RunnerError::Input(format!(
+            "{name} is a lesson: it opens in a window"
+        )));
+    }
     let (scene, script) = changed_scene(&name, &what)?;
     if !arguments.no_render {
         #[cfg(feature = "desktop")]
@@ -126,6 +136,38 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     allowed.begin(&Estimate::of(&job.scene), &job.out, report)?;
     let ending = headless::run(&job, report, &interruption)?;
     Ok(ending.exit_code())
+}
+
+/// Opens the lesson called `name`, as it is, in a window. Returns the exit code.
+#[cfg(feature = "desktop")]
+fn open_lesson(
+    name: String,
+    what: &What,
+    allowed: &Allowed,
+    picture: PictureArguments,
+) -> Result<u8, RunnerError> {
+    if is_changed(what) {
+        return Err(RunnerError::Input(format!(
+            "{name} is a lesson, which sets its values itself: leave the options out, or write them into its `settings`"
+        )));
+    }
+    let lesson = Lesson::open(&name);
+    let (lesson, scene) = lesson.map_err(|error| RunnerError::Input(error.to_string()))?;
+    allowed.memory(&Estimate::of_start(&scene))?;
+    let opened = Opened::Lesson(Box::new(lesson), Box::new(scene));
+    open_window(name, opened, window_options(what, Vec::new()), picture)
+}
+
+/// Whether options ask for other values than what is opened has.
+#[cfg(feature = "desktop")]
+fn is_changed(what: &What) -> bool {
+    let given = [
+        &what.duration,
+        &what.output_interval,
+        &what.time_step,
+        &what.seed,
+    ];
+    given.iter().any(|option| option.is_some()) || !what.set.is_empty() || what.commands.is_some()
 }
 
 /// The threads asked for, or as many as there are cores; says where they are more.
@@ -196,16 +238,7 @@ fn opening_session(what: &What, picture: &PictureArguments, no_render: bool) -> 
 #[cfg(feature = "desktop")]
 fn unchanged(name: &str, what: &What) -> Result<Opened, RunnerError> {
     let refuse = |reason: String| Err(RunnerError::Input(reason));
-    let given = [
-        &what.duration,
-        &what.output_interval,
-        &what.time_step,
-        &what.seed,
-    ];
-    if given.iter().any(|option| option.is_some())
-        || !what.set.is_empty()
-        || what.commands.is_some()
-    {
+    if is_changed(what) {
         return refuse(format!(
             "{name} opens as it was saved: leave the options out and change it in the window, or give a scene the changes of a \
              session or a summary.json with --commands"

@@ -114,3 +114,4 @@ pub use velocity_kernel::{kernel_reach, mean_velocity};
 pub use velocity_map::{VelocityMap, velocity_map};
 pub use verdict::Verdict;
 pub use wet_bed::{bridges, capillary_number, drop_ratio_law, galilei_number};
+pub(crate) use window::Window;

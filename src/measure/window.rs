@@ -8,6 +8,7 @@ use super::estimate::Estimate;
 use super::sampled_quantity::Measure;
 use super::series::Series;
 use super::summary::Summary;
+use std::ops::Range;
 
 /// Time over which the slope of a rise is taken [s].
 const SLOPE_TIME: f64 = 0.2;
@@ -15,7 +16,7 @@ const SLOPE_TIME: f64 = 0.2;
 /// The samples that count.
 pub struct Window<'a> {
     series: &'a Series,
-    first: usize,
+    range: Range<usize>,
     time: &'a [f64],
     /// Of unevenly spaced samples, those that are about as far apart as the farthest.
     even: Option<Vec<usize>>,
@@ -24,11 +25,20 @@ pub struct Window<'a> {
 impl<'a> Window<'a> {
     /// Those from `from_time` [s] on.
     pub fn of(series: &'a Series, from_time: f64) -> Self {
-        let first = series.first_at(from_time);
-        let time = &series.time()[first..];
+        Self::in_range(series, series.first_at(from_time)..series.len())
+    }
+
+    /// Those from one time to another [s], both included.
+    pub fn between(series: &'a Series, from_time: f64, to_time: f64) -> Self {
+        let end = series.time().partition_point(|time| *time <= to_time);
+        Self::in_range(series, series.first_at(from_time).min(end)..end)
+    }
+
+    fn in_range(series: &'a Series, range: Range<usize>) -> Self {
+        let time = &series.time()[range.clone()];
         Self {
             series,
-            first,
+            range,
             time,
             even: evenly_spaced(time),
         }
@@ -46,12 +56,17 @@ impl<'a> Window<'a> {
 
     /// The values of a measure [SI].
     pub fn column(&self, measure: Measure) -> &'a [f64] {
-        &self.series.column(measure)[self.first..]
+        &self.series.column(measure)[self.range.clone()]
     }
 
     /// The last of them.
     pub fn at_end(&self, measure: Measure) -> f64 {
         self.column(measure).last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The largest of them; NaN where none has a value.
+    pub fn largest(&self, measure: Measure) -> f64 {
+        largest(self.column(measure))
     }
 
     /// Mean of a measure over the window; NaN where no sample has a value.

@@ -60,7 +60,7 @@ impl SceneError {
     }
 
     /// A file that cannot be read at all.
-    pub(super) fn unreadable(file: &str, fault: impl Into<String>, expected: &str) -> Self {
+    pub(crate) fn unreadable(file: &str, fault: impl Into<String>, expected: &str) -> Self {
         Self(Box::new(Mistake {
             file: file.to_owned(),
             line: None,
@@ -79,13 +79,13 @@ impl SceneError {
         self
     }
 
-    pub(super) fn advise(mut self, advice: Option<String>) -> Self {
+    pub(crate) fn advise(mut self, advice: Option<String>) -> Self {
         self.0.advice = advice;
         self
     }
 
     /// `problem` with the place in `text` where it stands.
-    pub(super) fn from_problem(file: &str, text: &str, problem: Problem) -> Self {
+    pub(crate) fn from_problem(file: &str, text: &str, problem: Problem) -> Self {
         let outline = Outline::new(text);
         let entry = outline.find(&problem.path);
         let exact = entry.filter(|e| e.path.starts_with(&problem.path));

@@ -33,8 +33,12 @@ pub(crate) use grains::lattice_counts;
 pub use grains::{SceneCellSpecies, SceneCells, SceneGrain, SceneGrains, SceneSpecies};
 pub use lattice::Lattice;
 pub use materials::{PairOverride, SceneMaterial};
+pub(crate) use outline::first_word;
+pub(crate) use reading::{folder_of, read_text};
 pub use shape::{SceneBody, SceneShape};
 pub use size_classes::{SizeClass, size_classes, species_counts};
+pub(crate) use stored_cells::lies_in;
 pub use stored_cells::{
     HeldCells, PackingError, StoredCells, take_packings_from_anywhere, within_folders,
 };
+pub(crate) use syntax::{FileKind, read_ron};

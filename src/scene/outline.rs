@@ -94,6 +94,17 @@ pub(super) fn shorten(text: &str, longest: usize) -> String {
     line
 }
 
+/// The first word of `text` after white space, comments and attributes: in a file of RON the name of
+/// what it states, if it gives one.
+pub(crate) fn first_word(text: &str) -> Option<&str> {
+    let mut scan = Scan::new(text);
+    scan.skip_attributes();
+    match scan.token()? {
+        (Token::Word, range) => text.get(range),
+        _ => None,
+    }
+}
+
 /// Line, counted from 1, in which the byte `at` stands.
 pub(super) fn line_of(text: &str, at: usize) -> usize {
     let before = &text.as_bytes()[..at.min(text.len())];

@@ -3,15 +3,16 @@
 use super::built_in::built_in;
 use super::description::Scene;
 use super::error::{self, SceneError};
-use super::file::SceneFile;
-use super::syntax;
+use super::file::{KIND, SceneFile};
+use super::syntax::read_ron;
 use crate::files::read_whole;
-use ron::extensions::Extensions;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Largest scene file that is read [bytes]: room for about half a million listed grains.
 const LARGEST_FILE: u64 = 64 << 20;
+/// What is read here.
+const A_SCENE: &str = "a scene file in RON";
 
 impl Scene {
     /// The scene in the file at `path`.
@@ -21,7 +22,7 @@ impl Scene {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        Self::parse(&name, &read(path, &name)?)
+        Self::parse(&name, &read_text(path, &name, LARGEST_FILE, A_SCENE)?)
     }
 
     /// The scene that comes from `source`, which errors call `name`; names of files in it are
@@ -32,8 +33,8 @@ impl Scene {
     pub fn read(source: impl Read, name: &str) -> Result<Self, SceneError> {
         let mut bytes = Vec::new();
         let read = source.take(LARGEST_FILE).read_to_end(&mut bytes);
-        read.map_err(|error| unreadable(name, format!("cannot be read: {error}")))?;
-        Self::parse(name, &text_of(bytes, name)?)
+        read.map_err(|error| unreadable(name, error, A_SCENE))?;
+        Self::parse(name, &text_of(bytes, name, A_SCENE)?)
     }
 
     /// The scene that a person calls `name`: the file at that path, or else a built-in scene of
@@ -82,22 +83,8 @@ impl Scene {
     /// When the text is no scene, or states something impossible.
     pub fn parse(file: &str, text: &str) -> Result<Self, SceneError> {
         let text = text.trim_start_matches('\u{feff}');
-        if text.trim().is_empty() {
-            return Err(SceneError::unreadable(
-                file,
-                "the file is empty",
-                "a scene `(title: …, …)`",
-            ));
-        }
         let refuse = |problem| SceneError::from_problem(file, text, problem);
-        let scene = ron::Options::default()
-            .with_default_extension(
-                Extensions::IMPLICIT_SOME
-                    | Extensions::UNWRAP_NEWTYPES
-                    | Extensions::UNWRAP_VARIANT_NEWTYPES,
-            )
-            .from_str::<SceneFile>(text)
-            .map_err(|error| syntax::explain(file, text, &error))?
+        let scene = read_ron::<SceneFile>(&KIND, file, text)?
             .into_scene(folder_of(file))
             .map_err(refuse)?;
         scene.problem().map_err(refuse)?;
@@ -115,26 +102,32 @@ impl Scene {
     }
 }
 
-fn folder_of(file: &str) -> &Path {
+/// The folder that the file called `file` stands in.
+pub(crate) fn folder_of(file: &str) -> &Path {
     Path::new(file).parent().unwrap_or(Path::new(""))
 }
 
-/// Text of the file at `path`, which errors call `name`.
-fn read(path: &Path, name: &str) -> Result<String, SceneError> {
-    let bytes = read_whole(path, LARGEST_FILE)
-        .map_err(|error| unreadable(name, format!("cannot be read: {error}")))?;
-    text_of(bytes, name)
+/// Text of the file at `path`, which errors call `name`; it has at most `most` bytes and is `expected`
+/// to be something.
+pub(crate) fn read_text(
+    path: &Path,
+    name: &str,
+    most: u64,
+    expected: &str,
+) -> Result<String, SceneError> {
+    let bytes = read_whole(path, most).map_err(|error| unreadable(name, error, expected))?;
+    text_of(bytes, name, expected)
 }
 
 /// `bytes` as text.
-fn text_of(bytes: Vec<u8>, name: &str) -> Result<String, SceneError> {
+fn text_of(bytes: Vec<u8>, name: &str, expected: &str) -> Result<String, SceneError> {
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
-        unreadable(name, "is not UTF-8 text".to_owned()).at_line(&text, good)
+        SceneError::unreadable(name, "is not UTF-8 text", expected).at_line(&text, good)
     })
 }
 
-fn unreadable(name: &str, fault: String) -> SceneError {
-    SceneError::unreadable(name, fault, "a scene file in RON")
+fn unreadable(name: &str, error: io::Error, expected: &str) -> SceneError {
+    SceneError::unreadable(name, format!("cannot be read: {error}"), expected)
 }

@@ -56,7 +56,7 @@ pub fn within_folders<T>(folders: &[&Path], read: impl FnOnce() -> T) -> T {
 }
 
 /// Whether the file at `path` lies in `folder` or below it, wherever links lead.
-fn lies_in(folder: &Path, path: &Path) -> bool {
+pub(crate) fn lies_in(folder: &Path, path: &Path) -> bool {
     let here = Path::new(".");
     let folder = Some(folder).filter(|folder| *folder != Path::new(""));
     let folder = folder.unwrap_or(here).canonicalize();

@@ -1,22 +1,61 @@
 //! What the RON reader refuses, in words a person can act on.
 //!
-//! In: the reader's error and the text. Out: a [`SceneError`] that names the key round the place
-//! and says what belongs there. Values that can be read but make no sense are for [`super::check`].
+//! In: the reader's error and the text, and which kind of file it should be. Out: a [`SceneError`]
+//! that names the key round the place and says what belongs there. Values that can be read but make
+//! no sense are for the checks of that kind.
 
 use super::error::{SceneError, one_of, suggestion};
 use super::outline::{Outline, OutlineEntry, byte_at};
-use crate::physics::ContactLaw;
+use ron::extensions::Extensions;
+use serde::de::DeserializeOwned;
 
 const WHOLE_NUMBER: &str = "a whole number of at least 0";
 
+/// A kind of file in RON, in words.
+pub(crate) struct FileKind {
+    /// What people call it: `scene`.
+    pub noun: &'static str,
+    /// How its text begins.
+    pub begins: &'static str,
+    /// What each key of it holds, for those who left it out or gave something else; empty where
+    /// that needs no saying.
+    pub meaning: fn(&str) -> &'static str,
+}
+
+/// What `text`, which errors call `file`, states as a file of this `kind`.
+///
+/// # Errors
+/// When the text is no such file; what its values mean is not looked at.
+pub(crate) fn read_ron<T: DeserializeOwned>(
+    kind: &FileKind,
+    file: &str,
+    text: &str,
+) -> Result<T, SceneError> {
+    if text.trim().is_empty() {
+        let expected = format!("a {} {}", kind.noun, kind.begins);
+        return Err(SceneError::unreadable(file, "the file is empty", &expected));
+    }
+    let extensions = Extensions::IMPLICIT_SOME
+        | Extensions::UNWRAP_NEWTYPES
+        | Extensions::UNWRAP_VARIANT_NEWTYPES;
+    let options = ron::Options::default().with_default_extension(extensions);
+    (options.from_str(text)).map_err(|error| explain(kind, file, text, &error))
+}
+
 /// What the RON reader found wrong in `text`, in our words.
-pub(super) fn explain(file: &str, text: &str, error: &ron::error::SpannedError) -> SceneError {
+fn explain(
+    kind: &FileKind,
+    file: &str,
+    text: &str,
+    error: &ron::error::SpannedError,
+) -> SceneError {
     let outline = Outline::new(text);
     let start = byte_at(text, error.span.start.line, error.span.start.col);
     let end = byte_at(text, error.span.end.line, error.span.end.col);
     // The reader stands before the white space that leads to the token it refuses.
     let blank = text[start..].len() - text[start..].trim_start().len();
     let finding = Finding {
+        kind,
         file,
         outline: &outline,
         at: (start + blank).min(end.max(start)),
@@ -26,6 +65,7 @@ pub(super) fn explain(file: &str, text: &str, error: &ron::error::SpannedError) 
 
 /// A mistake that the RON reader found at the byte `at`.
 struct Finding<'a> {
+    kind: &'a FileKind,
     file: &'a str,
     outline: &'a Outline<'a>,
     at: usize,
@@ -72,7 +112,7 @@ impl Finding<'_> {
         let holder = entry.and_then(|e| e.path.rsplit_once('.')).map(|p| p.0);
         let fault = match holder {
             Some(holder) => format!("is not a key of `{holder}`"),
-            None => "is not a key of a scene".to_owned(),
+            None => format!("is not a key of a {}", self.kind.noun),
         };
         let key = entry.map_or(found, |e| &e.path);
         self.error(entry, fault, one_of(expected))
@@ -83,10 +123,10 @@ impl Finding<'_> {
     fn missing_key(&self, field: &str) -> SceneError {
         if let Some(holder) = self.outline.holding(self.at) {
             let fault = format!("has no `{field}`");
-            return self.error(Some(holder), fault, meaning(field).to_owned());
+            return self.error(Some(holder), fault, (self.kind.meaning)(field).to_owned());
         }
-        let fault = "is missing from the scene".to_owned();
-        self.error(None, fault, meaning(field).to_owned())
+        let fault = format!("is missing from the {}", self.kind.noun);
+        self.error(None, fault, (self.kind.meaning)(field).to_owned())
             .about(field)
     }
 
@@ -97,10 +137,10 @@ impl Finding<'_> {
 
     fn wrong_type_of(&self, found: &str, expected: &str) -> SceneError {
         let Some(entry) = self.outline.around(self.at) else {
-            let fault = "the text does not begin as a scene".to_owned();
-            return self.error(None, fault, "`(title: …, …)`".to_owned());
+            let fault = format!("the text does not begin as a {}", self.kind.noun);
+            return self.error(None, fault, self.kind.begins.to_owned());
         };
-        let expected = match meaning(last_key(&entry.path)) {
+        let expected = match (self.kind.meaning)(last_key(&entry.path)) {
             "" => expected.to_owned(),
             meaning => format!("{expected}: {meaning}"),
         };
@@ -113,7 +153,7 @@ impl Finding<'_> {
         let Some(entry) = element.and_then(|e| self.outline.find(without_index(&e.path))) else {
             return self.syntax(code);
         };
-        let expected = meaning(last_key(&entry.path)).to_owned();
+        let expected = (self.kind.meaning)(last_key(&entry.path)).to_owned();
         self.error(Some(entry), format!("has {fault}"), expected)
     }
 
@@ -158,8 +198,26 @@ impl Finding<'_> {
             format!("this is not RON{near}: {}", lower_first(&what)),
             "",
         )
-        .advise(syntax_advice(code).map(str::to_owned))
+        .advise(self.syntax_advice(code))
         .at_line(self.outline.text(), self.at)
+    }
+
+    fn syntax_advice(&self, code: &ron::Error) -> Option<String> {
+        use ron::Error as E;
+        let advice = match code {
+            E::Eof => "The text ends too early: is a closing bracket or quote missing?",
+            E::ExpectedComma => {
+                "Is a comma or a closing quote missing before this, or is there a bracket too many?"
+            }
+            E::TrailingCharacters => {
+                let noun = self.kind.noun;
+                return Some(format!("Nothing may follow the {noun}'s closing bracket"));
+            }
+            E::ExpectedMapColon => "A key and its value are parted by a colon",
+            E::ExpectedIdentifier => "Keys are plain words; only names stand in quotes",
+            _ => return None,
+        };
+        Some(advice.to_owned())
     }
 
     fn error(&self, entry: Option<&OutlineEntry>, fault: String, expected: String) -> SceneError {
@@ -192,54 +250,4 @@ fn lower_first(text: &str) -> String {
         .next()
         .map(|first| first.to_lowercase().chain(characters).collect())
         .unwrap_or_default()
-}
-
-fn syntax_advice(code: &ron::Error) -> Option<&'static str> {
-    use ron::Error as E;
-    match code {
-        E::Eof => Some("The text ends too early: is a closing bracket or quote missing?"),
-        E::ExpectedComma => Some(
-            "Is a comma or a closing quote missing before this, or is there a bracket too many?",
-        ),
-        E::TrailingCharacters => Some("Nothing may follow the scene's closing bracket"),
-        E::ExpectedMapColon => Some("A key and its value are parted by a colon"),
-        E::ExpectedIdentifier => {
-            Some("Keys are plain words; only names of materials stand in quotes")
-        }
-        _ => None,
-    }
-}
-
-/// What a key holds, for those who left it out or gave something else.
-fn meaning(key: &str) -> &'static str {
-    match key {
-        "title" => "one line that names the scene",
-        "materials" => "the materials by name: `{\"glass\": (density: 2500), …}`",
-        "container" => "`Drum(…)`, `Box(…)`, `Column(…)`, `Planes([…])` or `Nothing`",
-        "grains" => "`Fill(…)`, `Voronoi(…)` or `List([…])`",
-        "species" => "the kinds of grain, `[(radius: 0.003, material: \"glass\")]`",
-        "material" => "the name of one of the scene's materials",
-        "radius" => "a length in m, or in mm as `radius_mm`",
-        "height" => "a length in m, or in mm as `height_mm`",
-        "cell" | "rounding" => "a length in m, or in mm under a key that ends in `_mm`",
-        "shape" => {
-            "`Box(size: …)`, `Tetrahedron(edge: …)`, `Prism(…)`, `Hull(points: […])` or `Sphere`"
-        }
-        "orientation" => "`Turned(axis: …, angle_deg: …)`, `Quaternion(…)` or `Upright`",
-        "tube" => "`(speed: …)` in m/s",
-        "width" => "a length in m, or in mm as `width_mm`",
-        "speed" => "rad/s, or turns per minute as `speed_rpm`",
-        "position" | "point" | "min" | "max" => "a point `(x, y, z)` in m",
-        "velocity" => "`(x, y, z)` in m/s",
-        "spin" => "`(x, y, z)` in rad/s",
-        "gravity" => "`(x, y, z)` in m/s²",
-        "normal" => "the direction `(x, y, z)` towards the grains",
-        "between" => "two materials, `(\"glass\", \"drum\")`",
-        "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
-        "law" => ContactLaw::FORMS,
-        "integrator" => "`Explicit` or `Imex`",
-        "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
-        "duration" | "output_interval" | "sample_interval" => "a time in s",
-        _ => "",
-    }
 }

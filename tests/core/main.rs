@@ -9,6 +9,7 @@ mod architecture;
 mod comparison;
 mod doors;
 mod engines;
+mod lesson;
 mod measure;
 mod paper;
 mod parameters;

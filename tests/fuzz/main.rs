@@ -119,6 +119,11 @@ fn scenes() {
 }
 
 #[test]
+fn lessons() {
+    fuzz("lesson", targets::LessonTexts::new());
+}
+
+#[test]
 fn settings() {
     fuzz("--set", targets::SettingsOfScenes::new());
 }

@@ -2,6 +2,7 @@
 //! of the tests, and files that runs of small scenes leave.
 
 use super::{byte_mutator, mutator};
+use grainfall::lesson::{Lesson, LessonUnderWay, built_in_lessons};
 use grainfall::measure::sample;
 use grainfall::parameters::Settings;
 use grainfall::recording::Recording;
@@ -166,6 +167,34 @@ impl Target for SceneTexts {
                 false
             }
         }
+    }
+}
+
+/// Texts of lessons, each checked with a scene where it can be read.
+pub struct LessonTexts(Scene);
+
+impl LessonTexts {
+    pub fn new() -> Self {
+        Self(scene("small-drum", &[]))
+    }
+}
+
+impl Target for LessonTexts {
+    fn take(&mut self, rng: &mut ChaCha8Rng) -> bool {
+        let text = mutator::text(one_of(built_in_lessons(), rng).text, rng);
+        let lesson = Lesson::parse("mutated.ron", &text);
+        let checked = lesson.and_then(|lesson| {
+            let words = LessonUnderWay::new(lesson.clone()).in_words();
+            let _ = LessonUnderWay::read(&mutator::text(&words, rng), &self.0);
+            lesson.check_in(&self.0)
+        });
+        let Err(error) = checked else {
+            return true;
+        };
+        let message = error.to_string();
+        assert!(message.contains("mutated.ron"), "{message}");
+        assert!(message.len() < 12_000, "{} bytes", message.len());
+        false
     }
 }
 

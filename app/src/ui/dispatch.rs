@@ -7,8 +7,9 @@
 use crate::simulation::Simulation;
 use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
+use crate::ui::panels::lesson::show_look;
 use crate::ui::playback::first_speed;
-use crate::ui::request::{Request, Requests};
+use crate::ui::request::{LessonAct, Request, Requests};
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
 use crate::ui::session_look::SessionLook;
 use crate::view::{CameraRequest, OrbitCamera, ViewSettings};
@@ -18,6 +19,7 @@ use bevy::tasks::futures::check_ready;
 use bevy::tasks::{IoTaskPool, Task};
 use grainfall::engines::sound_scene_from;
 use grainfall::lab::{Half, Kept, LabCommand, Options, SavedFile};
+use grainfall::lesson::Lesson;
 use grainfall::parameters::{Parameter, Value};
 use grainfall::run::{Command, CommandError, Estimate, RunRecord, ScriptedCommand};
 use grainfall::scene::Scene;
@@ -116,6 +118,9 @@ fn fulfil(
         (Request::EndComparison(half), Some(simulation)) => {
             end_comparison(simulation, half, dock, &mut opener.view);
         }
+        (Request::Lesson(act), Some(simulation)) => {
+            go_on_in_lesson(act, simulation, dock, &mut opener.view);
+        }
         (Request::SaveSession(path), Some(run)) => {
             let look = opener.look(dock);
             run.send(LabCommand::Save { path, look });
@@ -168,6 +173,7 @@ fn fulfil(
             | Request::EndComparison(_)
             | Request::RunAnew
             | Request::RunOn
+            | Request::Lesson(_)
             | Request::SaveSession(_)
             | Request::SaveChanges(_),
             None,
@@ -200,6 +206,24 @@ fn compare(
         Err(reason) => dock.notify(reason),
     }
     view.focus = Half::Left;
+}
+
+/// Does what was asked of the lesson that is followed.
+fn go_on_in_lesson(
+    act: LessonAct,
+    simulation: &mut Simulation,
+    dock: &mut Dock,
+    view: &mut ViewSettings,
+) {
+    let look = |dock: &Dock| dock.lesson.under_way().map(|lesson| lesson.look().clone());
+    let before = look(dock);
+    for command in dock.lesson.act(act, simulation) {
+        simulation.send(command);
+    }
+    let now = look(dock).filter(|now| before.as_ref() != Some(now));
+    if let Some(look) = now {
+        show_look(&look, view);
+    }
 }
 
 /// Goes on with the run in `half` alone.
@@ -253,7 +277,13 @@ fn doubt(request: &Request) -> Option<String> {
 /// The error of opening the scene called `name`; none where it opens or is no scene but a session or
 /// a recording.
 fn no_scene(name: &str) -> Option<String> {
-    let scene = (!Kept::is_at(name)).then(|| Scene::open(name))?;
+    if Kept::is_at(name) {
+        return None;
+    }
+    if Lesson::is_at(name) {
+        return Lesson::open(name).err().map(|error| error.to_string());
+    }
+    let scene = Scene::open(name);
     scene.err().map(|error| error.to_string())
 }
 
@@ -300,10 +330,10 @@ pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
     let options = opener.options_for(duration);
     match read {
         Ok(Kept::Session(session)) => {
-            let look = session.look().to_owned();
+            let (look, scene) = (session.look().to_owned(), session.record().scene.clone());
             opener.show(Simulation::resume(*session, options));
             dock.session_opened(&name);
-            opener.take_up(&look, &mut dock);
+            opener.take_up(&look, &scene, &mut dock);
         }
         Ok(Kept::Recording(recording)) => {
             opener.show(Simulation::play_back(*recording, options));
@@ -320,9 +350,9 @@ impl Opener<'_, '_> {
     }
 
     /// Looks as the session did whose `look` this is; one that is not known changes nothing.
-    fn take_up(&mut self, look: &str, dock: &mut Dock) {
+    fn take_up(&mut self, look: &str, scene: &Scene, dock: &mut Dock) {
         if let Some(look) = SessionLook::read(look) {
-            look.restore(&mut self.view, self.camera.as_deref_mut(), dock);
+            look.restore(&mut self.view, self.camera.as_deref_mut(), dock, scene);
         }
     }
 
@@ -341,7 +371,7 @@ impl Opener<'_, '_> {
         }
     }
 
-    /// Opens the scene, the session or the recording called `name`; one that cannot be opened leaves the present
+    /// Opens the scene, the lesson, the session or the recording called `name`; one that cannot be opened leaves the present
     /// one running.
     fn open(&mut self, name: String, dock: &mut Dock) {
         self.opening.0 = None;
@@ -351,6 +381,9 @@ impl Opener<'_, '_> {
             let read = IoTaskPool::get().spawn(async move { Kept::read(&path) });
             self.opening.0 = Some((name, read));
             return;
+        }
+        if Lesson::is_at(&name) {
+            return self.open_lesson(&name, dock);
         }
         match Scene::open(&name) {
             Ok(scene) => {
@@ -376,6 +409,19 @@ impl Opener<'_, '_> {
             }
             Ok(Kept::Recording(_)) => {}
             Err(error) => dock.show_open_error(error),
+        }
+    }
+
+    /// Opens the lesson called `name` at its first step.
+    fn open_lesson(&mut self, name: &str, dock: &mut Dock) {
+        match Lesson::open(name) {
+            Ok((lesson, scene)) => {
+                let speed = first_speed(scene.duration);
+                self.start(scene, Vec::new(), None, speed);
+                show_look(&lesson.look, &mut self.view);
+                dock.lesson_opened(name, lesson);
+            }
+            Err(error) => dock.show_open_error(error.to_string()),
         }
     }
 

@@ -22,6 +22,7 @@ use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
 use crate::ui::panels::compare::Compare;
 use crate::ui::panels::energy_stack::EnergyStack;
 use crate::ui::panels::explorer::Explorer;
+use crate::ui::panels::lesson::LessonDesk;
 use crate::ui::panels::mean_velocities::MeanVelocities;
 use crate::ui::panels::microscope::Microscope;
 use crate::ui::panels::parameters::Parameters;
@@ -40,6 +41,7 @@ use crate::view::ViewSettings;
 use bevy::prelude::Resource;
 use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText};
 use grainfall::lab::Status;
+use grainfall::lesson::Lesson;
 use grainfall::run::Parameter;
 use grainfall::scene::built_in;
 use std::path::PathBuf;
@@ -56,6 +58,8 @@ const NOTICE_TIME: Duration = Duration::from_secs(6);
 pub struct Dock {
     left: Vec<Section>,
     right: Vec<Section>,
+    /// The lesson that is followed.
+    pub lesson: LessonDesk,
     transport: Transport,
     badge: Badge,
     shown: OpenSides,
@@ -129,6 +133,7 @@ impl Default for Dock {
         Self {
             left: left(),
             right: right(),
+            lesson: LessonDesk::default(),
             transport: Transport::default(),
             badge: Badge::default(),
             shown: OpenSides {
@@ -179,6 +184,7 @@ impl Dock {
         out.extend(shortcuts::pressed(root.ctx(), simulation));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
+            self.lesson.follow(simulation, out);
             self.sides_ui(root, simulation, view, out);
             let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
             bar.show(root, |ui| self.transport.ui(ui, simulation, out));
@@ -317,8 +323,7 @@ impl Dock {
             painter.text(free.center(), Align2::CENTER_CENTER, text, font, colour);
         };
         if simulation.is_none() {
-            let text =
-                "Open a scene, a session or a recording: File menu, Ctrl+O, or drop a file here";
+            let text = "Open a scene, a lesson, a session or a recording: File menu, Ctrl+O, or drop a file here";
             write(text, 18.0, visuals.text_color());
         }
         if self.file_hovers {
@@ -380,8 +385,16 @@ impl Dock {
             .map(|scene| scene.name)
             .find(|known| *known == name);
         self.session = None;
+        self.lesson = LessonDesk::default();
         (self.left, self.right) = (left(), right());
         self.transport = Transport::default();
+    }
+
+    /// Does the same for the scene of `lesson`, which begins.
+    pub fn lesson_opened(&mut self, name: &str, lesson: Lesson) {
+        self.scene_opened(name);
+        self.lesson.begin(lesson);
+        self.shown.left = true;
     }
 
     /// Resets the panels for a scene made from the present one.
@@ -433,6 +446,7 @@ impl Dock {
                 .default_size(size(0.235, 290.0, 380.0))
                 .size_range(240.0..=520.0)
                 .show_collapsible(root, &mut self.shown.left, |ui| {
+                    self.lesson.ui(ui, simulation, out);
                     sections_ui(ui, &mut self.left, simulation, view, out);
                 });
         }

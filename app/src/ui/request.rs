@@ -6,6 +6,7 @@ use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::view::CameraRequest;
 use bevy::prelude::*;
 use grainfall::lab::Half;
+use grainfall::lesson::Prediction;
 use grainfall::parameters::{Parameter, Value};
 use grainfall::run::Command;
 use grainfall::scene::Scene;
@@ -32,9 +33,12 @@ pub enum Request {
     Camera(CameraRequest),
     /// Show the scenes that come with the program.
     ShowScenes,
-    /// Let the person choose a file of a scene, a session or a recording.
+    /// Something about the lesson that is followed.
+    Lesson(LessonAct),
+    /// Let the person choose a file of a scene, a lesson, a session or a recording.
     ChooseFile,
-    /// Open this: the path of a scene, a session or a recording, or a built-in scene's name.
+    /// Open this: the path of a scene, a lesson, a session or a recording, or the name of a built-in
+    /// scene or lesson.
     Open(String),
     /// Start afresh with this scene in place of the present one, and the present values of the live
     /// parameters.
@@ -108,6 +112,25 @@ impl Request {
             _ => false,
         }
     }
+}
+
+/// What is asked of the lesson that is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LessonAct {
+    /// What comes next: the field, the experiment, the next step.
+    Main,
+    /// The next step.
+    Next,
+    /// The step before.
+    Back,
+    /// One hint more.
+    Hint,
+    /// This is the prediction.
+    Say(Prediction),
+    /// Forget what was predicted and measured in this step.
+    Again,
+    /// Follow it no longer.
+    Leave,
 }
 
 /// A sheet of text over the window.

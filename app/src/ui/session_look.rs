@@ -10,6 +10,7 @@ use crate::view::{
     CameraPose, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, ViewSettings,
 };
 use grainfall::measure::GrainQuantity;
+use grainfall::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Most trails that a file may ask for.
@@ -47,6 +48,8 @@ pub struct SessionLook {
     traced: Vec<usize>,
     camera: Option<CameraPose>,
     panels: Vec<PanelLook>,
+    /// The lesson that was followed, in its own words; empty where none was.
+    lesson: String,
 }
 
 /// How a panel looked.
@@ -96,6 +99,7 @@ impl SessionLook {
             traced: view.traced.clone(),
             camera: camera.map(OrbitCamera::pose),
             panels: panels.collect(),
+            lesson: dock.lesson.in_words(),
         }
     }
 
@@ -110,13 +114,15 @@ impl SessionLook {
         serde_json::from_str(words).ok()
     }
 
-    /// Makes everything look so.
+    /// Makes everything look so, in a session of `scene`.
     pub fn restore(
         self,
         view: &mut ViewSettings,
         camera: Option<&mut OrbitCamera>,
         dock: &mut Dock,
+        scene: &Scene,
     ) {
+        dock.lesson.take_up(&self.lesson, scene);
         let mut quantities = GrainQuantity::ALL.into_iter();
         let quantity = quantities.find(|quantity| quantity.quantity().key == self.colour_by);
         view.colour_by = quantity.map_or(ColourBy::Species, ColourBy::Quantity);

@@ -6,9 +6,10 @@
 
 use crate::simulation::Simulation;
 use crate::ui::playback::{Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche};
-use crate::ui::request::{Request, Sheet};
+use crate::ui::request::{LessonAct, Request, Sheet};
 use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
+use grainfall::lesson::{Change, Prediction};
 use grainfall::run::Command;
 
 /// A key and what it does.
@@ -49,6 +50,14 @@ const fn shift(key: Key) -> KeyboardShortcut {
 
 const fn look_from(side: StandardView) -> KeyAction {
     KeyAction::Ask(Request::Camera(CameraRequest::From(side)))
+}
+
+const fn lesson(act: LessonAct) -> KeyAction {
+    KeyAction::Ask(Request::Lesson(act))
+}
+
+const fn say(change: Change) -> KeyAction {
+    lesson(LessonAct::Say(Prediction::Change(change)))
 }
 
 /// Every shortcut, in the order of the sheet.
@@ -209,12 +218,12 @@ pub const SHORTCUTS: &[Shortcut] = &[
     },
     Shortcut {
         keys: &[ctrl(Key::O)],
-        name: "Open a scene, a session or a recording",
+        name: "Open a scene, a lesson, a session or a recording",
         action: KeyAction::Ask(Request::ChooseFile),
     },
     Shortcut {
         keys: &[ctrl(Key::G)],
-        name: "Scenes with their pictures",
+        name: "Lessons and scenes with their pictures",
         action: KeyAction::Ask(Request::ShowScenes),
     },
     Shortcut {
@@ -246,6 +255,46 @@ pub const SHORTCUTS: &[Shortcut] = &[
         keys: &[key(Key::PageDown)],
         name: "The next avalanche",
         action: KeyAction::Avalanche(Way::On),
+    },
+    Shortcut {
+        keys: &[key(Key::Enter)],
+        name: "In a lesson: predict, play, go on",
+        action: lesson(LessonAct::Main),
+    },
+    Shortcut {
+        keys: &[key(Key::N)],
+        name: "In a lesson: the next step",
+        action: lesson(LessonAct::Next),
+    },
+    Shortcut {
+        keys: &[key(Key::B)],
+        name: "In a lesson: the step before",
+        action: lesson(LessonAct::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::H)],
+        name: "In a lesson: a hint",
+        action: lesson(LessonAct::Hint),
+    },
+    Shortcut {
+        keys: &[key(Key::A)],
+        name: "In a lesson: try again",
+        action: lesson(LessonAct::Again),
+    },
+    Shortcut {
+        keys: &[key(Key::Plus)],
+        name: "In a lesson: I say higher",
+        action: say(Change::Higher),
+    },
+    Shortcut {
+        keys: &[key(Key::Minus)],
+        name: "In a lesson: I say lower",
+        action: say(Change::Lower),
+    },
+    Shortcut {
+        keys: &[key(Key::Equals)],
+        name: "In a lesson: I say the same",
+        action: say(Change::Same),
     },
     Shortcut {
         keys: &[key(Key::F1)],
@@ -299,9 +348,9 @@ impl Shortcut {
 
     /// Whether its keys work the control that has the keyboard's focus.
     fn moves_a_control(&self) -> bool {
-        use Key::{ArrowLeft, ArrowRight, End, Home, Space};
+        use Key::{ArrowLeft, ArrowRight, End, Enter, Home, Space};
         self.keys.iter().any(|key| {
-            let works = [ArrowLeft, ArrowRight, End, Home, Space].contains(&key.logical_key);
+            let works = [ArrowLeft, ArrowRight, End, Enter, Home, Space].contains(&key.logical_key);
             works && !key.modifiers.command
         })
     }

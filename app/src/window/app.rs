@@ -6,7 +6,7 @@
 use crate::headless::heard;
 use crate::simulation::{Simulation, SimulationPlugin};
 use crate::ui::{
-    Dock, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, title_in_words,
+    Dock, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, show_look, title_in_words,
 };
 use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
@@ -25,6 +25,7 @@ use bevy::render::render_resource::BlendState;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use grainfall::run::Rescue;
+use grainfall::scene::Scene as GranularScene;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::time::Duration;
 
@@ -104,15 +105,22 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         Opened::Scene(_) | Opened::Shipped(_) | Opened::Recording(_) => {
             dock.scene_opened(&job.name);
         }
+        Opened::Lesson(lesson, _) => dock.lesson_opened(&job.name, lesson.as_ref().clone()),
         Opened::Session(_) => dock.session_opened(&job.name),
     }
     let look = match &job.opened {
-        Opened::Scene(_) | Opened::Shipped(_) | Opened::Recording(_) => None,
         Opened::Session(session) => SessionLook::read(session.look()),
+        _ => None,
     };
     dock.is_hidden = is_plain;
     if let Some(look) = look {
-        take_up(look, app.world_mut());
+        take_up(look, job.opened.scene(), app.world_mut());
+    }
+    if let Opened::Lesson(lesson, _) = &job.opened {
+        show_look(
+            &lesson.look,
+            &mut app.world_mut().resource_mut::<ViewSettings>(),
+        );
     }
     app.insert_resource(job.opened.run(job.options))
         .insert_resource(OpeningComparison {
@@ -221,11 +229,11 @@ fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 }
 
 /// Looks as a session did.
-fn take_up(look: SessionLook, world: &mut World) {
+fn take_up(look: SessionLook, scene: &GranularScene, world: &mut World) {
     world.resource_scope(|world, mut dock: Mut<Dock>| {
         world.resource_scope(|world, mut view: Mut<ViewSettings>| {
             let mut camera = world.get_resource_mut::<OrbitCamera>();
-            look.restore(&mut view, camera.as_deref_mut(), &mut dock);
+            look.restore(&mut view, camera.as_deref_mut(), &mut dock, scene);
         });
     });
 }

@@ -7,6 +7,7 @@ use crate::simulation::Simulation;
 use crate::window::environment::Missing;
 use bevy::math::UVec2;
 use grainfall::lab::{Kept, Options};
+use grainfall::lesson::Lesson;
 use grainfall::parameters::{Parameter, Value};
 use grainfall::recording::Recording;
 use grainfall::run::Session;
@@ -31,6 +32,8 @@ pub struct WindowJob {
 pub enum Opened {
     /// A scene at its start.
     Scene(Box<Scene>),
+    /// A lesson at its first step, in its scene.
+    Lesson(Box<Lesson>, Box<Scene>),
     /// A session at the moment that was shown.
     Session(Box<Session>),
     /// A recording at its start.
@@ -43,7 +46,7 @@ impl Opened {
     /// Its scene.
     pub(super) fn scene(&self) -> &Scene {
         match self {
-            Self::Scene(scene) => scene,
+            Self::Scene(scene) | Self::Lesson(_, scene) => scene,
             Self::Session(session) | Self::Shipped(session) => &session.record().scene,
             Self::Recording(recording) => recording.scene(),
         }
@@ -52,7 +55,7 @@ impl Opened {
     /// The run of it, as `options` say.
     pub(super) fn run(self, options: Options) -> Simulation {
         match self {
-            Self::Scene(scene) => Simulation::open(*scene, options),
+            Self::Scene(scene) | Self::Lesson(_, scene) => Simulation::open(*scene, options),
             Self::Session(session) | Self::Shipped(session) => {
                 Simulation::resume(*session, options)
             }

@@ -14,6 +14,7 @@ mod liquid_keys;
 pub(crate) use grains_keys::count_of;
 
 use super::error::Problem;
+use super::syntax::FileKind;
 use super::{PairOverride, Scene, SceneMaterial, TimeStep};
 use crate::physics::{ContactLaw, FeatureRule, Integrator};
 use container_keys::ContainerFile;
@@ -24,6 +25,13 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
 use std::path::Path;
+
+/// What a scene's file is, in words.
+pub(super) const KIND: FileKind = FileKind {
+    noun: "scene",
+    begins: "`(title: …, …)`",
+    meaning,
+};
 
 /// A whole file.
 #[derive(Deserialize)]
@@ -193,5 +201,39 @@ impl NamedMaterials {
             rolling_friction: file.rolling_friction.unwrap_or(defaults.rolling_friction),
         };
         self.0.into_iter().map(with_name).collect()
+    }
+}
+
+/// What a key holds, for those who left it out or gave something else.
+fn meaning(key: &str) -> &'static str {
+    match key {
+        "title" => "one line that names the scene",
+        "materials" => "the materials by name: `{\"glass\": (density: 2500), …}`",
+        "container" => "`Drum(…)`, `Box(…)`, `Column(…)`, `Planes([…])` or `Nothing`",
+        "grains" => "`Fill(…)`, `Voronoi(…)` or `List([…])`",
+        "species" => "the kinds of grain, `[(radius: 0.003, material: \"glass\")]`",
+        "material" => "the name of one of the scene's materials",
+        "radius" => "a length in m, or in mm as `radius_mm`",
+        "height" => "a length in m, or in mm as `height_mm`",
+        "cell" | "rounding" => "a length in m, or in mm under a key that ends in `_mm`",
+        "shape" => {
+            "`Box(size: …)`, `Tetrahedron(edge: …)`, `Prism(…)`, `Hull(points: […])` or `Sphere`"
+        }
+        "orientation" => "`Turned(axis: …, angle_deg: …)`, `Quaternion(…)` or `Upright`",
+        "tube" => "`(speed: …)` in m/s",
+        "width" => "a length in m, or in mm as `width_mm`",
+        "speed" => "rad/s, or turns per minute as `speed_rpm`",
+        "position" | "point" | "min" | "max" => "a point `(x, y, z)` in m",
+        "velocity" => "`(x, y, z)` in m/s",
+        "spin" => "`(x, y, z)` in rad/s",
+        "gravity" => "`(x, y, z)` in m/s²",
+        "normal" => "the direction `(x, y, z)` towards the grains",
+        "between" => "two materials, `(\"glass\", \"drum\")`",
+        "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
+        "law" => ContactLaw::FORMS,
+        "integrator" => "`Explicit` or `Imex`",
+        "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
+        "duration" | "output_interval" | "sample_interval" => "a time in s",
+        _ => "",
     }
 }

@@ -14,6 +14,7 @@ use crate::ui::words::number;
 use crate::view::{Background, CameraRequest, ProjectionKind, StandardView, ViewSettings};
 use bevy_egui::egui;
 use grainfall::lab::Half;
+use grainfall::lesson::built_in_lessons;
 use grainfall::run::Command;
 use grainfall::scene::built_in;
 
@@ -50,6 +51,11 @@ fn file_ui(
 ) {
     item_ui(ui, "Scenes…", Request::ShowScenes, out);
     item_ui(ui, "Open…", Request::ChooseFile, out);
+    ui.menu_button("Lessons", |ui| {
+        for lesson in built_in_lessons() {
+            item_ui(ui, lesson.name, Request::Open(lesson.name.into()), out);
+        }
+    });
     ui.menu_button("Built-in scenes", |ui| {
         for scene in built_in() {
             item_ui(ui, scene.name, Request::Open(scene.name.into()), out);

@@ -7,9 +7,11 @@ use crate::ui::playback::{SPEEDS, allows, go_to, play_or_pause, step_back, step_
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::field::Field;
+use crate::ui::widgets::touch;
 use crate::ui::words::number;
 use bevy_egui::egui::{self, Align, Layout, RichText, WidgetInfo, WidgetType, vec2};
 use grainfall::lab::Status;
+use grainfall::lesson::Touch;
 use grainfall::run::Command;
 
 /// Room for the clock, and as much for the speed beside it, in points.
@@ -44,7 +46,8 @@ impl Transport {
             let newest = simulation.past().end.step;
             self.was_played |= newest > *self.opened_at.get_or_insert(newest);
         }
-        timeline_ui(ui, simulation, out);
+        let timeline = ui.scope(|ui| timeline_ui(ui, simulation, out));
+        touch::mark_ui(ui, &Touch::Time, timeline.response.rect);
         ui.horizontal_wrapped(|ui| {
             play_ui(ui, simulation, !self.was_played, out);
             buttons_ui(ui, simulation, out);
@@ -74,7 +77,8 @@ fn play_ui(ui: &mut egui::Ui, simulation: &Simulation, is_invited: bool, out: &m
     };
     let command = play_or_pause(status);
     if !(is_invited && name == "Play" && command.is_some()) {
-        return button_ui(ui, status, (face, name, hint), command, out);
+        let response = button_ui(ui, status, (face, name, hint), command, out);
+        return touch::mark_ui(ui, &Touch::Play, response.rect);
     }
     let accent = ui.visuals().selection;
     let face = RichText::new("▶  Play")
@@ -86,6 +90,7 @@ fn play_ui(ui: &mut egui::Ui, simulation: &Simulation, is_invited: bool, out: &m
         .min_size(vec2(108.0, 32.0));
     let response = ui.add(button).on_hover_text(hint);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
+    touch::mark_ui(ui, &Touch::Play, response.rect);
     if response.clicked() {
         out.extend(command.map(Request::Command));
     }
@@ -107,7 +112,7 @@ fn button_ui(
     (face, name, hint): (&str, &str, &str),
     command: Option<Command>,
     out: &mut Vec<Request>,
-) {
+) -> egui::Response {
     let face = RichText::new(face).size(19.0);
     let button = egui::Button::new(face).min_size(vec2(36.0, 32.0));
     let response = ui
@@ -118,6 +123,7 @@ fn button_ui(
     if response.clicked() {
         out.extend(command.map(Request::Command));
     }
+    response
 }
 
 /// To the start, a step back, a step on, to the newest state; afresh.
@@ -157,7 +163,10 @@ fn buttons_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>
         ("⟲", "Reset", start_hint, allowed(Command::Reset)),
     ];
     for (face, name, hint, command) in buttons {
-        button_ui(ui, status, (face, name, hint), command, out);
+        let response = button_ui(ui, status, (face, name, hint), command, out);
+        if name == "Reset" {
+            touch::mark_ui(ui, &Touch::Afresh, response.rect);
+        }
     }
 }
 
@@ -190,6 +199,7 @@ fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
         .response
         .on_hover_text("Speed: simulated seconds per second");
     response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Speed"));
+    touch::mark_ui(ui, &Touch::Speed, response.rect);
 }
 
 /// `0.5×`, `max`.

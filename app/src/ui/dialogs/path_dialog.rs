@@ -88,7 +88,7 @@ struct TypedPath {
 impl Purpose {
     fn title(self) -> &'static str {
         match self {
-            Self::Open => "Open a scene, a session or a recording",
+            Self::Open => "Open a scene, a lesson, a session or a recording",
             Self::Session => "Save the session",
             Self::Picture => "Save a picture of the window",
             Self::Changes => "Save the list of changes",
@@ -99,7 +99,9 @@ impl Purpose {
 
     fn field(self) -> &'static str {
         match self {
-            Self::Open => "Path of a file or of a run's folder, or name of a built-in scene",
+            Self::Open => {
+                "Path of a file or of a run's folder, or name of a built-in scene or lesson"
+            }
             Self::Session => "Path of the session's file",
             Self::Picture => "Path of the PNG file",
             Self::Changes => "Path of the JSON file",
@@ -257,7 +259,7 @@ async fn ask_system(purpose: Purpose) -> DialogAnswer {
     let file = match purpose {
         Purpose::Open => {
             let kinds = ["ron", SESSION_EXTENSION, "pvd", "json"];
-            let dialog = dialog.add_filter("Scenes, sessions and recordings", &kinds);
+            let dialog = dialog.add_filter("Scenes, lessons, sessions and recordings", &kinds);
             dialog.pick_file().await
         }
         Purpose::Session => {

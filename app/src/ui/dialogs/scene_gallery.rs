@@ -12,6 +12,7 @@ use bevy_egui::egui::{
     self, ColorImage, Id, Modal, RichText, ScrollArea, Sense, TextureHandle, TextureOptions,
     UiBuilder, WidgetInfo, WidgetType, vec2,
 };
+use grainfall::lesson::{BuiltInLesson, Lesson, built_in_lessons};
 use grainfall::scene::{BuiltIn, Scene, SceneContainer, built_in};
 use grainfall::solver::advise;
 
@@ -59,6 +60,7 @@ pub struct Gallery {
 /// What scenes of the gallery have in common, in the order in which they stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
+    Lesson,
     First,
     Drum,
     Column,
@@ -67,7 +69,8 @@ enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
+        Self::Lesson,
         Self::First,
         Self::Drum,
         Self::Column,
@@ -77,6 +80,7 @@ impl Kind {
 
     fn title(self) -> &'static str {
         match self {
+            Self::Lesson => "Lessons",
             Self::First => "Start here",
             Self::Drum => "Drums",
             Self::Column => "Columns",
@@ -118,9 +122,10 @@ impl Gallery {
     /// Draws it over everything; false once it is closed or something was chosen.
     pub fn ui(&mut self, ctx: &egui::Context, memory: &UserMemory, out: &mut Vec<Request>) -> bool {
         if self.cards.is_empty() {
-            self.cards = built_in()
-                .iter()
-                .filter_map(|scene| Card::of(scene, ctx))
+            let lessons = built_in_lessons().iter();
+            let scenes = built_in().iter();
+            self.cards = (lessons.filter_map(|lesson| Card::of_lesson(lesson, ctx)))
+                .chain(scenes.filter_map(|scene| Card::of(scene, ctx)))
                 .collect();
         }
         let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
@@ -128,7 +133,7 @@ impl Gallery {
             let room = ui.ctx().content_rect().size();
             ui.set_width((0.9 * room.x).min(1080.0));
             let mut chosen = None;
-            ui.heading("Scenes");
+            ui.heading("Lessons and scenes");
             ScrollArea::vertical()
                 .max_height(0.72 * room.y)
                 .min_scrolled_height(0.72 * room.y)
@@ -224,6 +229,23 @@ impl Card {
         })
     }
 
+    fn of_lesson(own: &BuiltInLesson, ctx: &egui::Context) -> Option<Self> {
+        // As of scenes: a test opens each.
+        let (lesson, scene) = Lesson::open(own.name).ok()?;
+        let grains = scene.grain_count();
+        Some(Self {
+            name: own.name,
+            kind: Kind::Lesson,
+            grains,
+            load: grains as f64 / advise(&scene).time_step,
+            is_polyhedral: scene.is_polyhedral(),
+            picture: picture(own.picture)
+                .map(|image| ctx.load_texture(own.name, image, TextureOptions::LINEAR)),
+            title: lesson.title,
+            look_for: lesson.about,
+        })
+    }
+
     /// Draws it, a button as a whole; whether it was chosen.
     fn ui(&self, ui: &mut egui::Ui, speed: &str) -> bool {
         let builder = UiBuilder::new().id_salt(self.name).sense(Sense::click());
@@ -267,7 +289,11 @@ impl Card {
 
 /// The files opened last; the one that was chosen.
 fn recent_ui(ui: &mut egui::Ui, memory: &UserMemory) -> Option<String> {
-    let is_file = |name: &&String| !built_in().iter().any(|scene| scene.name == name.as_str());
+    let is_known = |name: &str| {
+        built_in().iter().any(|scene| scene.name == name)
+            || built_in_lessons().iter().any(|lesson| lesson.name == name)
+    };
+    let is_file = |name: &&String| !is_known(name);
     let mut files = memory.recent().iter().filter(is_file).peekable();
     files.peek()?;
     ui.label(RichText::new("Files opened last").strong());

@@ -6,11 +6,13 @@ use crate::ui::detail::{Detail, is_basic};
 use crate::ui::panel::Panel;
 use crate::ui::panels::start_values::StartValues;
 use crate::ui::request::Request;
+use crate::ui::widgets::touch;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::{number, symbol};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 use grainfall::lab::Half;
+use grainfall::lesson::Touch;
 use grainfall::parameters::{Choice, Kind, PanelSection, Parameter, ParameterInfo, Value, Values};
 use grainfall::physics::{LIQUID_CASES, PAPER_VOLUME};
 use grainfall::run::Command;
@@ -170,8 +172,11 @@ fn group_ui(
     out: &mut Vec<Request>,
 ) {
     let scene = simulation.scene();
+    let ctx = ui.ctx().clone();
+    let is_asked =
+        |info: &ParameterInfo| touch::is_asked(&ctx, &Touch::Parameter(info.parameter.clone()));
     let shown = |info: &&ParameterInfo| {
-        let wanted = detail == Detail::Lab || is_basic(info, scene);
+        let wanted = detail == Detail::Lab || is_basic(info, scene) || is_asked(info);
         wanted && info.acts && Group::of(&info.parameter, scene) == Some(group)
     };
     let mut pair = None;
@@ -191,10 +196,17 @@ fn group_ui(
             let Some(value) = simulation.value(&info.parameter) else {
                 continue;
             };
-            let wanted = parameter_ui(ui, info, value, detail, scene, |ui| {
-                compared = compare_ui(ui, info, simulation);
+            let row = ui.scope(|ui| {
+                parameter_ui(ui, info, value, detail, scene, |ui| {
+                    compared = compare_ui(ui, info, simulation);
+                })
             });
-            out.extend(wanted.map(|value| Request::Command(set(info, value))));
+            touch::mark_ui(
+                ui,
+                &Touch::Parameter(info.parameter.clone()),
+                row.response.rect,
+            );
+            out.extend(row.inner.map(|value| Request::Command(set(info, value))));
             out.extend(compared.then(|| Request::Compare(Some(info.parameter.clone()))));
             continue;
         }

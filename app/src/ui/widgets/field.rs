@@ -140,7 +140,7 @@ pub fn with_space(unit: &str) -> String {
 }
 
 /// The number in `text`, which may have its `unit` behind it and a comma for a point.
-fn read(text: &str, unit: &str) -> Option<f64> {
+pub fn read(text: &str, unit: &str) -> Option<f64> {
     let bare = text.trim();
     let bare = bare.strip_suffix(unit).unwrap_or(bare);
     let plain: String = (bare.chars())

@@ -4,5 +4,6 @@ pub mod button;
 pub mod combo;
 pub mod field;
 pub mod focus;
+pub mod touch;
 pub mod value_row;
 pub mod value_table;

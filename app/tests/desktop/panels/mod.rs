@@ -4,6 +4,7 @@
 mod bars;
 mod dialogs;
 mod keys;
+mod lesson;
 mod microscope;
 mod parameters;
 mod picture;
