@@ -44,7 +44,14 @@ macro_rules! lesson {
 
 const LESSONS: &[BuiltInLesson] = &[
     lesson!("why-slopes-have-an-angle", "small-drum", None),
-    lesson!("why-honey-creeps", "honey-drum", None),
+    lesson!(
+        "why-honey-creeps",
+        "honey-drum",
+        Some((
+            "small-wet-drum.ron",
+            include_str!("../../scenes/lessons/small-wet-drum.ron")
+        ))
+    ),
     lesson!(
         "why-smooth-grains-run-farther",
         "small-column",

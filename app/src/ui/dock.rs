@@ -181,7 +181,10 @@ impl Dock {
         self.remember_ui(root.ctx(), simulation);
         self.is_holding =
             (root.ctx()).input(|input| input.pointer.any_down() || !input.keys_down.is_empty());
-        out.extend(shortcuts::pressed(root.ctx(), simulation));
+        let is_lesson = |asked: &Request| matches!(asked, Request::Lesson(_));
+        let pressed = shortcuts::pressed(root.ctx(), simulation).into_iter();
+        let follows = self.lesson.under_way().is_some();
+        out.extend(pressed.filter(|asked| follows || !is_lesson(asked)));
         self.menu_bar_ui(root, simulation, view, out);
         if let Some(simulation) = simulation {
             self.lesson.follow(simulation, out);

@@ -3,6 +3,7 @@
 use crate::window_of_panels::{Window, prepared, press};
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use grainfall::lesson::{Lesson, built_in_lessons};
 use grainfall::scene::{Scene, built_in};
 use grainfall_app::ui::{Detail, Look, Request, UserMemory};
 use grainfall_app::view::Background;
@@ -39,6 +40,10 @@ fn the_gallery_says_what_to_look_for_and_how_fast_scenes_run_here() {
             .iter()
             .filter(|scene| Scene::open(scene.name).unwrap().is_polyhedral())
             .count()
+            + built_in_lessons()
+                .iter()
+                .filter(|lesson| Lesson::open(lesson.name).unwrap().1.is_polyhedral())
+                .count()
     );
     press(&mut harness, &format!("Open {}", small.title));
     assert_eq!(harness.state().asked, [Request::Open("small-drum".into())]);
