@@ -124,7 +124,7 @@ fn decimals_of_error(error: f64) -> usize {
 }
 
 /// `number` with its `unit`, as people write it: a degree stands close, all else after a space.
-pub(crate) fn beside_unit(number: &str, unit: &str) -> String {
+pub fn beside_unit(number: &str, unit: &str) -> String {
     let space = if unit.is_empty() || unit == DEGREE {
         ""
     } else {

@@ -171,6 +171,10 @@ fn what_is_wrong_in_a_lesson_is_told_with_line_key_and_what_belongs_there() {
         }
         assert!(message.contains("lesson.ron, line "), "{index}: {message}");
     }
+}
+
+#[test]
+fn an_answer_that_cannot_be_is_refused() {
     let others = [
         (
             "\"kinetic energy\"",

@@ -17,7 +17,7 @@ use grainfall::lesson::{
     Change, Lesson, LessonLook, LessonStep, LessonUnderWay, LessonView, Prediction, Question,
     QuestionKind, Seen, Shown, Stage, Touch,
 };
-use grainfall::measure::Verdict;
+use grainfall::measure::{Verdict, numeral};
 use grainfall::run::Command;
 use grainfall::scene::Scene;
 
@@ -294,9 +294,8 @@ fn number_ui(
             ui.colored_label(Palette::of(ui.visuals()).warning, text);
         }
         (_, _, Some(said)) => {
-            let said = grainfall::measure::numeral::trimmed(said);
-            let space = field::with_space(unit.name);
-            ui.label(format!("You say {said}{space}."));
+            let said = numeral::beside_unit(&numeral::trimmed(said), unit.name);
+            ui.label(format!("You say {said}."));
         }
         _ => {}
     }
