@@ -371,8 +371,8 @@ impl Opener<'_, '_> {
         }
     }
 
-    /// Opens the scene, the lesson, the session or the recording called `name`; one that cannot be opened leaves the present
-    /// one running.
+    /// Opens the scene, the lesson, the session or the recording called `name`; one that cannot be
+    /// opened leaves the present one running.
     fn open(&mut self, name: String, dock: &mut Dock) {
         self.opening.0 = None;
         if Kept::is_at(&name) {
@@ -400,11 +400,11 @@ impl Opener<'_, '_> {
     fn open_left(&mut self, path: PathBuf, dock: &mut Dock) {
         match Kept::read(&path) {
             Ok(Kept::Session(session)) => {
-                let look = session.look().to_owned();
-                let options = self.options_for(session.record().scene.duration);
+                let (look, scene) = (session.look().to_owned(), session.record().scene.clone());
+                let options = self.options_for(scene.duration);
                 self.show(Simulation::resume(*session, options).unsaved());
                 dock.scene_changed();
-                self.take_up(&look, dock);
+                self.take_up(&look, &scene, dock);
                 dock.taken_up = Some(path);
             }
             Ok(Kept::Recording(_)) => {}
