@@ -94,6 +94,7 @@ fn nothing_of_an_earlier_run_survives_into_a_later_one() {
         names(&out),
         [
             ".grainfall.lock",
+            "checkpoint-frames.bin",
             "checkpoint-samples.bin",
             "checkpoint.bin",
             "contacts",
@@ -122,6 +123,7 @@ fn damaged_or_foreign_checkpoint_is_refused_with_its_reason() {
     for (file, expected) in [
         ("checkpoint.bin", "its checksum does not fit"),
         ("checkpoint-samples.bin", "does not fit"),
+        ("checkpoint-frames.bin", "does not fit"),
     ] {
         let path = place.path("out").join(file);
         let whole = fs::read(&path).unwrap();
@@ -213,7 +215,12 @@ fn record_vouches_for_every_file_and_verify_looks_at_them() {
     let out = place.path("out");
     let mut vouched: Vec<&String> = whole["files"].as_object().unwrap().keys().collect();
     vouched.sort();
-    let own = ["summary.json", "checkpoint.bin", "checkpoint-samples.bin"];
+    let own = [
+        "summary.json",
+        "checkpoint.bin",
+        "checkpoint-samples.bin",
+        "checkpoint-frames.bin",
+    ];
     let there = contents(&out);
     let there: Vec<&String> = there
         .keys()
