@@ -24,6 +24,8 @@ pub const CHECKPOINT: &str = "checkpoint.bin";
 pub const SAMPLES: &str = "checkpoint-samples.bin";
 /// The profiles of the flowing layer that belong to [`CHECKPOINT`].
 pub const PROFILES: &str = "checkpoint-profiles.bin";
+/// Times and digests of the frames that belong to [`CHECKPOINT`].
+pub const FRAME_LOG: &str = "checkpoint-frames.bin";
 /// Largest summary that is read [bytes].
 const LARGEST: u64 = 256 << 20;
 /// The kinds of frames, each with a folder of its own.
@@ -258,7 +260,7 @@ fn is_foreign(path: &Path) -> io::Result<bool> {
     }
     for entry in fs::read_dir(path)? {
         let name = entry?.file_name();
-        let own = [CHECKPOINT, SAMPLES, PROFILES, LOCK]
+        let own = [CHECKPOINT, SAMPLES, PROFILES, FRAME_LOG, LOCK]
             .into_iter()
             .chain(FRAMES);
         if !own.into_iter().any(|own| name == *own) && !name.to_str().is_some_and(is_temporary) {

@@ -12,7 +12,6 @@ use super::shapes_file::{SHAPES, write_shapes};
 use super::{OutputError, OutputFolder};
 use crate::run::Provenance;
 use crate::world::World;
-use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -43,21 +42,46 @@ pub const LISTS: [&str; 2] = [KINDS[0].list, KINDS[1].list];
 /// All that is not in those folders.
 pub const OTHERS: [&str; 4] = [KINDS[0].list, KINDS[1].list, SHAPES, CONTAINER];
 
-/// What is kept of a file of an instant: it is called by its number.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Frame {
-    /// Simulated time of the state in it [s].
+/// What is kept of the files of an instant, which are called by its number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Simulated time of the state in them [s].
     time: f64,
-    /// The digest of its bytes.
-    digest: [u8; blake3::OUT_LEN],
+    /// The digests of their bytes, by their kinds.
+    digests: [[u8; blake3::OUT_LEN]; FRAMES.len()],
 }
 
-/// The files that were written.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+impl Frame {
+    /// Bytes that it takes in a file.
+    pub const SIZE: usize = size_of::<f64>() + FRAMES.len() * blake3::OUT_LEN;
+
+    /// Its bytes.
+    pub fn to_bytes(self) -> Vec<u8> {
+        let digests = self.digests.as_flattened().iter().copied();
+        self.time.to_le_bytes().into_iter().chain(digests).collect()
+    }
+
+    /// The frame that these [`Frame::SIZE`] bytes hold.
+    pub fn from_bytes(bytes: &[u8; Self::SIZE]) -> Self {
+        let (mut time, mut digests) = ([0; size_of::<f64>()], [[0; blake3::OUT_LEN]; FRAMES.len()]);
+        let (first, rest) = bytes.split_at(time.len());
+        time.copy_from_slice(first);
+        digests.as_flattened_mut().copy_from_slice(rest);
+        Self {
+            time: f64::from_le_bytes(time),
+            digests,
+        }
+    }
+}
+
+/// The files that were written. What stands in a run's log of frames may be forgotten.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct WrittenFrames {
-    /// Those of each instant, by their kinds.
-    frames: [Vec<Frame>; FRAMES.len()],
-    /// Those that hold for the whole run.
+    /// Instants that are forgotten.
+    forgotten: usize,
+    /// Those after them.
+    frames: Vec<Frame>,
+    /// Files that hold for the whole run.
     lasting: Vec<CollectedFile>,
 }
 
@@ -68,7 +92,47 @@ impl WrittenFrames {
         names.find(|name| !folder.join(name).is_file())
     }
 
-    /// Every file.
+    /// Those of a run with these `lasting` files, all of whose `frames` are known.
+    pub fn new(frames: Vec<Frame>, lasting: Vec<CollectedFile>) -> Self {
+        Self {
+            forgotten: 0,
+            frames,
+            lasting,
+        }
+    }
+
+    /// Files that hold for the whole run.
+    pub fn lasting(&self) -> &[CollectedFile] {
+        &self.lasting
+    }
+
+    /// Instants of which files were written.
+    pub fn count(&self) -> usize {
+        self.forgotten + self.frames.len()
+    }
+
+    /// What is kept from instant number `from` on, which is not forgotten.
+    pub fn since(&self, from: usize) -> &[Frame] {
+        &self.frames[from.saturating_sub(self.forgotten)..]
+    }
+
+    /// Forgets the first instants, so many, but for the last of all.
+    pub fn forget(&mut self, first: usize) {
+        let new = first.min(self.count().saturating_sub(1));
+        let new = new.saturating_sub(self.forgotten);
+        self.frames.drain(..new);
+        self.frames.shrink_to(2 * self.frames.len());
+        self.forgotten += new;
+    }
+
+    /// Takes what was forgotten from `all` instants, the first of the run on.
+    pub fn remember(&mut self, all: &[Frame]) {
+        self.frames
+            .splice(..0, all[..self.forgotten].iter().copied());
+        self.forgotten = 0;
+    }
+
+    /// Every file, where nothing is forgotten.
     pub fn files(&self) -> impl Iterator<Item = CollectedFile> {
         let kinds = 0..FRAMES.len();
         let frames = kinds.flat_map(|kind| self.of_kind(kind));
@@ -77,17 +141,17 @@ impl WrittenFrames {
 
     /// Those of each instant that are of the kind at this index of [`KINDS`].
     fn of_kind(&self, kind: usize) -> impl Iterator<Item = CollectedFile> {
-        let frames = self.frames[kind].iter().enumerate();
+        let frames = self.frames.iter().enumerate();
         frames.map(move |(index, frame)| CollectedFile {
             time: frame.time,
             name: OutputFolder::frame_name(FRAMES[kind], index),
-            digest: blake3::Hash::from(frame.digest).to_hex().to_string(),
+            digest: blake3::Hash::from(frame.digests[kind]).to_hex().to_string(),
         })
     }
 
     /// Simulated time of the last [s].
     pub fn last_time(&self) -> Option<f64> {
-        self.frames[0].last().map(|frame| frame.time)
+        self.frames.last().map(|frame| frame.time)
     }
 }
 
@@ -125,6 +189,11 @@ impl FrameFiles {
         &self.written
     }
 
+    /// The same, to forget or remember some of it.
+    pub fn written_mut(&mut self) -> &mut WrittenFrames {
+        &mut self.written
+    }
+
     /// Writes the state of `world`, which comes `from` there.
     ///
     /// # Errors
@@ -135,24 +204,22 @@ impl FrameFiles {
         world: &World,
         from: &Provenance,
     ) -> Result<(), OutputError> {
-        if self.written.frames[0].is_empty() {
+        let (time, number) = (world.time(), self.written.count());
+        if number == 0 {
             self.write_lasting(folder, world, from)?;
         }
-        let lists = self.lists.iter_mut().zip(&mut self.written.frames);
-        for ((name, kind), (list, frames)) in FRAMES.iter().zip(&KINDS).zip(lists) {
-            let name = OutputFolder::frame_name(name, frames.len());
+        let mut digests = [[0; blake3::OUT_LEN]; FRAMES.len()];
+        let kinds = FRAMES.iter().zip(&KINDS).zip(&mut self.lists);
+        for (((name, kind), list), kept) in kinds.zip(&mut digests) {
+            let name = OutputFolder::frame_name(name, number);
             let digest = folder.write_unsynced(&name, |file| (kind.write)(world, from, file))?;
             self.unsynced.push(name.clone());
-            let time = world.time();
-            let kept = blake3::Hash::from_hex(&digest).map_err(io::Error::other);
-            let frame = Frame {
-                time,
-                digest: folder.named(&name, kept)?.into(),
-            };
+            let digest = blake3::Hash::from_hex(digest).map_err(io::Error::other);
+            *kept = folder.named(&name, digest)?.into();
             let digest = String::new();
             list.add(folder, &CollectedFile { time, name, digest })?;
-            frames.push(frame);
         }
+        self.written.frames.push(Frame { time, digests });
         Ok(())
     }
 
@@ -210,5 +277,38 @@ impl FrameFiles {
             files.push((kind.list.into(), digest));
         }
         Ok(files)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(number: u8) -> Frame {
+        Frame {
+            time: f64::from(number),
+            digests: [[number; blake3::OUT_LEN], [!number; blake3::OUT_LEN]],
+        }
+    }
+
+    /// Each output took 80 bytes of memory for as long as a run went on.
+    #[test]
+    fn frames_that_stand_in_a_log_are_forgotten_but_counted_and_remembered() {
+        let all: Vec<Frame> = (0..9).map(frame).collect();
+        let log: Vec<u8> = all.iter().flat_map(|frame| frame.to_bytes()).collect();
+        let whole = WrittenFrames::new(all.clone(), Vec::new());
+        let mut part = whole.clone();
+        part.forget(6);
+        part.forget(2);
+        assert_eq!((part.count(), part.frames.len()), (9, 3));
+        assert_eq!(part.since(7), &all[7..]);
+        part.forget(9);
+        assert_eq!((part.count(), part.last_time()), (9, Some(8.0)));
+        assert!(part.since(9).is_empty());
+        let (read, rest) = log.as_chunks();
+        let read: Vec<Frame> = read.iter().map(Frame::from_bytes).collect();
+        assert!(rest.is_empty());
+        part.remember(&read);
+        assert!(part == whole && part.files().eq(whole.files()));
     }
 }

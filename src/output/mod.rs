@@ -45,10 +45,13 @@ pub use container_file::write_container;
 pub use digest::{digest_of, digest_of_file};
 pub use ending::Ending;
 pub use error::OutputError;
-pub use folder::{CHECKPOINT, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_own_name, write_file};
+pub use folder::{
+    CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_own_name, write_file,
+};
+pub use frames::Frame;
 pub use frames::LISTS;
 pub use grains_file::write_grains;
-pub use recorder::{IMPORTED, Recorder, Subject, Written};
+pub use recorder::{IMPORTED, Recorder, Subject, Written, WrittenRest};
 pub use run_so_far::RunSoFar;
 pub use series_file::SERIES;
 pub use shapes_file::{SHAPES, with_faces_moved, write_shapes};

@@ -5,8 +5,9 @@
 //! of frames grow with the run, and are made durable with them at an output, at most once a
 //! second. Bytes written grow like what there is to say: nothing but the summary is written twice.
 
-use super::folder::{CHECKPOINT, OutputFolder, PROFILES, SAMPLES, SUMMARY};
-use super::frames::{self, FrameFiles, WrittenFrames};
+use super::collection_file::CollectedFile;
+use super::folder::{CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY};
+use super::frames::{self, Frame, FrameFiles, WrittenFrames};
 use super::profile_files::{
     FLOW, Flow, PROFILE, flow_table, profile_table, write_flow, write_profile,
 };
@@ -22,6 +23,7 @@ use crate::world::{Clock, World};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::mem::take;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -32,10 +34,11 @@ const SYNC_TIME: Duration = Duration::from_secs(1);
 const SHARE_OF_TIME: u32 = 20;
 /// Files by these names, and the frames', are a run's own; those of an earlier run give way to a
 /// later one.
-const OWN: [&str; 8] = [
+const OWN: [&str; 9] = [
     CHECKPOINT,
     SAMPLES,
     PROFILES,
+    FRAME_LOG,
     SERIES,
     FLOW,
     VELOCITY,
@@ -67,7 +70,7 @@ pub struct Subject {
 pub const IMPORTED: &str = "imported";
 
 /// What was written so far, to go on with later.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
     frames: WrittenFrames,
     /// Outputs that are done or past.
@@ -76,7 +79,40 @@ pub struct Written {
     wall_time: f64,
 }
 
+/// The same but for the frames, of which a log is kept.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct WrittenRest {
+    lasting: Vec<CollectedFile>,
+    outputs: u64,
+    wall_time: f64,
+}
+
+impl WrittenRest {
+    /// All that was written, with these `frames`.
+    pub fn with(self, frames: Vec<Frame>) -> Written {
+        Written {
+            frames: WrittenFrames::new(frames, self.lasting),
+            outputs: self.outputs,
+            wall_time: self.wall_time,
+        }
+    }
+}
+
 impl Written {
+    /// What is kept of the outputs from number `from` on, which is not forgotten.
+    pub fn frames_since(&self, from: usize) -> &[Frame] {
+        self.frames.since(from)
+    }
+
+    /// What is kept beside a log of the frames.
+    pub fn rest(&self) -> WrittenRest {
+        WrittenRest {
+            lasting: self.frames.lasting().to_vec(),
+            outputs: self.outputs,
+            wall_time: self.wall_time,
+        }
+    }
+
     /// The first of the frames' files that `folder` does not hold.
     pub fn missing(&self, folder: &Path) -> Option<String> {
         self.frames.missing(folder)
@@ -131,13 +167,11 @@ impl Recorder {
         written: Written,
     ) -> Result<Self, OutputError> {
         folder.check(&own())?;
+        let files: Vec<String> = written.frames.files().map(|frame| frame.name).collect();
         let mut recorder = Self::new(subject, folder, written);
         recorder.mark()?;
         recorder.begin_frames()?;
-        let files: Vec<String> = (recorder.written.frames.files())
-            .map(|frame| frame.name)
-            .collect();
-        let kept: Vec<&str> = [CHECKPOINT, SAMPLES, PROFILES, SERIES]
+        let kept: Vec<&str> = [CHECKPOINT, SAMPLES, PROFILES, FRAME_LOG, SERIES]
             .into_iter()
             .chain(frames::LISTS)
             .chain(files.iter().map(String::as_str))
@@ -180,7 +214,7 @@ impl Recorder {
 
     fn begin_frames(&mut self) -> Result<(), OutputError> {
         if self.subject.grains {
-            let (from, written) = (self.provenance(None), self.written.frames.clone());
+            let (from, written) = (self.provenance(None), take(&mut self.written.frames));
             self.frames = Some(FrameFiles::begin(&self.folder, written, &from)?);
         }
         Ok(())
@@ -212,6 +246,20 @@ impl Recorder {
             self.written.outputs += 1;
         }
         Ok(is_output)
+    }
+
+    /// Forgets what is kept of the first outputs, so many: it stands in a log.
+    pub fn forget_frames(&mut self, first: usize) {
+        if let Some(frames) = &mut self.frames {
+            frames.written_mut().forget(first);
+        }
+    }
+
+    /// Takes what was forgotten from `all` that the log holds, as is wanted before the end.
+    pub fn remember_frames(&mut self, all: &[Frame]) {
+        if let Some(frames) = &mut self.frames {
+            frames.written_mut().remember(all);
+        }
     }
 
     /// Writes the present state as an output, whenever that is: of a run whose outputs are not ours

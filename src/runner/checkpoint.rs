@@ -1,7 +1,7 @@
 //! Checkpoints: a run as it stood, kept in its folder, so that a run that was stopped can go on.
 //!
-//! In: a run and what was written of it. Out: three files, and from them the same: logs of samples
-//! and of profiles that grow at their ends, and the rest, with how much of the logs belongs to it.
+//! In: a run and what was written of it. Out: four files, and from them the same: logs of samples,
+//! of profiles and of outputs that grow at their ends, and the rest, with how much of the logs belongs to it.
 //! So a run may forget what it measured, and has it read again at its end. A finished run
 //! keeps its last checkpoint: a longer duration goes on from there. Whether what is found belongs
 //! to the run that is asked for is said with the reason; what to do then is decided by the caller.
@@ -10,7 +10,9 @@ use super::Job;
 use super::log::{Log, LogPart};
 use crate::files::{open_regular, read_whole, write_whole};
 use crate::measure::{FlowProfile, Measure, Sample, Series};
-use crate::output::{CHECKPOINT, OutputError, PROFILES, RunSoFar, SAMPLES, Written};
+use crate::output::{
+    CHECKPOINT, FRAME_LOG, Frame, OutputError, PROFILES, RunSoFar, SAMPLES, Written, WrittenRest,
+};
 use crate::run::{Checkpoint, CheckpointParts, Measured, Stored, VERSION};
 use crate::scene::Scene;
 use crate::solver::advise;
@@ -24,7 +26,7 @@ use std::time::{Duration, Instant};
 /// What the file begins with.
 const MARK: &str = "grainfall checkpoint";
 /// Raised whenever the file is laid out otherwise.
-const LAYOUT: &str = "7";
+const LAYOUT: &str = "8";
 /// Largest file of a checkpoint that is read [bytes].
 const LARGEST: u64 = 16 << 30;
 /// Most of the file in which its first line ends.
@@ -51,10 +53,11 @@ pub struct Kept {
 #[derive(Serialize, Deserialize)]
 struct Contents<R> {
     run: R,
-    written: Written,
+    written: WrittenRest,
     /// What of the logs belongs to it.
     samples: LogPart,
     profiles: LogPart,
+    frames: LogPart,
 }
 
 /// What became of looking for a checkpoint.
@@ -76,6 +79,8 @@ pub struct CheckpointFile {
     samples: Log,
     /// Profiles of the flowing layer in seconds that are over.
     profiles: Log,
+    /// Outputs: times and digests of their files.
+    frames: Log,
     written: Instant,
     /// Wall-clock time that the last one took.
     cost: Duration,
@@ -107,6 +112,7 @@ impl CheckpointFile {
             key: blake3::hash(&all),
             samples: Log::new(job.out.join(SAMPLES)),
             profiles: Log::new(job.out.join(PROFILES)),
+            frames: Log::new(job.out.join(FRAME_LOG)),
             path,
             written: Instant::now(),
             cost: Duration::ZERO,
@@ -149,11 +155,18 @@ impl CheckpointFile {
         };
         let samples = self.samples.go_on(contents.samples);
         let profiles = self.profiles.go_on(contents.profiles);
-        let measured = samples.and_then(|samples| Ok((series(&samples), seconds(&profiles?)?)));
-        match measured {
-            Ok((series, seconds)) => CheckpointLookup::Kept(Box::new(Kept {
+        let frames_kept = self.frames.go_on(contents.frames);
+        let logs = samples.and_then(|samples| {
+            Ok((
+                series(&samples),
+                seconds(&profiles?)?,
+                frames(&frames_kept?),
+            ))
+        });
+        match logs {
+            Ok((series, seconds, frames)) => CheckpointLookup::Kept(Box::new(Kept {
                 checkpoint: contents.run.with_measured(series, seconds),
-                written: contents.written,
+                written: contents.written.with(frames),
             })),
             Err(error) => CheckpointLookup::Unusable(damaged(&error)),
         }
@@ -165,6 +178,19 @@ impl CheckpointFile {
             samples: self.samples.records(),
             seconds: self.profiles.records(),
         }
+    }
+
+    /// Outputs that are kept.
+    pub fn frames_stored(&self) -> usize {
+        self.frames.records()
+    }
+
+    /// What is kept of all outputs.
+    ///
+    /// # Errors
+    /// When that cannot be read.
+    pub fn frames(&self) -> Result<Vec<Frame>, OutputError> {
+        Ok(frames(&self.frames.read()?))
     }
 
     /// All that was measured of `run`, which may have forgotten what is kept.
@@ -243,16 +269,18 @@ impl CheckpointFile {
     pub fn write(
         &mut self,
         run: RunSoFar,
-        written: Written,
+        written: &Written,
         started: Instant,
     ) -> Result<(), OutputError> {
         self.add_measured(run)?;
+        self.add_frames(written)?;
         let rest = run.flow.rest(self.profiles.records());
         let contents = Contents {
             run: CheckpointParts::of(run.world, run.commands, run.sampling, &rest),
-            written,
+            written: written.rest(),
             samples: self.samples.part(),
             profiles: self.profiles.part(),
+            frames: self.frames.part(),
         };
         let failed = |source| OutputError::write(&self.path, source);
         let contents =
@@ -282,6 +310,20 @@ impl CheckpointFile {
         }
         self.profiles.add(&bytes, known.max(done))
     }
+
+    /// Adds what is kept of the outputs since the last checkpoint to its log.
+    fn add_frames(&mut self, written: &Written) -> Result<(), OutputError> {
+        let known = self.frames.records();
+        let new = written.frames_since(known);
+        let bytes: Vec<u8> = new.iter().flat_map(|frame| frame.to_bytes()).collect();
+        self.frames.add(&bytes, known + new.len())
+    }
+}
+
+/// The outputs that the `bytes` of the log hold.
+fn frames(bytes: &[u8]) -> Vec<Frame> {
+    let (frames, _) = bytes.as_chunks();
+    frames.iter().map(Frame::from_bytes).collect()
 }
 
 fn damaged(reason: &dyn Display) -> String {

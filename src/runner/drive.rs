@@ -264,6 +264,9 @@ impl Runner {
             if let Some(measured) = self.forgotten(view)? {
                 run.remember(measured);
             }
+            if let Some(file) = &self.checkpoints {
+                self.recorder.remember_frames(&file.frames()?);
+            }
         }
         let view = run.at().state();
         let results = self.recorder.finish(view, &ending, &self.warnings)?;
@@ -315,7 +318,9 @@ impl Runner {
         };
         let started = Instant::now();
         self.recorder.sync()?;
-        Ok(file.write(run, self.recorder.written(), started)?)
+        file.write(run, &self.recorder.written(), started)?;
+        self.recorder.forget_frames(file.frames_stored());
+        Ok(())
     }
 }
 

@@ -131,6 +131,8 @@ fn run_that_forgets_what_stands_in_files_comes_to_the_same_results_and_files() {
         "velocity.csv",
         "summary.json",
         "checkpoint-profiles.bin",
+        "checkpoint-frames.bin",
+        "grains.pvd",
     ] {
         assert!(
             whole.contains_key(name),

@@ -73,8 +73,9 @@ impl Place {
 }
 
 /// What a run leaves in its folder.
-const FILES_OF_A_RUN: [&str; 11] = [
+const FILES_OF_A_RUN: [&str; 12] = [
     ".grainfall.lock",
+    "checkpoint-frames.bin",
     "checkpoint-samples.bin",
     "checkpoint.bin",
     "contacts",

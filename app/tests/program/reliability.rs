@@ -94,6 +94,7 @@ fn nothing_of_an_earlier_run_survives_into_a_later_one() {
         names(&out),
         [
             ".grainfall.lock",
+            "checkpoint-frames.bin",
             "checkpoint-samples.bin",
             "checkpoint.bin",
             "contacts",
@@ -122,6 +123,7 @@ fn damaged_or_foreign_checkpoint_is_refused_with_its_reason() {
     for (file, expected) in [
         ("checkpoint.bin", "its checksum does not fit"),
         ("checkpoint-samples.bin", "does not fit"),
+        ("checkpoint-frames.bin", "does not fit"),
     ] {
         let path = place.path("out").join(file);
         let whole = fs::read(&path).unwrap();
@@ -213,7 +215,12 @@ fn record_vouches_for_every_file_and_verify_looks_at_them() {
     let out = place.path("out");
     let mut vouched: Vec<&String> = whole["files"].as_object().unwrap().keys().collect();
     vouched.sort();
-    let own = ["summary.json", "checkpoint.bin", "checkpoint-samples.bin"];
+    let own = [
+        "summary.json",
+        "checkpoint.bin",
+        "checkpoint-samples.bin",
+        "checkpoint-frames.bin",
+    ];
     let there = contents(&out);
     let there: Vec<&String> = there
         .keys()
@@ -274,35 +281,60 @@ fn kills() -> u32 {
     asked.map_or(4, |asked| asked.parse().unwrap())
 }
 
+/// Kills what `command` starts [`kills`] times, each time later, and then lets it end; it writes to
+/// the folder `out`, which `look` is shown after each kill.
+#[cfg(unix)]
+fn kill_and_go_on(place: &Place, command: &[&str], look: fn(&Path)) {
+    let out = place.path("out");
+    let mut lived = Duration::from_millis(40);
+    let (mut kills_left, mut ended) = (kills(), 0);
+    while kills_left > 0 {
+        let mut child = start(place, command);
+        std::thread::sleep(lived);
+        if child.try_wait().unwrap().is_some() {
+            ended += 1;
+            fs::remove_dir_all(&out).unwrap();
+            lived = Duration::from_millis(40);
+            continue;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if out.is_dir() {
+            look(&out);
+        }
+        kills_left -= 1;
+        lived = lived * 4 / 3;
+    }
+    let output = place.run(command);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    println!("{} kills, {ended} ends between them", kills());
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_sweep_goes_on_to_the_same_table() {
+    let place = Place::new();
+    let sweep = |out| {
+        let scene = ["sweep", "small-drum", "--duration", "600ms"];
+        let varied = ["--vary", "seed=1,2", "--threads", "1", "--out", out];
+        [&scene[..], &varied].concat()
+    };
+    assert!(place.run(&sweep("whole")).status.success());
+    kill_and_go_on(&place, &sweep("out"), |_| {});
+    for table in ["table.csv", "ensembles.csv"] {
+        let [whole, killed] =
+            ["whole", "out"].map(|out| fs::read(place.path(out).join(table)).unwrap());
+        assert!(whole == killed, "{table}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn killed_run_goes_on_to_the_same_bits() {
     let place = Place::new();
     let longer = ["--duration", "2s", "--output-interval", "20ms"];
     place.run_small_drum("whole", &longer);
-    let command = [&RUN[..], &longer].concat();
-    let mut lived = Duration::from_millis(40);
-    let (mut kills_left, mut ended) = (kills(), 0);
-    while kills_left > 0 {
-        let mut child = start(&place, &command);
-        std::thread::sleep(lived);
-        if child.try_wait().unwrap().is_some() {
-            ended += 1;
-            fs::remove_dir_all(place.path("out")).unwrap();
-            lived = Duration::from_millis(40);
-            continue;
-        }
-        child.kill().unwrap();
-        child.wait().unwrap();
-        if place.path("out").is_dir() {
-            assert_whole(&place.path("out"));
-        }
-        kills_left -= 1;
-        lived = lived * 4 / 3;
-    }
-    let output = place.run(&command);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    println!("{} kills, {ended} ends between them", kills());
+    kill_and_go_on(&place, &[&RUN[..], &longer].concat(), assert_whole);
     let [whole, parts] = ["whole", "out"].map(|out| summary(&place.path(out)));
     for key in ["state_hash", "results", "files"] {
         assert_eq!(parts[key], whole[key], "{key}");

@@ -16,7 +16,7 @@ const FEW: usize = 600;
 /// So many resumes of a long series follow upon every step, as a beginning tries caches hardest.
 const ONE_BY_ONE: u64 = 300;
 /// Most steps from one resume to the next, later.
-const GAP: u64 = 400;
+const GAP: u64 = 100;
 /// Most steps that a resumed run takes.
 const STEPS: u64 = 12;
 /// Most grains times resumes of one scene in a long series.

@@ -314,7 +314,10 @@ fn liquids_ui(ui: &mut egui::Ui, simulation: &Simulation) -> Vec<Request> {
         if dry.on_hover_text("No liquid at all").clicked() {
             wanted.push(set(Parameter::LiquidVolume, 0.0));
         }
-        for case in &LIQUID_CASES {
+        for (index, case) in LIQUID_CASES.iter().enumerate() {
+            if index == 1 {
+                ui.weak("glycerol in water:");
+            }
             let own = volume > 0.0 && value(&Parameter::Viscosity) == Some(case.viscosity);
             let button = ui.selectable_label(own, case.name.trim_end_matches(" glycerol"));
             let hint = format!(
