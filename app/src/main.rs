@@ -337,7 +337,7 @@ fn run_paper(task: &PaperTask, allowed: &Allowed) -> Result<u8, RunnerError> {
     let at_once = checked_threads(task.threads, task.report())?;
     let job = task.job(at_once)?;
     if task.computes() {
-        let estimate = job.estimate(at_once);
+        let estimate = job.estimate(at_once)?;
         allowed.begin(&estimate, &job.sweep().out, Report::Quiet)?;
     }
     task.carry_out(&job, &*interruption()?)

@@ -39,6 +39,7 @@
 //! | `sampled_quantity` | the rows of the samples: [`Measure`] |
 //! | `run_quantity` | the rows of whole runs: [`RunQuantity`] |
 //! | `result_key`, `summary` | results by their keys: [`ResultKey`], [`Summary`] |
+//! | `compact_summary` | the same in little room, for files of many runs: [`CompactSummary`] |
 //! | `numeral` | numbers as text |
 //!
 //! `near_pairs` finds the pairs of grains that are near each other, `window` averages over samples.
@@ -48,6 +49,7 @@ mod blocking;
 mod collapse;
 mod column;
 mod column_summary;
+mod compact_summary;
 mod contact_network;
 mod deposit;
 mod difference;
@@ -86,6 +88,7 @@ pub use column::{
     CRITICAL_ASPECT_RATIO, InitialColumn, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
     TALL_REST_TIME_LAW, cone_volume, cone_volume_law, contact_shares_law, run_out_law,
 };
+pub use compact_summary::CompactSummary;
 pub use contact_network::{
     contact_shares, coordination_number, coordinations, largest_overlap, walls_touched,
 };

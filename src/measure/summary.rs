@@ -70,6 +70,18 @@ impl Serialize for SummaryEntry {
     }
 }
 
+/// What a result is noted with that was taken as its description says: beside the temperature of
+/// rigid rotation also what to think of it.
+pub(super) fn usual_note(key: ResultKey, value: Option<MeasuredValue>) -> String {
+    let note = key.quantity().explanation();
+    let is_of_rotation = key == ResultKey::OfRun(RunQuantity::RotationTemperature);
+    let number = value.and_then(MeasuredValue::as_number);
+    match number.filter(|_| is_of_rotation).and_then(rotation_note) {
+        Some(warning) => format!("{note}. {warning}"),
+        None => note,
+    }
+}
+
 impl SummaryEntry {
     /// The mean with its error, where the result is one.
     pub fn estimate(&self) -> Option<Estimate> {

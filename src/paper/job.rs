@@ -2,12 +2,14 @@
 //!
 //! In: a [`PaperJob`]. Out: the files of its folder, its tables, and which cases are missing.
 
+use super::kept_file::{self, KeptFile};
+use super::kept_line::{Identity, KeptLine};
 use super::plan::{Paper, PaperTable, Row, Selection};
 use crate::output::write_file;
-use crate::run::{BedStore, Estimate, VERSION};
+use crate::run::{BedStore, Estimate, VERSION, method};
 use crate::runner::{RunnerError, Standing, Watch, standing};
-use crate::sweep::{self, Case, CaseResult, Sweep, SweepEnding, SweepFolder};
-use std::fmt::Write as _;
+use crate::sweep::{self, Case, CaseResult, Kept, Sweep, SweepEnding, SweepFolder};
+use std::fmt::{self, Write as _};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -20,6 +22,8 @@ pub struct PaperJob {
     rows: Vec<Row>,
     sweep: Sweep,
     cases: Vec<Case>,
+    /// The file that keeps results beside the folder, if one does.
+    kept: Option<PathBuf>,
 }
 
 /// A case of a paper, as a list shows it.
@@ -30,8 +34,36 @@ pub struct Listed {
     pub name: String,
     /// How it stands there; none where that cannot be told, with the reason.
     pub standing: Result<Standing, String>,
+    /// What of it is kept beside the folder.
+    kept: Kept,
     /// Time of one thread that it takes, about [s].
     pub time: f64,
+}
+
+impl Listed {
+    /// Whether nothing of it is left to compute.
+    pub fn is_done(&self) -> bool {
+        self.is_kept() || self.standing == Ok(Standing::Done)
+    }
+
+    /// Whether its results are kept beside the folder.
+    pub fn is_kept(&self) -> bool {
+        matches!(self.kept, Kept::Results(_))
+    }
+}
+
+impl fmt::Display for Listed {
+    /// How it stands, in words.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.kept, &self.standing) {
+            (Kept::Results(_), _) => f.write_str("kept"),
+            (_, Err(reason)) => f.write_str(reason),
+            (Kept::Unused(reason), Ok(standing)) if *standing != Standing::Done => {
+                write!(f, "{standing}; {reason}")
+            }
+            (_, Ok(standing)) => write!(f, "{standing}"),
+        }
+    }
 }
 
 /// What came of a paper.
@@ -42,6 +74,8 @@ pub struct Papered {
     pub tables: Vec<PaperTable>,
     /// The cases that are in none of them, each with how it stands.
     pub missing: Vec<String>,
+    /// Which plots lack cases whose results alone are kept, if any do.
+    pub lacking: Option<String>,
 }
 
 impl PaperJob {
@@ -64,7 +98,16 @@ impl PaperJob {
             rows,
             sweep,
             cases,
+            kept: None,
         })
+    }
+
+    /// The same with results kept in the file at `path` as well, where there is one: what it holds
+    /// of this build's method is done, and what is done is put into it.
+    #[must_use]
+    pub fn with_kept(mut self, path: Option<PathBuf>) -> Self {
+        self.kept = path;
+        self
     }
 
     /// The same with beds looked for and kept in `beds`.
@@ -81,30 +124,101 @@ impl PaperJob {
         self
     }
 
-    /// What its cases take, `at_once` of them at the same time.
-    pub fn estimate(&self, at_once: usize) -> Estimate {
-        Estimate::of_cases(self.cases.iter().map(|case| &case.scene), at_once)
+    /// What the cases take that are to be run, `at_once` of them at the same time.
+    ///
+    /// # Errors
+    /// When the file that keeps results is damaged or cannot be read.
+    pub fn estimate(&self, at_once: usize) -> Result<Estimate, RunnerError> {
+        let waiting = self.waiting()?;
+        let scenes = waiting.iter().map(|case| &case.scene);
+        Ok(Estimate::of_cases(scenes, at_once))
     }
 
     /// The sweep that its cases are run by.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
+
+    /// What of each case is kept beside the folder.
+    fn kept(&self) -> Result<Vec<Kept>, RunnerError> {
+        let Some(path) = &self.kept else {
+            return Ok(self.cases.iter().map(|_| Kept::Nothing).collect());
+        };
+        let file = KeptFile::read(path)?;
+        let kept = self.cases.iter().map(|case| kept_of(&file, case));
+        kept.collect()
+    }
+
+    /// The cases that are to be run: those that are not kept, all where it restarts.
+    fn waiting(&self) -> Result<Vec<Case>, RunnerError> {
+        let kept = self.kept()?;
+        let is_waiting = |kept: &Kept| self.sweep.restart || !matches!(kept, Kept::Results(_));
+        let waiting = self.cases.iter().zip(&kept);
+        let waiting = waiting.filter(|(_, kept)| is_waiting(kept));
+        Ok(waiting.map(|(case, _)| case.clone()).collect())
+    }
+
+    /// Keeps what the folders hold of these `outcomes`, where it was computed by this build's
+    /// method; lines that are there stay unless `replace`.
+    fn keep<'a>(
+        &self,
+        outcomes: impl IntoIterator<Item = &'a CaseResult>,
+        replace: bool,
+    ) -> Result<(), RunnerError> {
+        let Some(path) = &self.kept else {
+            return Ok(());
+        };
+        let is_new =
+            |own: &&CaseResult| own.has_course() && own.method.as_deref() == Some(method());
+        let lines = outcomes.into_iter().filter(is_new).map(|outcome| {
+            let identity = Identity::of(&outcome.case)?;
+            KeptLine::of(identity, outcome)
+        });
+        let lines = lines.collect::<Result<_, String>>();
+        let lines = lines.map_err(RunnerError::Input)?;
+        kept_file::put(path, lines, &self.paper.case_names(), replace)
+    }
+
+    /// The sweep as it reads what is there: nothing is to be computed anew.
+    fn reading(&self) -> Sweep {
+        Sweep {
+            restart: false,
+            ..self.sweep.clone()
+        }
+    }
+}
+
+/// What `file` keeps of `case`.
+fn kept_of(file: &KeptFile, case: &Case) -> Result<Kept, RunnerError> {
+    let own = Identity::of(case).map_err(RunnerError::Input)?;
+    let Some((number, line)) = file.find(&own) else {
+        let reason = file.why_unused(&own);
+        return Ok(reason.map_or(Kept::Nothing, Kept::Unused));
+    };
+    let results = line.results();
+    let results = results.map_err(|reason| file.damaged(*number, &reason))?;
+    let kept = CaseResult::kept(case, results, line.state.clone(), own.method);
+    Ok(Kept::Results(Box::new(kept)))
 }
 
 /// The cases of `job` in the order in which they are run, each with how it stands.
-pub fn list(job: &PaperJob) -> Vec<Listed> {
-    let listed = |(row, case): (&Row, &Case)| Listed {
+///
+/// # Errors
+/// When the file that keeps results is damaged or cannot be read.
+pub fn list(job: &PaperJob) -> Result<Vec<Listed>, RunnerError> {
+    let listed = |((row, case), kept): ((&Row, &Case), Kept)| Listed {
         part: row.part,
         name: case.name.clone(),
         standing: standing(&sweep::job(&job.sweep, case)).map_err(|error| error.to_string()),
+        kept,
         time: Estimate::of(&case.scene).time,
     };
-    job.rows.iter().zip(&job.cases).map(listed).collect()
+    let cases = job.rows.iter().zip(&job.cases);
+    Ok(cases.zip(job.kept()?).map(listed).collect())
 }
 
-/// Runs the cases of `job` in their order until all are done or `interrupted` becomes true, then
-/// sets beside each other what is there; `watch` hears how far it has come.
+/// Runs the cases of `job` that are not kept in their order until all are done or `interrupted`
+/// becomes true, then sets beside each other what is there; `watch` hears how far it has come.
 ///
 /// # Errors
 /// A [`RunnerError`] when a case cannot be run or was computed by another method, or a file cannot
@@ -114,7 +228,14 @@ pub fn run(
     interrupted: &AtomicBool,
     watch: &mut dyn Watch,
 ) -> Result<Papered, RunnerError> {
-    let ending = sweep::run_in_order(&job.sweep, &job.cases, interrupted, watch)?;
+    if job.kept.is_some() && !job.sweep.restart {
+        // What earlier calls left in the folder, before days of work.
+        let (outcomes, _) = sweep::gather(&job.sweep, &job.cases, &[])?;
+        job.keep(&outcomes, false)?;
+    }
+    let keep = |outcome: &CaseResult| job.keep([outcome], job.sweep.restart);
+    let waiting = job.waiting()?;
+    let ending = sweep::run_in_order(&job.sweep, &waiting, interrupted, watch, &keep)?;
     Ok(Papered {
         ending,
         ..set_beside(job)?
@@ -122,18 +243,18 @@ pub fn run(
 }
 
 /// Sets beside each other what is there of `job`, and computes nothing: finished cases of one
-/// method, this build's where there are such. What is missing is named.
+/// method, this build's where there are such, out of the folder, else out of the file that keeps
+/// results. What is missing is named.
 ///
 /// # Errors
-/// A [`RunnerError`] when a case has other values, or a file cannot be read or written.
+/// A [`RunnerError`] when a case has other values, the folder and the file that keeps results state
+/// different things, or a file cannot be read or written.
 pub fn set_beside(job: &PaperJob) -> Result<Papered, RunnerError> {
-    // What is read is not to be computed anew.
-    let sweep = Sweep {
-        restart: false,
-        ..job.sweep.clone()
-    };
+    let sweep = job.reading();
+    let kept = job.kept()?;
     let folder = SweepFolder::open(&sweep, &job.cases)?;
-    let (outcomes, missing) = sweep::gather(&sweep, &job.cases)?;
+    let (outcomes, missing) = sweep::gather(&sweep, &job.cases, &kept)?;
+    job.keep(&outcomes, false)?;
     let mut files = sweep::set_beside(&sweep, &outcomes)?;
     let tables = all_tables(job, &outcomes);
     let text = page(job.paper, &tables, &missing);
@@ -151,6 +272,7 @@ pub fn set_beside(job: &PaperJob) -> Result<Papered, RunnerError> {
         ending,
         tables,
         missing,
+        lacking: sweep::lacking(&outcomes),
     })
 }
 

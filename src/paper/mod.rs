@@ -5,12 +5,16 @@
 //! they tell most. Out: the folder of a sweep with a folder for each case, tables and plots, and in
 //! it `tables.md`, whose tables also stand between the markers of a document. The cases are run by
 //! the loop of [`crate::sweep`]; only finished ones of one method count, and the others are named.
+//! A file can keep the results of the cases beside their folders, which may be lost: what it holds
+//! is done.
 //!
 //! Each row of the table uses only rows below it.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `job` | running a paper, or setting beside each other what is there |
+//! | `kept_file` | the file that keeps results, a line for each case |
+//! | `kept_line` | what a line holds, and by what a case is known |
 //! | `registry` | the papers by name |
 //! | `kasper2021` | Kasper et al. 2021: its cases and tables |
 //! | `man2023` | Man et al. 2023: likewise |
@@ -21,6 +25,8 @@
 mod document;
 mod job;
 mod kasper2021;
+mod kept_file;
+mod kept_line;
 mod man2023;
 mod markdown;
 mod plan;

@@ -144,6 +144,20 @@ impl Paper {
         Ok(rows)
     }
 
+    /// The names of all its cases, those of the small paper last, in the order in which they are
+    /// run.
+    pub(super) fn case_names(&self) -> Vec<String> {
+        let batches = self.batches.iter().chain(self.small_batches);
+        let mut names: Vec<String> = Vec::new();
+        for row in batches.flat_map(rows_of) {
+            let name = self.case_name(&row);
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
+    }
+
     fn case_name(&self, row: &Row) -> String {
         let keys = self.keys.iter().copied().chain([SEED]);
         let values = keys.zip(&row.values);

@@ -58,7 +58,7 @@ pub struct CaseResult {
     pub ending: Ending,
     /// Its results.
     pub results: Summary,
-    /// Its samples.
+    /// Its samples; none of a case whose results alone are kept.
     pub series: Series,
     /// Its flowing layer: velocity along the surface [m/s] over the depth below it [m].
     pub flow: Vec<(f64, Estimate)>,
@@ -85,8 +85,26 @@ impl CaseResult {
     /// Whether it shows a result: what a case came to before it met a fault is none, nor is where
     /// one stood that was stopped before it began.
     pub fn is_sound(&self) -> bool {
-        let last = self.series.time().last();
-        self.ending.fault().is_none() && last.is_some_and(|time| *time > 0.0)
+        self.ending.fault().is_none() && self.results.to > 0.0
+    }
+
+    /// Whether its samples are there, and with them its flowing layer and its fastest moment.
+    pub fn has_course(&self) -> bool {
+        !self.series.is_empty()
+    }
+
+    /// That `case` is done with these results, of which nothing else is kept.
+    pub fn kept(case: &Case, results: Summary, hash: String, method: String) -> Self {
+        Self {
+            case: case.clone(),
+            ending: Ending::Done,
+            results,
+            series: Series::default(),
+            flow: Vec::new(),
+            fastest: None,
+            hash,
+            method: Some(method),
+        }
     }
 
     fn of(

@@ -27,7 +27,8 @@ pub fn column_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     plots.extend(figures.panels("run-out-aspect", RunQuantity::RunOut, run_out_slopes));
     plots.extend(figures.panels("height-aspect", RunQuantity::RelativeHeight, height_slopes));
     plots.extend(figures.over_effective());
-    plots.extend(outcomes.iter().map(shares));
+    let with_course = outcomes.iter().filter(|own| own.has_course());
+    plots.extend(with_course.map(shares));
     plots
 }
 
@@ -160,7 +161,8 @@ impl Figures<'_> {
     /// Front and energy over time (Figs. 5 to 7): a plot of all heights for each group, or of all
     /// cases where the height is not varied.
     fn courses(&self) -> Vec<Plot> {
-        let all: Vec<&CaseResult> = self.outcomes.iter().collect();
+        let with_course = self.outcomes.iter().filter(|own| own.has_course());
+        let all: Vec<&CaseResult> = with_course.collect();
         let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
         let others: Vec<&str> = keys.filter(|key| *key != HEIGHT).collect();
         let (together, hidden) = if self.varies(HEIGHT) {
@@ -458,7 +460,7 @@ mod tests {
         assert_eq!(drawn(&outcomes), 1);
         outcomes[1].ending = Ending::Interrupted;
         assert_eq!(drawn(&outcomes), 2, "what it came to so far");
-        outcomes[1].series.truncate(1);
+        outcomes[1].results.to = 0.0;
         assert_eq!(drawn(&outcomes), 1);
     }
 

@@ -24,7 +24,8 @@ pub fn drum_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     plots.extend(drop_ratios(&ensembles));
     plots.extend(over_galilei(&ensembles));
     plots.extend(profiles(&ensembles));
-    plots.extend(outcomes.iter().flat_map(courses));
+    let with_course = outcomes.iter().filter(|own| own.has_course());
+    plots.extend(with_course.flat_map(courses));
     plots
 }
 
@@ -247,7 +248,8 @@ fn over_galilei(ensembles: &[Ensemble]) -> Vec<Plot> {
 /// Velocity over depth for each radius (Fig. 4e).
 fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
     let mut plots: BTreeMap<u64, Plot> = BTreeMap::new();
-    for ensemble in ensembles {
+    let has_course = |own: &&Ensemble| own.members.iter().any(|member| member.has_course());
+    for ensemble in ensembles.iter().filter(has_course) {
         let outcome = ensemble.first();
         let radius = radius(outcome);
         let plot = plots.entry((1e6 * radius) as u64).or_insert_with(|| Plot {

@@ -21,6 +21,7 @@ mod drums;
 mod ensemble;
 mod ensemble_table;
 mod folder;
+mod gather;
 mod kasper_parts;
 mod kasper_statements;
 mod man_statements;
@@ -38,17 +39,18 @@ pub(crate) use drums::{Drum, Drums};
 pub(crate) use ensemble::{Ensemble, ensembles};
 pub use folder::SWEEP;
 pub(crate) use folder::SweepFolder;
+pub(crate) use gather::{Kept, gather};
 pub(crate) use kasper_statements::drum_statements;
 pub(crate) use man_statements::column_statements;
 pub use plan::cases;
 pub use plan::{Case, Sweep, count};
+pub(crate) use plot_files::lacking;
 pub(crate) use results_table::TableColumn;
 pub(crate) use statements::table as statements_table;
 pub use variation::Variation;
 
 use crate::output::{Ending, OutputError};
-use crate::run::method;
-use crate::runner::{self, RunnerError, Standing, Watch, exit, spoken};
+use crate::runner::{RunnerError, Watch, exit, spoken};
 use case::CaseProgress;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -88,6 +90,9 @@ impl SweepEnding {
     }
 }
 
+/// Keeps what a case came to, elsewhere than in its folder.
+type Keep<'a> = dyn Fn(&CaseResult) -> Result<(), RunnerError> + Sync + 'a;
+
 /// Time between two looks at how far the cases have come.
 const LOOK_TIME: Duration = Duration::from_millis(100);
 
@@ -118,7 +123,8 @@ pub fn run(
     // The costliest first, so that no core idles at the end.
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
-    let outcomes = run_cases(sweep, &cases, order, interrupted, watch)?;
+    let nothing = |_: &CaseResult| Ok(());
+    let outcomes = run_cases(sweep, &cases, order, interrupted, watch, &nothing)?;
     let ending = SweepEnding::of(&outcomes, cases.len());
     let files = set_beside(sweep, &outcomes)?;
     folder.close(sweep, &outcomes, files)?;
@@ -130,7 +136,7 @@ pub fn run(
 }
 
 /// Runs these `cases` of `sweep` one after the other, as they stand, and sets nothing beside each
-/// other.
+/// other; each that is done is handed to `keep`.
 ///
 /// # Errors
 /// As [`run`].
@@ -139,11 +145,12 @@ pub(crate) fn run_in_order(
     cases: &[Case],
     interrupted: &AtomicBool,
     watch: &mut dyn Watch,
+    keep: &Keep,
 ) -> Result<SweepEnding, RunnerError> {
     case::check_method(sweep, cases)?;
     SweepFolder::open(sweep, cases)?;
     let order = (0..cases.len()).collect();
-    let outcomes = run_cases(sweep, cases, order, interrupted, watch)?;
+    let outcomes = run_cases(sweep, cases, order, interrupted, watch, keep)?;
     Ok(SweepEnding::of(&outcomes, cases.len()))
 }
 
@@ -190,7 +197,7 @@ pub fn merge(sweep: &Sweep) -> Result<Swept, RunnerError> {
         )));
     }
     let folder = SweepFolder::open(sweep, &cases)?;
-    let (outcomes, missing) = gather(sweep, &cases)?;
+    let (outcomes, missing) = gather(sweep, &cases, &[])?;
     let ending = SweepEnding::of(&outcomes, cases.len());
     let files = set_beside(sweep, &outcomes)?;
     folder.close(sweep, &outcomes, files)?;
@@ -199,38 +206,6 @@ pub fn merge(sweep: &Sweep) -> Result<Swept, RunnerError> {
         table: table(sweep, &outcomes),
         missing,
     })
-}
-
-/// The finished ones of `cases`, all computed by one method, this build's where there are such; of
-/// the others number, name and how they stand.
-///
-/// # Errors
-/// When a case has other values, or a file cannot be read.
-pub(crate) fn gather(
-    sweep: &Sweep,
-    cases: &[Case],
-) -> Result<(Vec<CaseResult>, Vec<String>), RunnerError> {
-    let (mut outcomes, mut missing) = (Vec::new(), Vec::new());
-    for (number, case) in (1..).zip(cases) {
-        let standing = runner::standing(&case::job(sweep, case));
-        match standing.map_err(|error| error.within(&case.name))? {
-            Standing::Done => outcomes.extend(case::run(sweep, case, &mut (), &|| true)?),
-            other => missing.push(format!("{number}, {}: {other}", case.name)),
-        }
-    }
-    let is_own = |own: &&CaseResult| own.method.as_deref() == Some(method());
-    let chosen = outcomes.iter().find(is_own).or(outcomes.first());
-    let chosen = chosen.and_then(|own| own.method.clone());
-    let (kept, others): (Vec<_>, Vec<_>) =
-        (outcomes.into_iter()).partition(|outcome| outcome.method == chosen);
-    missing.extend(others.iter().map(|other| {
-        let stated = other
-            .method
-            .as_deref()
-            .unwrap_or("that its folder does not state");
-        format!("{}: computed by another method, {stated}", other.case.name)
-    }));
-    Ok((kept, missing))
 }
 
 /// Writes tables and plots of these `outcomes`; returns the files' names.
@@ -273,13 +248,15 @@ fn means<'a, 'b>(ensembles: &'a [Ensemble<'b>]) -> &'a [Ensemble<'b>] {
     if has_seeds { ensembles } else { &[] }
 }
 
-/// Runs the cases in this `order`; returns what became of them in their own.
+/// Runs the cases in this `order`, each that is done handed to `keep`; returns what became of them
+/// in their own.
 fn run_cases(
     sweep: &Sweep,
     cases: &[Case],
     order: Vec<usize>,
     interrupted: &AtomicBool,
     watch: &mut dyn Watch,
+    keep: &Keep,
 ) -> Result<Vec<CaseResult>, RunnerError> {
     let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
     let waiting = Mutex::new(VecDeque::from(order));
@@ -297,6 +274,7 @@ fn run_cases(
                 while let Some(index) = next().filter(|_| !stop()) {
                     let mut share = &shares[index];
                     let result = case::run(sweep, &cases[index], &mut share, &stop);
+                    let result = result.and_then(|outcome| kept(outcome, keep));
                     if let Err(RunnerError::Output(OutputError::Taken { .. })) = result {
                         // Another sweep is at it: its outcome is read when that is done.
                         let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
@@ -326,6 +304,13 @@ fn run_cases(
     results
         .filter_map(|(_, result)| result.transpose())
         .collect()
+}
+
+/// The `outcome` of a case, handed to `keep` where it is done.
+fn kept(outcome: Option<CaseResult>, keep: &Keep) -> Result<Option<CaseResult>, RunnerError> {
+    let done = outcome.as_ref().filter(|own| own.ending == Ending::Done);
+    done.map_or(Ok(()), keep)?;
+    Ok(outcome)
 }
 
 /// Tells how far the whole has come while it is `working`.

@@ -30,6 +30,28 @@ pub fn write_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>
     Ok(names)
 }
 
+/// Which plots lack which of these outcomes, as their results alone are kept; none where none does.
+pub fn lacking(outcomes: &[CaseResult]) -> Option<String> {
+    let without: Vec<&str> = (outcomes.iter())
+        .filter(|own| own.is_sound() && !own.has_course())
+        .map(|own| own.case.name.as_str())
+        .collect();
+    let plots = if outcomes.iter().any(CaseResult::is_column) {
+        "plots/courses"
+    } else {
+        "plots/courses, plots/velocity and plots/velocity-profile-*.svg"
+    };
+    let cases = match without.len() {
+        0 => return None,
+        1 => "1 case, which is".to_owned(),
+        count => format!("{count} cases, which are"),
+    };
+    Some(format!(
+        "{plots} lack {cases} kept without samples: {}",
+        without.join(", ")
+    ))
+}
+
 /// Every plot of these outcomes; those that show no result are in none.
 pub(super) fn plots(sweep: &Sweep, outcomes: &[CaseResult]) -> impl Iterator<Item = Plot> {
     let sound: Vec<CaseResult> = outcomes

@@ -9,6 +9,7 @@ mod architecture;
 mod comparison;
 mod doors;
 mod engines;
+mod kept_results;
 mod lesson;
 mod measure;
 mod paper;

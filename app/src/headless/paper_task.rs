@@ -24,7 +24,11 @@ pub struct PaperTask {
     /// Cases that run at the same time, each on one thread [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub threads: Option<u16>,
-    /// Run every case anew, in the place of those that the folder holds
+    /// A file that keeps the results beside the folder, a line for each case, such as
+    /// docs/results/PAPER.jsonl: what it holds is done, what gets done is put into it
+    #[arg(long, value_name = "FILE.jsonl")]
+    kept: Option<PathBuf>,
+    /// Run every case anew, in the place of those that the folder and --kept hold
     #[arg(long)]
     restart: bool,
     /// List the cases in their order, each with how it stands and how long it takes, about, and
@@ -89,7 +93,7 @@ impl PaperTask {
         let paper = paper::paper(&self.name)?;
         let selection = self.wanted.selection();
         let job = PaperJob::new(paper, &selection, self.folder(paper), at_once)?;
-        Ok(job.restarting(self.restart))
+        Ok(job.restarting(self.restart).with_kept(self.kept.clone()))
     }
 
     fn folder(&self, paper: &Paper) -> PathBuf {
@@ -106,7 +110,7 @@ impl PaperTask {
     /// written.
     pub fn carry_out(&self, job: &PaperJob, interrupted: &AtomicBool) -> Result<u8, RunnerError> {
         if self.list {
-            say_list(&paper::list(job));
+            say_list(&paper::list(job)?);
             return Ok(exit::DONE);
         }
         if let Some(document) = &self.write {
@@ -135,6 +139,9 @@ impl PaperTask {
     fn say(&self, job: &PaperJob, papered: &Papered) -> Result<(), RunnerError> {
         for case in &papered.missing {
             self.report().note(&format!("missing: {case}"));
+        }
+        if let Some(lacking) = &papered.lacking {
+            self.report().note(lacking);
         }
         if self.report() == Report::Text {
             for table in &papered.tables {
@@ -170,16 +177,12 @@ fn read_document(path: &Path) -> Result<String, RunnerError> {
 fn say_list(cases: &[Listed]) {
     let mut left = 0.0;
     for (number, case) in (1..).zip(cases) {
-        let standing = match &case.standing {
-            Ok(standing) => standing.to_string(),
-            Err(reason) => reason.clone(),
-        };
-        if standing != "done" {
+        if !case.is_done() {
             left += case.time;
         }
         let time = spoken(case.time);
         say(&format!(
-            "{number:>4}  {:<6} {:<50} {time:>8}  {standing}",
+            "{number:>4}  {:<6} {:<50} {time:>8}  {case}",
             case.part, case.name
         ));
     }
