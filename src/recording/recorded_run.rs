@@ -84,6 +84,15 @@ struct Frame {
     contacts: Option<String>,
 }
 
+/// What the lists of a folder say.
+struct ListedStates {
+    frames: Vec<Frame>,
+    /// When each of them was [s].
+    times: Vec<f64>,
+    /// What is to be said of the lists, in sentences.
+    notes: Vec<String>,
+}
+
 /// A state of a recording.
 pub struct RecordedState {
     /// The state.
@@ -173,7 +182,7 @@ impl Recording {
     /// # Errors
     /// When they are not those of the run that was read: what was read stays.
     pub(super) fn grow(&mut self) -> Result<bool, RecordingError> {
-        let (frames, times, _) = self.read_states()?;
+        let ListedStates { frames, times, .. } = self.read_states()?;
         let known = self.frames.len();
         let known_times = self.moments.iter().map(|moment| moment.time);
         let is_same = frames.iter().zip(&self.frames).all(|(a, b)| a == b)
@@ -232,7 +241,11 @@ impl Recording {
                 format!("holds no {grains}: its run wrote no states, and there is nothing to show"),
             ));
         }
-        let (frames, times, notes) = self.read_states()?;
+        let ListedStates {
+            frames,
+            times,
+            notes,
+        } = self.read_states()?;
         if frames.is_empty() {
             return Err(RecordingError::of(
                 &self.files.folder().join(grains),
@@ -250,8 +263,8 @@ impl Recording {
         Ok(())
     }
 
-    /// The states in the lists, when each was [s], and what is to be said of the lists.
-    fn read_states(&self) -> Result<(Vec<Frame>, Vec<f64>, Vec<String>), RecordingError> {
+    /// What the lists say.
+    fn read_states(&self) -> Result<ListedStates, RecordingError> {
         let [grains, contacts] = LISTS;
         let mut notes = Vec::new();
         let mut states = self.listed(grains, &mut notes)?;
@@ -275,7 +288,11 @@ impl Recording {
         };
         let frames = states.iter().map(frame).collect();
         let times = states.iter().map(|state| state.time).collect();
-        Ok((frames, times, notes))
+        Ok(ListedStates {
+            frames,
+            times,
+            notes,
+        })
     }
 
     fn listed(
