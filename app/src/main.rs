@@ -8,6 +8,8 @@ use grainfall::lab::Kept;
 use grainfall::lab::Options;
 use grainfall::lesson::Lesson;
 use grainfall::parameters::Settings;
+#[cfg(feature = "desktop")]
+use grainfall::recording::Recording;
 use grainfall::run::{Estimate, ScriptedCommand};
 #[cfg(feature = "desktop")]
 use grainfall::run::{OPENING_SCENE, Session, opening};
@@ -24,7 +26,7 @@ use grainfall_app::headless::{
     named_scene, short_name,
 };
 #[cfg(feature = "desktop")]
-use grainfall_app::window::Opened;
+use grainfall_app::window::{FilmJob, Opened, film_recording, film_run};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -94,6 +96,17 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         let options = window_options(&what, Vec::new());
         return open_window(name, opened, options, arguments.picture);
     }
+    let report = arguments.said.report();
+    #[cfg(feature = "desktop")]
+    let film = film_job(arguments.record, &arguments.picture);
+    #[cfg(not(feature = "desktop"))]
+    if arguments.record.is_some() {
+        return Err(RunnerError::Input(NO_FILM.into()));
+    }
+    #[cfg(feature = "desktop")]
+    if let Some(film) = film.as_ref().filter(|_| Recording::is_at(&name)) {
+        return film_folder(&name, &what, film, report);
+    }
     if Kept::is_at(&name) {
         return Err(RunnerError::Input(format!(
             "{name} holds what was computed: it opens in a window, and `grainfall verify` computes it again without one"
@@ -124,7 +137,6 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     }
     let name = short_name(&name);
     let out = arguments.out.unwrap_or(Path::new("out").join(&name));
-    let report = arguments.said.report();
     let interruption = interruption()?;
     let job = Job {
         threads: checked_threads(what.threads, report)?,
@@ -134,8 +146,33 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         ..Job::new(name, scene, out)
     };
     allowed.begin(&Estimate::of(&job.scene), &job.out, report)?;
+    #[cfg(feature = "desktop")]
+    if let Some(film) = film {
+        return Ok(film_run(&job, &film, report, &interruption)?.exit_code());
+    }
     let ending = headless::run(&job, report, &interruption)?;
     Ok(ending.exit_code())
+}
+
+/// The film that is asked for.
+#[cfg(feature = "desktop")]
+fn film_job(path: Option<PathBuf>, picture: &PictureArguments) -> Option<FilmJob> {
+    Some(FilmJob {
+        path: path?,
+        at: picture.at,
+        speed: picture.speed,
+        size: picture.size.into(),
+        plain: picture.plain,
+    })
+}
+
+/// Makes a film of the recording called `name`. Returns the exit code.
+#[cfg(feature = "desktop")]
+fn film_folder(name: &str, what: &What, film: &FilmJob, report: Report) -> Result<u8, RunnerError> {
+    match unchanged(name, what)? {
+        Opened::Recording(recording) => film_recording(*recording, film, report, &*interruption()?),
+        _ => Err(RunnerError::Input(format!("{name} is no folder of a run"))),
+    }
 }
 
 /// Opens the lesson called `name`, as it is, in a window. Returns the exit code.
@@ -289,6 +326,10 @@ fn open_window(
         |()| 0,
     ))
 }
+
+#[cfg(not(feature = "desktop"))]
+const NO_FILM: &str = "this grainfall was built without pictures: leave --record out, or build it with the feature \
+                       `desktop`";
 
 #[cfg(not(feature = "desktop"))]
 const NO_WINDOW: &str = "this grainfall was built without a window: add --no-render, or build it with the feature \

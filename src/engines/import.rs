@@ -16,10 +16,9 @@ use crate::measure::{FlowHistory, Series, Summary, sample_and_surface};
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
 use crate::run::{Run, Sampling, Script, ScriptedCommand, StampedCommand};
 use crate::runner::Watch;
-use crate::scene::{Scene, SceneGrain, SceneGrains, SceneShape};
+use crate::scene::Scene;
 use crate::solver::advise;
-use crate::world::{SpeciesId, Wall, World, build};
-use glam::{DQuat, DVec3};
+use crate::world::{SpeciesId, World, build};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -334,53 +333,4 @@ impl Recording {
             frames: self.frames,
         })
     }
-}
-
-/// A scene that begins with the grains of `world`, a state of `scene`: each as it is then, in the
-/// same container.
-///
-/// # Errors
-/// In words, where they are polyhedra, which no list states.
-pub fn scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
-    if world.polyhedra.is_some() {
-        return Err(
-            "A run goes on from a state of spheres alone: run this scene from its start".into(),
-        );
-    }
-    let grains = &world.grains;
-    let listed = |i: usize| {
-        let species = &world.species[usize::from(grains.species[i].0)];
-        SceneGrain {
-            position: grains.position[i],
-            velocity: grains.velocity[i],
-            spin: grains.spin[i],
-            radius: grains.radius[i],
-            shape: SceneShape::Sphere,
-            orientation: DQuat::IDENTITY,
-            material: world.materials.get(species.material).name.clone(),
-            film: world.wetting().map(|_| grains.film[i]),
-        }
-    };
-    Ok(Scene {
-        grains: SceneGrains::List((0..grains.len()).map(listed).collect()),
-        ..scene.clone()
-    })
-}
-
-/// The same, where that is a scene that can be run.
-///
-/// # Errors
-/// In words, why it is none.
-pub fn sound_scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
-    let moves = |wall: &Wall| wall.motion.velocity != DVec3::ZERO;
-    if world.time() > 0.0 && world.container.walls.iter().any(moves) {
-        return Err(
-            "Walls have moved since the start, and a scene begins with them where they were: run this scene from its start"
-                .into(),
-        );
-    }
-    let mut scene = scene_from(scene, world)?;
-    scene.title = format!("{}, from t = {:.3} s", scene.title, world.time());
-    scene.check().map_err(|error| error.to_string())?;
-    Ok(scene)
 }

@@ -9,6 +9,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `started_scene` | a scene that begins with a state |
 //! | `import` | what an engine computed, measured as a run of ours |
 //! | `imported_state` | a frame as a state of a scene |
 //! | `export` | the folder that an engine runs |
@@ -44,6 +45,7 @@ mod liggghts_walls;
 mod lines;
 mod mpi_engine;
 mod rockable_files;
+mod started_scene;
 mod wall_mesh;
 mod xyz_file;
 
@@ -53,8 +55,7 @@ pub use atoms_file::{DomainBox, write_atoms};
 pub use deck::Steps;
 pub use export::{Export, ExportError, ExportRecord, Exported, export};
 pub use frames::{FrameFile, read_frames};
-pub use import::{
-    ImportError, ImportSource, Imported, import, named_files, scene_from, sound_scene_from,
-};
+pub use import::{ImportError, ImportSource, Imported, import, named_files};
 pub use mpi_engine::MpiEngine;
+pub use started_scene::{scene_from, sound_scene_from};
 pub use wall_mesh::WallMesh;

@@ -5,15 +5,21 @@
 //! and says who locked it last: the file by itself means nothing.
 
 use super::attempt::attempt;
+use super::reading::open_regular;
 use super::target::check_target;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
+use std::thread::sleep;
+use std::time::Duration;
 
 /// The file in a folder that is locked.
 pub const LOCK: &str = ".grainfall.lock";
 /// Most of that file that is read.
 const LONGEST: u64 = 200;
+/// After this a folder that is taken is looked at once more: who only asks whether it is
+/// ([`FolderLock::is_held`]) takes it for microseconds.
+const ONCE_MORE: Duration = Duration::from_millis(20);
 
 /// A folder that nobody else writes to as long as this is there.
 #[derive(Debug)]
@@ -39,7 +45,14 @@ impl FolderLock {
     pub fn of(folder: &Path) -> Result<Self, LockError> {
         let path = folder.join(LOCK);
         let mut file = open(&path).map_err(LockError::Unwritten)?;
-        match file.try_lock() {
+        let locked = match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                sleep(ONCE_MORE);
+                file.try_lock()
+            }
+            locked => locked,
+        };
+        match locked {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(LockError::Taken(holder(&mut file))),
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
@@ -52,6 +65,14 @@ impl FolderLock {
             .and_then(|()| file.write_all(own_name().as_bytes()));
         noted.map_err(LockError::Unwritten)?;
         Ok(Self { file: Some(file) })
+    }
+
+    /// Whether somebody holds `folder` now; nothing is written, and nobody who holds it notices.
+    /// Where the file system has no locks, nobody does.
+    pub fn is_held(folder: &Path) -> bool {
+        let file = open_regular(&folder.join(LOCK));
+        let shared = file.map(|file| file.try_lock_shared());
+        matches!(shared, Ok(Err(TryLockError::WouldBlock)))
     }
 
     /// Whether the lock keeps others out: some network file systems have none.
@@ -104,7 +125,9 @@ mod tests {
             panic!("the folder is locked");
         };
         assert!(holder.contains(&std::process::id().to_string()), "{holder}");
+        assert!(FolderLock::is_held(folder.path()));
         drop(first);
+        assert!(!FolderLock::is_held(folder.path()));
         assert!(FolderLock::of(folder.path()).unwrap().holds());
     }
 }

@@ -12,8 +12,8 @@
 //! | `made_beside` | folders, and files by other programs, that appear whole or not at all |
 //! | `growing` | files that grow at their end |
 //! | `whole` | files that appear whole or not at all |
-//! | `reading` | regular files of bounded size |
 //! | `lock` | one program at a time in a folder |
+//! | `reading` | regular files of bounded size |
 //! | `target` | what is never written over |
 //! | `attempt` | where tests let a call to the operating system fail |
 //! | `power_cut` | what is left where the program or the power stops; for tests |

@@ -73,6 +73,20 @@ impl Polyhedron {
         })
     }
 
+    /// A `core` along its principal axes, about the centroid of a solid of this `volume` [m³] and
+    /// `gyration` [m²], rounded by `rounding` [m]. Whether it is a body says
+    /// [`Polyhedron::is_sound_core`].
+    pub fn of_core(core: Solid, rounding: f64, volume: f64, gyration: DVec3) -> Self {
+        Self {
+            edges: core.edges(),
+            vertices: core.vertices,
+            faces: core.faces,
+            rounding,
+            volume,
+            gyration,
+        }
+    }
+
     /// A sphere.
     pub fn sphere(radius: f64) -> Self {
         Self {

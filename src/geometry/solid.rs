@@ -272,16 +272,7 @@ impl Solid {
         if self.faces.len() < 4 {
             return Err(Flaw::Empty);
         }
-        let mut directed: Vec<[u16; 2]> = self.faces.iter().flat_map(|face| sides(face)).collect();
-        directed.sort_unstable();
-        let twice = directed.windows(2).any(|pair| pair[0] == pair[1]);
-        let matched = |[a, b]: &[u16; 2]| directed.binary_search(&[*b, *a]).is_ok();
-        if twice || !directed.iter().all(matched) {
-            return Err(Flaw::Open);
-        }
-        if self.vertices.len() + self.faces.len() != directed.len() / 2 + 2 {
-            return Err(Flaw::Euler);
-        }
+        self.check_closed()?;
         // Merged corners are off their planes by up to what was merged.
         let slack = 4.0 * SAME_CORNER * self.size;
         let convex = (0..self.faces.len()).all(|face| {
@@ -294,6 +285,26 @@ impl Solid {
         }
         if self.moments().volume <= 0.0 {
             return Err(Flaw::Empty);
+        }
+        Ok(())
+    }
+
+    /// Whether its surface is closed: every edge in exactly two faces, there and back, and Euler's
+    /// formula; and whether it encloses a volume.
+    pub fn is_closed(&self) -> bool {
+        self.check_closed().is_ok() && self.moments().volume > 0.0
+    }
+
+    fn check_closed(&self) -> Result<(), Flaw> {
+        let mut directed: Vec<[u16; 2]> = self.faces.iter().flat_map(|face| sides(face)).collect();
+        directed.sort_unstable();
+        let twice = directed.windows(2).any(|pair| pair[0] == pair[1]);
+        let matched = |[a, b]: &[u16; 2]| directed.binary_search(&[*b, *a]).is_ok();
+        if twice || !directed.iter().all(matched) {
+            return Err(Flaw::Open);
+        }
+        if self.vertices.len() + self.faces.len() != directed.len() / 2 + 2 {
+            return Err(Flaw::Euler);
         }
         Ok(())
     }

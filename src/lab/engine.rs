@@ -170,6 +170,7 @@ impl Engine {
         update.answered = Some(self.answered);
         if let LabStage::Recorded(playback) = &mut self.stage {
             update.warnings.extend(playback.take_notes());
+            update.recording = playback.take_facts();
             update.runs = Some(playback.news());
         }
         if let LabStage::Ready(runs) = &mut self.stage {
@@ -232,7 +233,8 @@ impl Engine {
 
     /// Lets the runs go on by what `passed` wall-clock time is worth.
     fn tick(&mut self, passed: Duration) {
-        if let LabStage::Recorded(playback) = &self.stage {
+        if let LabStage::Recorded(playback) = &mut self.stage {
+            playback.tick(passed);
             self.clock.tick(passed, playback.now());
         }
         if let LabStage::Ready(runs) = &mut self.stage {
@@ -264,6 +266,8 @@ impl Engine {
             LabCommand::CloseChange => self.open_change = None,
             LabCommand::Hold(step) => self.clock.hold_at(step),
             LabCommand::Threads(threads) => self.use_threads(threads),
+            // A run has measured it.
+            LabCommand::MeasureFlow => {}
             LabCommand::ForgetMeasured(stored) => self.forget_measured(stored),
             LabCommand::Save { path, look } => self.save(path, look),
             LabCommand::Rescue { path, look } => self.rescue(&path, look),
@@ -462,6 +466,7 @@ fn parts_changes(command: &LabCommand) -> bool {
         | LabCommand::OpenChange
         | LabCommand::CloseChange
         | LabCommand::ForgetMeasured(_)
+        | LabCommand::MeasureFlow
         | LabCommand::Rescue { .. }
         | LabCommand::Hold(_)
         | LabCommand::Threads(_) => false,

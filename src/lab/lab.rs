@@ -275,6 +275,7 @@ impl Lab {
             | LabCommand::EndComparison { .. }
             | LabCommand::ForgetMeasured(_)
             | LabCommand::Hold(_)
+            | LabCommand::MeasureFlow
             | LabCommand::Threads(_) => {}
         }
     }
@@ -361,6 +362,7 @@ impl Lab {
         if let Some(news) = update.runs {
             self.take_runs(news);
         }
+        self.recording = update.recording.or(self.recording.take());
         self.runs[0].warn(update.warnings);
         let is_there = !matches!(self.status, Status::Seeking { .. });
         if self.has_answered() {

@@ -59,6 +59,8 @@ pub enum LabCommand {
     Hold(Option<u64>),
     /// Forget so much of what was measured: it stands in files, and nobody goes back.
     ForgetMeasured(Stored),
+    /// Measure the mean flow of the recording that is played, on its states.
+    MeasureFlow,
     /// Work on so many threads in all.
     Threads(usize),
 }

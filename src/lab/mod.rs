@@ -43,4 +43,4 @@ pub use lab_command::LabCommand;
 pub use options::{DriverKind, Options};
 pub use run_view::{RunView, SMALLEST_DROP};
 pub use status::Status;
-pub use update::SavedFile;
+pub use update::{RecordedFlow, SavedFile};

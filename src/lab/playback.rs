@@ -2,17 +2,22 @@
 //!
 //! In: a [`Recording`], and steps to go to. Out: its states as they are, none between two of them:
 //! until the next is due, the last one stays. A state is read when it is shown; of those shown
-//! before, as many are kept as fit into the memory that was granted.
+//! before, as many are kept as fit into the memory that was granted. Where its run is under way, what
+//! that writes is taken up, and whoever looks at the last state follows it.
 
 use super::clock::{LabClock, Mode};
 use super::lab_command::LabCommand;
-use super::update::{RunNews, RunsNews};
-use crate::recording::Recording;
+use super::update::{RecordedFlow, RunNews, RunsNews};
+use crate::measure::MeanFlow;
+use crate::recording::{
+    FlowSurvey, Follower, Recording, RecordingFacts, RunNews as News, RunProgress,
+};
 use crate::run::{Command, CommandError, Past, Sampling};
 use crate::solver::Profile;
 use crate::world::{self, World};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Most states kept, however small they are.
 const MOST_KEPT: usize = 256;
@@ -20,6 +25,14 @@ const MOST_KEPT: usize = 256;
 /// A recording that is played.
 pub struct Playback {
     recording: Recording,
+    /// Takes up what its run writes, where that is not over.
+    follower: Option<Follower>,
+    /// What is known of it, where that is news.
+    facts: Option<RecordingFacts>,
+    /// Measures the mean flow on the states, where that was asked for.
+    survey: Option<FlowSurvey>,
+    /// The mean flow.
+    flow: Option<RecordedFlow>,
     /// The step that it has come to: that of a state, or one between two.
     reached: u64,
     /// The state shown and its index.
@@ -56,6 +69,10 @@ impl Playback {
                         notes,
                         damaged,
                         noted: [index].into(),
+                        follower: Follower::of(&recording),
+                        facts: None,
+                        survey: None,
+                        flow: recording.flow().map(written_flow),
                         recording,
                     });
                 }
@@ -69,6 +86,73 @@ impl Playback {
     /// What people should know since this was last called, in sentences.
     pub fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
+    }
+
+    /// What is known of the recording, where that has changed since this was last called.
+    pub fn take_facts(&mut self) -> Option<RecordingFacts> {
+        self.facts.take()
+    }
+
+    /// Lets `passed` wall-clock time pass: what a run under way has written is taken up now and then,
+    /// and where the mean flow is measured, another state is read.
+    pub fn tick(&mut self, passed: Duration) {
+        if let Some(survey) = &mut self.survey
+            && (survey.measure_next(&self.recording) || self.flow.is_none())
+        {
+            self.flow = Some(RecordedFlow {
+                mean: Arc::new(survey.mean(&self.recording)),
+                read: Some(survey.read()),
+            });
+        }
+        self.follow(passed);
+    }
+
+    fn follow(&mut self, passed: Duration) {
+        let Some(follower) = &mut self.follower else {
+            return;
+        };
+        let end = self.recording.branch().end.step;
+        let follows = self.reached >= end;
+        let Some(news) = follower.tick(passed, &mut self.recording) else {
+            return;
+        };
+        match news {
+            News::Grown | News::Progress => {}
+            News::ReadAnew => self.read_anew(),
+            News::Lost(reason) => {
+                self.notes
+                    .push(format!("The run is followed no longer: {reason}"));
+                self.follower = None;
+            }
+        }
+        if follows {
+            self.go_to(self.recording.moments().len() - 1);
+        }
+        self.facts = Some(self.recording.facts());
+    }
+
+    /// The recording was read anew: the same moment is shown, as it is known now.
+    fn read_anew(&mut self) {
+        let time = self.shown.1.time();
+        let moments = self.recording.moments();
+        let index = moments.partition_point(|moment| moment.time <= time);
+        let index = index.max(1) - 1;
+        self.reached = moments[index].step;
+        self.kept.clear();
+        self.damaged.clear();
+        self.noted.clear();
+        if let Ok(state) = self.recording.state(index) {
+            self.shown = (index, Arc::new(state.world));
+        }
+        if self.recording.progress() == RunProgress::Over {
+            let written = self.recording.flow().map(written_flow);
+            self.survey = self.survey.take().filter(|_| written.is_none());
+            self.flow = written.or(self.flow.take());
+            let end = self.recording.branch().end.time;
+            self.notes.push(format!("The run ended at t = {end:.3} s"));
+            self.notes.extend_from_slice(self.recording.notes());
+            self.follower = None;
+        }
     }
 
     /// The step that it has come to, and how long a step is there.
@@ -115,6 +199,8 @@ impl Playback {
             | LabCommand::ForgetMeasured(_)
             | LabCommand::Rescue { .. }
             | LabCommand::Threads(_) => {}
+            LabCommand::MeasureFlow if self.recording.flow().is_some() => {}
+            LabCommand::MeasureFlow => self.survey = Some(FlowSurvey::default()),
             LabCommand::Hold(step) => clock.hold_at(*step),
             LabCommand::All(command) => match command {
                 Command::Play => {
@@ -194,6 +280,7 @@ impl Playback {
                     ..Past::default()
                 },
                 fault: None,
+                flow: self.flow.clone(),
                 profile: Profile::default(),
             }],
         }
@@ -242,5 +329,13 @@ impl Playback {
         if most > 0 && !self.kept.iter().any(|(kept, _)| *kept == state.0) {
             self.kept.push_back(state);
         }
+    }
+}
+
+/// The mean flow that a run wrote.
+fn written_flow(mean: &Arc<MeanFlow>) -> RecordedFlow {
+    RecordedFlow {
+        mean: mean.clone(),
+        read: None,
     }
 }

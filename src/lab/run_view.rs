@@ -4,8 +4,10 @@
 //! In: the engine's news. Out: borrowed states, samples and commands; they are shared with the
 //! engine, so they may only be read. Changing a run goes by way of [`super::Lab::send`].
 
-use super::update::RunNews;
-use crate::measure::{Avalanche, FlowHistory, Measure, Sample, Series, avalanches};
+use super::update::{RecordedFlow, RunNews};
+use crate::measure::{
+    Avalanche, FlowHistory, LEFT_OUT, MeanFlow, Measure, Sample, Series, avalanches,
+};
 use crate::run::{
     Branch, Command, Parameter, ParameterInfo, Past, Sampling, StampedCommand, StepTimes, Turned,
     Value, time_step,
@@ -120,6 +122,21 @@ impl RunView {
     /// The flowing layer so far.
     pub fn flow(&self) -> &FlowHistory {
         &self.branch.flow
+    }
+
+    /// The mean flow over depth of the part of the run that results count, empty where the bed did
+    /// not flow; of a recording what its run wrote, or what was measured on its states when that was
+    /// asked for.
+    pub fn mean_flow(&self) -> Arc<MeanFlow> {
+        self.recorded_flow().map_or_else(
+            || Arc::new(self.branch.flow.mean_since(LEFT_OUT * self.past.end.time)),
+            |recorded| recorded.mean.clone(),
+        )
+    }
+
+    /// The mean flow of a recording, where there is one.
+    pub fn recorded_flow(&self) -> Option<&RecordedFlow> {
+        self.news.as_ref()?.flow.as_ref()
     }
 
     /// The avalanches so far, of [`SMALLEST_DROP`] at least.

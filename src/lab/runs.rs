@@ -100,6 +100,7 @@ impl LabRun {
             latest: self.timeline.branch().series.last(),
             sampling: self.timeline.run().sampling(),
             past: self.timeline.past(),
+            flow: None,
             fault: self.fault.clone(),
             profile: self.profile.clone(),
         }

@@ -5,7 +5,8 @@
 //! shared, not copied.
 
 use super::Status;
-use crate::measure::Sample;
+use crate::measure::{MeanFlow, Sample};
+use crate::recording::RecordingFacts;
 use crate::run::{Branch, Parameter, ParameterInfo, Past, Sampling, Turned};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
@@ -17,6 +18,8 @@ use std::sync::Arc;
 pub struct Update {
     /// The runs, where there are any and all are at the same step.
     pub runs: Option<RunsNews>,
+    /// What is known of the recording that is played, where that has changed.
+    pub recording: Option<RecordingFacts>,
     /// How many commands were dispatched since the engine was made. None while two runs are on the
     /// way to a common step: what they become by then is told together.
     pub answered: Option<u64>,
@@ -58,8 +61,19 @@ pub struct RunNews {
     pub past: Past,
     /// What stopped it, if something did.
     pub fault: Option<Fault>,
+    /// The mean flow of a recording, where its run wrote one or it was asked for.
+    pub flow: Option<RecordedFlow>,
     /// The solver's profile of the last half second or so.
     pub profile: Profile,
+}
+
+/// The mean flow of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedFlow {
+    /// It.
+    pub mean: Arc<MeanFlow>,
+    /// States that were read for it; none where the run wrote it itself.
+    pub read: Option<usize>,
 }
 
 /// What became of a file that was to be written.
@@ -75,6 +89,7 @@ impl Update {
     /// Adds what came `later`.
     pub fn absorb(&mut self, later: Self) {
         self.runs = later.runs.or(self.runs.take());
+        self.recording = later.recording.or(self.recording.take());
         self.answered = later.answered.or(self.answered);
         self.status = later.status.or(self.status.take());
         self.warnings.extend(later.warnings);

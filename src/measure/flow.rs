@@ -170,6 +170,22 @@ impl FlowHistory {
         (0..depths.unwrap_or(0)).map(at).collect()
     }
 
+    /// The mean flow from the first whole second at or after `time` [s] on.
+    pub fn mean_since(&self, time: f64) -> MeanFlow {
+        let profile = self.since(time);
+        let rows = profile.depth.iter().zip(profile.samples);
+        let rows = rows.zip(self.velocity_since(time));
+        let depths = rows.map(|((depth, samples), velocity)| FlowDepth {
+            depth: *depth,
+            velocity: velocity.mean,
+            error: velocity.error,
+            samples,
+        });
+        MeanFlow {
+            depths: depths.collect(),
+        }
+    }
+
     /// The profile averaged from the first whole second at or after `time` [s] on.
     pub fn since(&self, time: f64) -> FlowProfile {
         let first = time.max(0.0).ceil() as usize;
@@ -180,6 +196,27 @@ impl FlowHistory {
             .for_each(|second| profile.merge(second));
         profile
     }
+}
+
+/// Velocity along the surface over the depth below its middle, averaged over the samples of a part of
+/// a run in which the bed flows. Empty where it never did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeanFlow {
+    /// One for each depth, from the surface down.
+    pub depths: Vec<FlowDepth>,
+}
+
+/// The mean velocity at one depth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowDepth {
+    /// Below the middle of the surface, along its inward normal [m].
+    pub depth: f64,
+    /// Along the surface, positive uphill to the right [m/s]; NaN of no sample.
+    pub velocity: f64,
+    /// Its standard error [m/s]; none where too few seconds flowed to say.
+    pub error: Option<f64>,
+    /// Samples that were averaged.
+    pub samples: u32,
 }
 
 /// Profile of the velocity along the surface over the depth below its middle, averaged over time.

@@ -98,7 +98,7 @@ pub use drum_torque::drum_torque;
 pub use dry_drum::{DryDrum, beyond_kasper, dry_drum};
 pub use energy_ledger::{EnergyLedger, elastic_energy};
 pub use estimate::Estimate;
-pub use flow::{FlowHistory, FlowProfile, NON_RIGID_TEMPERATURE};
+pub use flow::{FlowDepth, FlowHistory, FlowProfile, MeanFlow, NON_RIGID_TEMPERATURE};
 pub use grain_quantity::GrainQuantity;
 pub use packing_fraction::packing_fraction;
 pub use quantity::{Format, MeasuredValue, Quantity, Scope};

@@ -48,9 +48,9 @@ pub use error::OutputError;
 pub use folder::{
     CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_own_name, write_file,
 };
-pub use frames::Frame;
-pub use frames::LISTS;
+pub use frames::{Frame, LISTS};
 pub use grains_file::write_grains;
+pub use profile_files::{FLOW, flow_table};
 pub use recorder::{IMPORTED, Recorder, Subject, Written, WrittenRest};
 pub use run_so_far::RunSoFar;
 pub use series_file::SERIES;

@@ -1,21 +1,13 @@
 //! Profiles: `flow.csv`, that of the flowing layer over depth, averaged over the part of the run
 //! that results count, and `profile.csv`, that of a heap's height over the radius at the end.
 
-use crate::measure::{Estimate, FlowProfile, HeightProfile};
+use crate::measure::{HeightProfile, MeanFlow};
 use crate::run::{Cells, Column, Table};
 use std::io::{self, Write};
 
 /// The files' names.
 pub const FLOW: &str = "flow.csv";
 pub const PROFILE: &str = "profile.csv";
-
-/// A profile of velocity over depth with the errors of its velocities.
-pub struct Flow {
-    /// Depths and samples.
-    pub profile: FlowProfile,
-    /// Velocity at each depth [m/s].
-    pub velocity: Vec<Estimate>,
-}
 
 /// What stands in [`FLOW`].
 pub fn flow_table() -> Table {
@@ -46,16 +38,15 @@ pub fn profile_table() -> Table {
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_flow(flow: &Flow, file: &mut dyn Write) -> io::Result<()> {
+pub fn write_flow(flow: &MeanFlow, file: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
     writer.write_record(flow_table().heads())?;
-    let rows = flow.profile.depth.iter().zip(&flow.velocity);
-    for ((depth, velocity), samples) in rows.zip(&flow.profile.samples) {
+    for row in &flow.depths {
         writer.write_record([
-            format!("{depth:?}"),
-            format!("{:?}", velocity.mean),
-            samples.to_string(),
-            format!("{:?}", velocity.error.unwrap_or(f64::NAN)),
+            format!("{:?}", row.depth),
+            format!("{:?}", row.velocity),
+            row.samples.to_string(),
+            format!("{:?}", row.error.unwrap_or(f64::NAN)),
         ])?;
     }
     writer.flush()

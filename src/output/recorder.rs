@@ -8,9 +8,7 @@
 use super::collection_file::CollectedFile;
 use super::folder::{CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY};
 use super::frames::{self, Frame, FrameFiles, WrittenFrames};
-use super::profile_files::{
-    FLOW, Flow, PROFILE, flow_table, profile_table, write_flow, write_profile,
-};
+use super::profile_files::{FLOW, PROFILE, flow_table, profile_table, write_flow, write_profile};
 use super::series_file::{SERIES, SeriesFile};
 use super::summary_file::SummaryFile;
 use super::velocity_file::{VELOCITY, velocity_table, write_velocity};
@@ -372,11 +370,8 @@ impl Recorder {
     /// all tables.
     fn write_tables(&self, run: Option<RunSoFar>) -> Result<BTreeMap<String, String>, OutputError> {
         let from = run.map_or(0.0, |run| run.results_from());
-        let flow = run.map(|run| Flow {
-            profile: run.flow.since(from),
-            velocity: run.flow.velocity_since(from),
-        });
-        let flow = flow.filter(|flow| !flow.profile.depth.is_empty());
+        let flow = run.map(|run| run.flow.mean_since(from));
+        let flow = flow.filter(|flow| !flow.depths.is_empty());
         let fastest = run.and_then(|run| run.flow.fastest_since(from));
         let deposit = run.and_then(|run| Deposit::of(run.world));
         let heights = deposit.map(|deposit| deposit.height_profile());

@@ -10,11 +10,14 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `follower` | a run under way: what it writes is taken up |
+//! | `flow_survey` | the mean flow, measured on the states |
 //! | `recorded_run` | what a folder holds, and its states one by one |
 //! | `recorded_state` | a state out of the files of one instant |
 //! | `course` | what was set when, and where the walls are by then |
+//! | `stated` | what its record states of a run |
 //! | `shapes` | what polyhedra look like |
-//! | `samples` | `series.csv` |
+//! | `samples`, `flow_table` | `series.csv`, `flow.csv` |
 //! | `moments` | the list of the states' files |
 //! | `vtk_arrays` | arrays out of VTK's XML files |
 //! | `own_files` | files of the folder, each with its digest |
@@ -22,13 +25,20 @@
 
 mod course;
 mod error;
+mod flow_survey;
+mod flow_table;
+mod follower;
 mod moments;
 mod own_files;
 mod recorded_run;
 mod recorded_state;
 mod samples;
 mod shapes;
+mod stated;
 mod vtk_arrays;
 
 pub use error::RecordingError;
+pub use flow_survey::FlowSurvey;
+pub use follower::{Follower, RunNews};
 pub use recorded_run::{RecordedState, Recording, RecordingFacts};
+pub use stated::RunProgress;

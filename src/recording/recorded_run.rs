@@ -5,26 +5,23 @@
 
 use super::RecordingError;
 use super::course::Course;
+use super::flow_table::{LARGEST_FLOW, mean_flow};
 use super::moments::{LARGEST_LIST, ListedFile, listed_files};
 use super::own_files::OwnFiles;
 use super::recorded_state::{OF_CONTACTS, OF_GRAINS, recorded_state};
 use super::samples::{LARGEST_TABLE, samples};
 use super::shapes::{WANTED, shapes};
+use super::stated::{RunProgress, first_step, notes_of, progress_of, stamped};
 use super::vtk_arrays::{LARGEST_FILE, VtkArrays};
-use crate::measure::Series;
-use crate::output::{IMPORTED, LISTS, SERIES, SHAPES, SUMMARY};
+use crate::measure::{MeanFlow, Series};
+use crate::output::{FLOW, IMPORTED, LISTS, SERIES, SHAPES, SUMMARY};
 use crate::run::{
-    Branch, Command, CommandError, Moment, Parameter, ParameterInfo, RunRecord, ScriptedCommand,
-    StampedCommand, accept, live_parameters,
+    Branch, CommandError, Moment, ParameterInfo, RunRecord, StampedCommand, accept, live_parameters,
 };
 use crate::scene::{Scene, built_in};
-use crate::solver::advise;
-use crate::world::{MOST_STEPS, Polyhedron, World};
+use crate::world::{Polyhedron, World};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Most that the time of a record may differ from that of its steps, relative to it.
-const SAME_TIME: f64 = 1e-9;
 
 /// A run that was computed before, as its folder holds it.
 pub struct Recording {
@@ -37,6 +34,8 @@ pub struct Recording {
     moments: Arc<[Moment]>,
     branch: Arc<Branch>,
     parameters: Arc<[ParameterInfo]>,
+    progress: RunProgress,
+    flow: Option<Arc<MeanFlow>>,
     notes: Vec<String>,
 }
 
@@ -53,6 +52,8 @@ pub struct RecordingFacts {
     pub is_imported: bool,
     /// The moments of which there are states, in order.
     pub moments: Arc<[Moment]>,
+    /// Whether its run goes on.
+    pub progress: RunProgress,
 }
 
 impl RecordingFacts {
@@ -77,9 +78,19 @@ fn index_at(moments: &[Moment], step: u64) -> usize {
 }
 
 /// The files of one instant.
+#[derive(PartialEq)]
 struct Frame {
     grains: String,
     contacts: Option<String>,
+}
+
+/// What the lists of a folder say.
+struct ListedStates {
+    frames: Vec<Frame>,
+    /// When each of them was [s].
+    times: Vec<f64>,
+    /// What is to be said of the lists, in sentences.
+    notes: Vec<String>,
 }
 
 /// A state of a recording.
@@ -131,6 +142,7 @@ impl Recording {
         }
         recording.list_states()?;
         recording.take_samples();
+        recording.take_flow();
         recording.take_commands()?;
         Ok(recording)
     }
@@ -139,7 +151,8 @@ impl Recording {
     fn of_record(folder: &Path, record: RunRecord) -> Result<Self, RecordingError> {
         let scene = Arc::new(record.scene.clone());
         let files = OwnFiles::new(folder.to_owned(), record.files.clone());
-        let mut notes = notes_of(&record);
+        let progress = progress_of(&record, folder);
+        let mut notes = notes_of(&record, progress);
         let shapes = if scene.is_polyhedral() {
             let file = files.read(SHAPES, LARGEST_FILE)?;
             notes.extend(file.note());
@@ -157,68 +170,183 @@ impl Recording {
             moments: Arc::new([]),
             branch: Arc::default(),
             parameters: Arc::new([]),
+            progress,
+            flow: None,
             notes,
         })
     }
 
+    /// Takes up the states and samples that were written since it was read; says whether there are
+    /// more of them. Nothing is told of files that are being written this moment.
+    ///
+    /// # Errors
+    /// When they are not those of the run that was read: what was read stays.
+    pub(super) fn grow(&mut self) -> Result<bool, RecordingError> {
+        let ListedStates { frames, times, .. } = self.read_states()?;
+        let known = self.frames.len();
+        let known_times = self.moments.iter().map(|moment| moment.time);
+        let is_same = frames.iter().zip(&self.frames).all(|(a, b)| a == b)
+            && times.iter().zip(known_times).all(|(a, b)| *a == b);
+        let moments = self.moments_at(&times);
+        if !is_same || !follow_each_other(&moments) {
+            let reason = "lists other states than before: another run is in the folder now";
+            return Err(RecordingError::of(self.files.folder(), reason));
+        }
+        if frames.len() > known {
+            (self.frames, self.moments) = (frames, moments);
+            let branch = Arc::make_mut(&mut self.branch);
+            branch.end = self.moments.last().copied().unwrap_or_default();
+        }
+        let samples = self.branch.series.len();
+        if let Ok((_, series, _)) = self.read_samples() {
+            self.set_series(series);
+        }
+        Ok(self.frames.len() > known || self.branch.series.len() > samples)
+    }
+
+    /// The same read anew.
+    ///
+    /// # Errors
+    /// When it cannot be read, or another run is in the folder.
+    pub(super) fn again(&self) -> Result<Self, RecordingError> {
+        let again = Self::open(self.files.folder())?;
+        let is_same = again.scene == self.scene && again.moments[0].time == self.moments[0].time;
+        is_same.then_some(again).ok_or_else(|| {
+            let reason = "holds another run now";
+            RecordingError::of(self.files.folder(), reason)
+        })
+    }
+
+    /// Its folder.
+    pub(super) fn folder(&self) -> &Path {
+        self.files.folder()
+    }
+
+    /// Whether its run goes on, as far as is known.
+    pub fn progress(&self) -> RunProgress {
+        self.progress
+    }
+
+    /// Takes note that its run goes on, or does not.
+    pub(super) fn set_progress(&mut self, progress: RunProgress) {
+        self.progress = progress;
+    }
+
     /// Reads which states there are.
     fn list_states(&mut self) -> Result<(), RecordingError> {
-        let [grains, contacts] = LISTS;
+        let [grains, _] = LISTS;
         if !self.files.has(grains) {
             return Err(RecordingError::of(
                 self.files.folder(),
                 format!("holds no {grains}: its run wrote no states, and there is nothing to show"),
             ));
         }
-        let states = self.listed(grains)?;
-        let contacts = if self.files.has(contacts) {
-            self.listed(contacts)?
-        } else {
-            Vec::new()
-        };
-        if states.is_empty() {
+        let ListedStates {
+            frames,
+            times,
+            notes,
+        } = self.read_states()?;
+        if frames.is_empty() {
             return Err(RecordingError::of(
                 &self.files.folder().join(grains),
                 "lists no states: the run has not come to its first one",
             ));
         }
+        self.notes.extend(notes);
+        self.frames = frames;
+        // Which steps they were taken after is known with the commands.
+        let moment = |time: &f64| Moment {
+            step: 0,
+            time: *time,
+        };
+        self.moments = times.iter().map(moment).collect();
+        Ok(())
+    }
+
+    /// What the lists say.
+    fn read_states(&self) -> Result<ListedStates, RecordingError> {
+        let [grains, contacts] = LISTS;
+        let mut notes = Vec::new();
+        let mut states = self.listed(grains, &mut notes)?;
+        let contacts = if self.files.has(contacts) {
+            self.listed(contacts, &mut notes)?
+        } else {
+            Vec::new()
+        };
         let of_contacts = |time: f64| {
             let index = contacts.binary_search_by(|file| file.time.total_cmp(&time));
             index.ok().map(|index| contacts[index].name.clone())
         };
-        self.frames = (states.iter())
-            .map(|state| Frame {
-                grains: state.name.clone(),
-                contacts: of_contacts(state.time),
-            })
-            .collect();
-        self.moments = states
-            .iter()
-            .map(|state| Moment {
-                step: 0,
-                time: state.time,
-            })
-            .collect();
-        Ok(())
+        let is_half = |last: &ListedFile| of_contacts(last.time).is_none() && !contacts.is_empty();
+        // The contacts of the last state are being written.
+        if self.progress != RunProgress::Over && states.last().is_some_and(is_half) {
+            states.pop();
+        }
+        let frame = |state: &ListedFile| Frame {
+            grains: state.name.clone(),
+            contacts: of_contacts(state.time),
+        };
+        let frames = states.iter().map(frame).collect();
+        let times = states.iter().map(|state| state.time).collect();
+        Ok(ListedStates {
+            frames,
+            times,
+            notes,
+        })
     }
 
-    fn listed(&mut self, name: &str) -> Result<Vec<ListedFile>, RecordingError> {
+    fn listed(
+        &self,
+        name: &str,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<ListedFile>, RecordingError> {
         let list = self.files.read(name, LARGEST_LIST)?;
-        self.notes.extend(list.note());
+        notes.extend(list.note());
         listed_files(&list)
     }
 
     /// Reads the samples; without them there are no plots.
     fn take_samples(&mut self) {
-        let read = self.files.read(SERIES, LARGEST_TABLE);
-        let read = read.and_then(|file| Ok((file.note(), samples(&file)?)));
-        match read {
-            Ok((note, (series, fault))) => {
+        match self.read_samples() {
+            Ok((note, series, fault)) => {
                 self.notes.extend(note.into_iter().chain(fault));
                 self.set_series(series);
             }
             Err(error) => self.notes.push(format!("There are no plots: {error}")),
         }
+    }
+
+    /// Reads the mean flow, if there is one.
+    fn take_flow(&mut self) {
+        // A run that goes on writes it at its end: what is there is of an earlier one.
+        if self.progress != RunProgress::Over || !self.files.has(FLOW) {
+            return;
+        }
+        let read = self.files.read(FLOW, LARGEST_FLOW);
+        match read.and_then(|file| Ok((file.note(), mean_flow(&file)?))) {
+            Ok((note, flow)) => {
+                self.notes.extend(note);
+                self.flow = Some(Arc::new(flow));
+            }
+            Err(error) => self.notes.push(format!("There is no mean flow: {error}")),
+        }
+    }
+
+    /// The mean flow that its run wrote at its end; none where it wrote none.
+    pub fn flow(&self) -> Option<&Arc<MeanFlow>> {
+        self.flow.as_ref()
+    }
+
+    /// The samples, what is to be said of their file, and what is wrong with where they end.
+    fn read_samples(&self) -> Result<(Option<String>, Series, Option<String>), RecordingError> {
+        let mut file = self.files.read(SERIES, LARGEST_TABLE)?;
+        if self.progress != RunProgress::Over {
+            // The last row may be half written.
+            let whole = file.bytes.iter().rposition(|byte| *byte == b'\n');
+            file.bytes.truncate(whole.map_or(0, |last| last + 1));
+        }
+        let (series, fault) = samples(&file)?;
+        Ok((file.note(), series, fault))
     }
 
     fn set_series(&mut self, series: Series) {
@@ -240,15 +368,9 @@ impl Recording {
         let accepted = accepted.map_err(|error| refuse(format!("a change in it: {error}")))?;
         self.course.follow(accepted);
         self.parameters = parameters.into();
-        let times = self.course.step_times();
-        self.moments = (self.moments.iter())
-            .map(|moment| Moment {
-                step: times.step_at(moment.time),
-                ..*moment
-            })
-            .collect();
-        let follow = |pair: &[Moment]| pair[0].step < pair[1].step;
-        if !self.moments.windows(2).all(follow) {
+        let times: Vec<f64> = self.moments.iter().map(|moment| moment.time).collect();
+        self.moments = self.moments_at(&times);
+        if !follow_each_other(&self.moments) {
             return Err(RecordingError::of(
                 self.files.folder(),
                 "holds states that lie closer together than the run's time steps",
@@ -259,6 +381,16 @@ impl Recording {
         branch.history = Arc::new(self.course.commands().iter().cloned().collect());
         branch.end = self.moments.last().copied().unwrap_or_default();
         Ok(())
+    }
+
+    /// The moments of states at these `times` [s].
+    fn moments_at(&self, times: &[f64]) -> Arc<[Moment]> {
+        let steps = self.course.step_times();
+        let moment = |time: &f64| Moment {
+            step: steps.step_at(*time),
+            time: *time,
+        };
+        times.iter().map(moment).collect()
     }
 
     /// The first state that can be read, as it was before any command.
@@ -283,6 +415,7 @@ impl Recording {
             version: self.record.version.clone(),
             is_imported: self.record.status.as_deref() == Some(IMPORTED),
             moments: self.moments.clone(),
+            progress: self.progress,
         }
     }
 
@@ -341,61 +474,8 @@ impl Recording {
     }
 }
 
-/// What is to be said of a run with this `record`.
-fn notes_of(record: &RunRecord) -> Vec<String> {
-    let text = match record.status.as_deref() {
-        Some("running") => {
-            "The run was on its way, or was killed, when this was opened: changes that were made on its way are not known, \
-             and files are not compared with their digests"
-        }
-        Some("interrupted") => "The run was stopped before its end",
-        Some("fault") => {
-            "A physical fault stopped the run at its end: its summary.json says which, and the last states need not mean \
-             anything"
-        }
-        _ => return Vec::new(),
-    };
-    vec![text.to_owned()]
-}
-
-/// How long the first step of the run with this `record` was [s]: as its scene says, unless the
-/// time that it came to says otherwise, as that of an import may.
-fn first_step(record: &RunRecord) -> f64 {
-    let advised = advise(&record.scene).time_step;
-    let found = record.time / record.steps as f64;
-    let differs = (found - advised).abs() > SAME_TIME * advised;
-    if found > 0.0 && found.is_finite() && differs && !changes_step(&record.commands) {
-        found
-    } else {
-        advised
-    }
-}
-
-fn changes_step(commands: &[ScriptedCommand]) -> bool {
-    (commands.iter()).any(|scripted| {
-        matches!(&scripted.command, Command::Set { parameter, .. } if *parameter == Parameter::TimeStep)
-    })
-}
-
-/// `commands` as a run carried them out.
-fn stamped(commands: &[ScriptedCommand]) -> Result<Vec<StampedCommand>, String> {
-    let mut last = (0, 0.0);
-    let mut stamped = Vec::with_capacity(commands.len());
-    for (index, scripted) in commands.iter().enumerate() {
-        let when = scripted.step.zip(scripted.time);
-        let follows = |(step, time): &(u64, f64)| {
-            last.0 <= *step && last.1 <= *time && time.is_finite() && *step <= MOST_STEPS
-        };
-        let Some((step, time)) = when.filter(follows) else {
-            return Err(format!("change {} in it is not in order", index + 1));
-        };
-        last = (step, time);
-        let command = scripted.command.clone();
-        stamped.push(StampedCommand {
-            step,
-            time,
-            command,
-        });
-    }
-    Ok(stamped)
+/// Whether each of `moments` is steps later than the one before it.
+fn follow_each_other(moments: &[Moment]) -> bool {
+    let mut pairs = moments.windows(2);
+    pairs.all(|pair| pair[0].step < pair[1].step)
 }

@@ -45,13 +45,16 @@ pub enum SceneContainer {
     Planes(Vec<ScenePlane>),
 }
 
-/// A thin upright tube round a column, pulled up from time zero on.
+/// A thin upright tube round a column, pulled up from time zero on, unbounded above.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneTube {
     /// Its speed upwards [m/s].
     pub speed: f64,
     /// Name of its material.
     pub material: String,
+    /// Height of its lower rim at time zero [m].
+    #[serde(default)]
+    pub rim: f64,
 }
 
 /// An unbounded plane.

@@ -108,7 +108,7 @@ impl SceneGrain {
         let Some(rounding) = self.shape.rounding() else {
             return Some(SceneBody::Sphere);
         };
-        let core = self.shape.solid()?.eroded(rounding)?;
+        let core = self.shape.core()?;
         Some(SceneBody::Polyhedron {
             core: core.turned(self.orientation).moved(self.position),
             rounding,
@@ -117,8 +117,7 @@ impl SceneGrain {
 
     /// Radius of the sphere of its volume [m].
     pub fn equal_volume_radius(&self) -> f64 {
-        let solid = self.shape.solid();
-        solid.map_or(self.radius, |solid| sphere_radius(solid.moments().volume))
+        self.shape.volume().map_or(self.radius, sphere_radius)
     }
 }
 

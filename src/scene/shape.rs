@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 
 /// Points of which a grain may be the hull.
 pub(super) const MOST_POINTS: usize = 60;
+/// Corners that a core may have.
+pub(super) const MOST_CORNERS: usize = 250;
 /// Sides that a prism may have.
 pub(super) const MOST_SIDES: u32 = 30;
 
@@ -49,6 +51,19 @@ pub enum SceneShape {
         /// Rounding radius [m].
         rounding: f64,
     },
+    /// All that lies within the rounding radius of a convex core: a state's own grain, as it is.
+    Core {
+        /// The corners of the core about the grain's centroid, along its principal axes [m].
+        corners: Vec<DVec3>,
+        /// Its faces: each a loop of corners, anticlockwise seen from outside.
+        faces: Vec<Vec<u16>>,
+        /// Rounding radius [m].
+        rounding: f64,
+        /// Volume of the solid that its mass belongs to [m³].
+        volume: f64,
+        /// Principal moments of inertia over the mass [m²].
+        gyration: DVec3,
+    },
 }
 
 /// What a listed grain takes up in space.
@@ -78,13 +93,40 @@ impl SceneShape {
             Self::Box { rounding, .. }
             | Self::Tetrahedron { rounding, .. }
             | Self::Prism { rounding, .. }
-            | Self::Hull { rounding, .. } => Some(*rounding),
+            | Self::Hull { rounding, .. }
+            | Self::Core { rounding, .. } => Some(*rounding),
+        }
+    }
+
+    /// Volume of the solid that its mass belongs to [m³]; none of a sphere, nor where there is none.
+    pub fn volume(&self) -> Option<f64> {
+        match self {
+            Self::Core { volume, .. } => Some(*volume),
+            _ => Some(self.solid()?.moments().volume),
+        }
+    }
+
+    /// Its core, its centroid at the origin; none of a sphere, nor where nothing is left to round.
+    pub fn core(&self) -> Option<Solid> {
+        match self {
+            Self::Core { corners, faces, .. } => {
+                are_faces_of(corners, faces).then(|| Solid::new(corners.clone(), faces.clone()))
+            }
+            _ => self.solid()?.eroded(self.rounding()?),
         }
     }
 
     /// Radius of the sphere about its centroid that holds it before it is rounded [m]; not a number
-    /// for a sphere, nor where it encloses nothing.
+    /// for a sphere, nor where it encloses nothing. Of a core that of the sphere that holds it when it
+    /// is rounded.
     pub fn radius(&self) -> f64 {
+        if let Self::Core {
+            corners, rounding, ..
+        } = self
+        {
+            let farthest = corners.iter().map(|x| x.length()).fold(0.0, f64::max);
+            return farthest + rounding;
+        }
         let solid = self.solid();
         solid.map_or(f64::NAN, |solid| {
             let corners = solid.vertices.iter().map(|x| x.length());
@@ -92,8 +134,8 @@ impl SceneShape {
         })
     }
 
-    /// The solid before it is rounded, its centroid at the origin; none of a sphere, of points in
-    /// one plane, nor of too many points or sides.
+    /// The solid before it is rounded, its centroid at the origin; none of a sphere, of a core, of
+    /// points in one plane, nor of too many points or sides.
     pub fn solid(&self) -> Option<Solid> {
         let solid = match self {
             Self::Box { size, .. } => Solid::cuboid(-0.5 * *size, 0.5 * *size),
@@ -105,11 +147,24 @@ impl SceneShape {
                 ..
             } if *sides <= MOST_SIDES => Solid::hull(&prism(*sides, *edge, *height))?,
             Self::Hull { points, .. } if points.len() <= MOST_POINTS => Solid::hull(points)?,
-            Self::Sphere | Self::Prism { .. } | Self::Hull { .. } => return None,
+            Self::Sphere | Self::Prism { .. } | Self::Hull { .. } | Self::Core { .. } => {
+                return None;
+            }
         };
         let centroid = solid.moments().centroid;
         Some(solid.moved(-centroid))
     }
+}
+
+/// Whether these are the corners and faces of a solid, as far as their numbers go.
+fn are_faces_of(corners: &[DVec3], faces: &[Vec<u16>]) -> bool {
+    let is_face = |face: &Vec<u16>| {
+        let mut corners_of = face.iter();
+        face.len() >= 3 && corners_of.all(|&corner| usize::from(corner) < corners.len())
+    };
+    (4..=MOST_CORNERS).contains(&corners.len())
+        && (4..=2 * MOST_CORNERS).contains(&faces.len())
+        && faces.iter().all(is_face)
 }
 
 /// Radius of the sphere of this volume [m].

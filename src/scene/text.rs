@@ -1,6 +1,6 @@
 //! A scene as the text of a scene file: what [`Scene::parse`] reads as the same scene.
 //!
-//! In: a scene whose grains are listed spheres. Out: its file, every number with every digit; a
+//! In: a scene whose grains are listed spheres and cores. Out: its file, every number with every digit; a
 //! plane's normal may change in its last one, as it is made a unit vector when it is read. The keys
 //! are those of `file`.
 
@@ -8,6 +8,7 @@ use super::container::{SceneContainer, ScenePlane};
 use super::description::{Scene, TimeStep};
 use super::grains::{SceneGrain, SceneGrains};
 use super::materials::{PairOverride, SceneMaterial};
+use super::shape::SceneShape;
 use crate::physics::{Integrator, Liquid};
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -16,13 +17,15 @@ impl Scene {
     /// The text of a file that states it.
     ///
     /// # Errors
-    /// When its grains are no listed spheres, or a law cannot be written; for people.
+    /// When its grains are no listed spheres and cores, or a law cannot be written; for people.
     pub fn to_text(&self) -> Result<String, String> {
         let SceneGrains::List(grains) = &self.grains else {
             return Err("its grains are no list".to_owned());
         };
-        if grains.iter().any(|grain| !grain.shape.is_sphere()) {
-            return Err("its grains are no spheres".to_owned());
+        let is_told =
+            |shape: &SceneShape| matches!(shape, SceneShape::Sphere | SceneShape::Core { .. });
+        if grains.iter().any(|grain| !is_told(&grain.shape)) {
+            return Err("its grains are neither spheres nor cores".to_owned());
         }
         let law = ron::to_string(&self.law).map_err(|error| error.to_string())?;
         let mut text = String::from("(\n");
@@ -138,7 +141,10 @@ fn container(container: &SceneContainer) -> String {
         } => {
             let tube = tube.as_ref().map_or_else(String::new, |tube| {
                 let material = quoted(&tube.material);
-                format!(", tube: (speed: {:?}, material: {material})", tube.speed)
+                format!(
+                    ", tube: (speed: {:?}, material: {material}, rim: {:?})",
+                    tube.speed, tube.rim
+                )
             });
             format!(
                 "Column(radius: {radius:?}, height: {height:?}, material: {}{tube})",
@@ -180,12 +186,38 @@ fn time_step(step: TimeStep) -> String {
 
 fn grain(grain: &SceneGrain) -> String {
     format!(
-        "(position: {}, velocity: {}, spin: {}, radius: {:?}, material: {}{})",
+        "(position: {}, velocity: {}, spin: {}, {}, material: {}{})",
         vector(grain.position),
         vector(grain.velocity),
         vector(grain.spin),
-        grain.radius,
+        body(grain),
         quoted(&grain.material),
         optional("film", grain.film)
+    )
+}
+
+/// Size and shape: `radius: 0.003`, or shape, rounding and orientation.
+fn body(grain: &SceneGrain) -> String {
+    let SceneShape::Core {
+        corners,
+        faces,
+        rounding,
+        volume,
+        gyration,
+    } = &grain.shape
+    else {
+        return format!("radius: {:?}", grain.radius);
+    };
+    let corners: Vec<String> = corners.iter().copied().map(vector).collect();
+    let turn = grain.orientation;
+    format!(
+        "shape: Core(corners: [{}], faces: {faces:?}, volume: {volume:?}, gyration: {}), rounding: {rounding:?}, \
+         orientation: Quaternion(x: {:?}, y: {:?}, z: {:?}, w: {:?})",
+        corners.join(", "),
+        vector(*gyration),
+        turn.x,
+        turn.y,
+        turn.z,
+        turn.w
     )
 }

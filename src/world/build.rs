@@ -13,7 +13,7 @@ use super::{
 use crate::physics::{Material, MaterialId, Materials, PairProperties};
 use crate::scene::{
     Lattice, Scene, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
-    SceneSpecies, SceneTube, SizeClass, size_classes, species_counts,
+    SceneShape, SceneSpecies, SceneTube, SizeClass, size_classes, species_counts,
 };
 use glam::{DQuat, DVec3};
 use rand::RngExt;
@@ -256,7 +256,10 @@ fn column_walls(scene: &Scene, radius: f64, floor: &str, tube: Option<&SceneTube
     };
     let tube = tube.map(|tube| Wall {
         name: "tube".to_owned(),
-        surface: Surface::Tube { radius, rim: 0.0 },
+        surface: Surface::Tube {
+            radius,
+            rim: tube.rim,
+        },
         material: material_id(scene, &tube.material),
         motion: WallMotion {
             velocity: tube.speed * DVec3::Y,
@@ -367,6 +370,14 @@ fn listed_polyhedra(
 /// it in.
 fn shape_of(grain: &SceneGrain) -> (Polyhedron, DQuat) {
     let rounding = grain.shape.rounding().unwrap_or(0.0);
+    if let SceneShape::Core {
+        volume, gyration, ..
+    } = grain.shape
+        && let Some(core) = grain.shape.core()
+    {
+        let shape = Polyhedron::of_core(core, rounding, volume, gyration);
+        return (shape, DQuat::IDENTITY);
+    }
     let rounded = grain
         .shape
         .solid()

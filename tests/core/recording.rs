@@ -5,12 +5,13 @@ use crate::engines::import::dump;
 use crate::runs::{friction, prepared, shared_beds};
 use grainfall::engines::{ImportSource, import, sound_scene_from};
 use grainfall::lab::{DriverKind, Lab, LabCommand, Options, Status};
-use grainfall::measure::GrainQuantity;
-use grainfall::recording::Recording;
+use grainfall::measure::{FlowDepth, GrainQuantity};
+use grainfall::recording::{Recording, RunProgress};
 use grainfall::run::{Command, Parameter, Script, ScriptedCommand};
 use grainfall::runner::{Job, run};
-use grainfall::scene::Scene;
-use grainfall::world::World;
+use grainfall::scene::{Scene, SceneContainer};
+use grainfall::world::{World, build};
+use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -366,17 +367,233 @@ fn dump_of(scene: &Scene) -> String {
     first + &dump(run.world())
 }
 
+/// Bodies in a tube that rises.
+fn tube() -> Scene {
+    let text = r#"(
+        title: "A tube", materials: {"stone": ()}, duration: 0.04, output_interval: 0.01,
+        container: Column(radius_mm: 25, height_mm: 50, material: "stone", tube: (speed: 0.3)),
+        grains: List([
+            (position: (0, 0.005, 0), shape: Box(size: (0.01, 0.01, 0.02)), material: "stone"),
+            (
+                position: (0.01, 0.02, 0), shape: Tetrahedron(edge: 0.01), rounding_mm: 0.2, material: "stone",
+                orientation: Turned(axis: (1, 1, 0), angle_deg: 30), velocity: (0.1, 0, 0), spin: (0, 2, 0),
+            ),
+            (
+                position: (-0.01, 0.03, 0), material: "stone",
+                shape: Hull(points: [(0, 0, 0), (0.01, 0, 0), (0, 0.012, 0), (0, 0, 0.013), (0.01, 0.012, 0.013)]),
+            ),
+        ]),
+        law: Hooke(normal_stiffness: 4000, tangential_stiffness: 2000, features: Shared),
+    )"#;
+    Scene::parse("tube", text).unwrap()
+}
+
+/// A grain on a floor that moves along.
+fn belt() -> Scene {
+    let text = r#"(
+        title: "A belt", materials: {"glass": ()}, duration: 0.04, output_interval: 0.01,
+        container: Planes([(name: "belt", point: (0, 0, 0), normal: (0, 1, 0), velocity: (0.1, 0, 0), material: "glass")]),
+        grains: List([(position: (0, 0.003, 0), radius_mm: 3, material: "glass")]),
+    )"#;
+    Scene::parse("belt", text).unwrap()
+}
+
 #[test]
-fn a_scene_goes_on_from_a_state_where_that_is_one_of_spheres_between_walls_that_stand() {
-    let (_folder, out) = recorded(&drum(), Vec::new());
+fn a_scene_goes_on_from_a_state_as_it_was_recorded() {
+    for scene in [drum(), column(), tube(), belt()] {
+        let (_folder, out) = recorded(&scene, Vec::new());
+        let state = Recording::open(&out).unwrap().state(2).unwrap().world;
+        let started = sound_scene_from(&scene, &state).unwrap();
+        let text = started.to_text().unwrap();
+        let read = Scene::parse("started.ron", &text).unwrap_or_else(|error| panic!("{error}"));
+        let world = build(&read, state.clock.time_step);
+        let (own, expected) = (&world.grains, &state.grains);
+        assert_eq!(own.position, expected.position);
+        assert_eq!(own.velocity, expected.velocity);
+        assert_eq!(own.spin, expected.spin);
+        assert_eq!(own.mass, expected.mass);
+        assert_eq!(own.radius, expected.radius);
+        for (own, expected) in world.container.walls.iter().zip(&state.container.walls) {
+            assert_eq!(
+                (own.surface, own.motion),
+                (expected.surface, expected.motion)
+            );
+        }
+        let bodies = world.polyhedra.as_ref().zip(state.polyhedra.as_ref());
+        assert_eq!(bodies.is_some(), scene.is_polyhedral());
+        if let Some((own, expected)) = bodies {
+            for grain in 0..world.grains.len() {
+                assert_eq!(own.shape_of(grain), expected.shape_of(grain));
+                // It is made a unit quaternion anew.
+                let turned = own.orientation[grain] - expected.orientation[grain];
+                assert!(turned.length() < 1e-15, "{turned}");
+            }
+        }
+        let (mut run, _) = prepared(&read, 1, shared_beds());
+        run.advance_to(20).unwrap();
+    }
+}
+
+#[test]
+fn a_tube_that_has_risen_stands_where_it_was() {
+    let (_folder, out) = recorded(&tube(), Vec::new());
     let state = Recording::open(&out).unwrap().state(2).unwrap().world;
-    let scene = sound_scene_from(&drum(), &state).unwrap();
+    let started = sound_scene_from(&tube(), &state).unwrap();
+    let SceneContainer::Column {
+        tube: Some(tube), ..
+    } = started.container
+    else {
+        panic!("a tube");
+    };
+    // 20 ms at 0.3 m/s.
+    assert!((tube.rim - 6e-3).abs() < 1e-5, "{}", tube.rim);
+}
+
+#[test]
+fn a_run_under_way_is_followed_to_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let job = Job {
+        threads: 1,
+        beds: shared_beds(),
+        ..Job::new("a-run", drum(), &out)
+    };
+    // More than is waited from one look to the next.
+    let look = Duration::from_secs(1000);
+    let followed: RefCell<Option<Lab>> = RefCell::new(None);
+    let lengths = RefCell::new(Vec::new());
+    // Between two pieces of the run somebody looks.
+    let between = || {
+        let mut followed = followed.borrow_mut();
+        let Some(lab) = followed.as_mut() else {
+            let is_there = Recording::open(&out).is_ok();
+            *followed = is_there.then(|| playing(&out));
+            return false;
+        };
+        lab.tick(look);
+        let facts = lab.recording().unwrap();
+        assert_eq!(facts.progress, RunProgress::UnderWay);
+        let (states, newest) = (facts.moments.len(), *facts.moments.last().unwrap());
+        assert_eq!(lab.past().end, newest);
+        // A sample each 20 ms, a state each 10 ms.
+        assert_eq!(lab.series().len(), states.div_ceil(2));
+        lengths.borrow_mut().push(states);
+        // Who looks at the last state follows; who looks at another one stays there.
+        if states < 4 {
+            assert_eq!(lab.world().unwrap().clock.step, newest.step);
+        } else {
+            send(lab, Command::Seek(0));
+            assert_eq!(time(lab), 0.0);
+        }
+        false
+    };
+    run(&job, &mut (), &between).unwrap();
+    let mut lab = followed.into_inner().unwrap();
+    lab.tick(look);
+    let facts = lab.recording().unwrap();
     assert_eq!(
-        (scene.grain_count(), scene.container),
-        (60, drum().container)
+        (facts.progress, facts.moments.len()),
+        (RunProgress::Over, 5)
     );
-    let (_folder, out) = recorded(&column(), Vec::new());
-    let state = Recording::open(&out).unwrap().state(1).unwrap().world;
-    let reason = sound_scene_from(&column(), &state).unwrap_err();
-    assert!(reason.contains("spheres alone"), "{reason}");
+    let said = lab.warnings().join("; ");
+    assert!(said.contains("The run ended at t = 0.040 s"), "{said}");
+    let lengths = lengths.into_inner();
+    assert!(lengths.is_sorted() && lengths.contains(&2) && lengths.contains(&3));
+    assert_eq!(time(&lab), 0.0);
+    let end = lab.past().end.step;
+    send(&mut lab, Command::Seek(end));
+    let mut read = playing(&out);
+    send(&mut read, Command::Seek(end));
+    are_same_states(lab.world().unwrap(), read.world().unwrap());
+    assert_eq!(lab.series().time(), read.series().time());
+    // A run that nobody computes is not under way.
+    let summary = out.join("summary.json");
+    let text = fs::read_to_string(&summary).unwrap();
+    fs::write(&summary, text.replace("\"done\"", "\"running\"")).unwrap();
+    assert_eq!(
+        Recording::open(&out).unwrap().progress(),
+        RunProgress::Stopped
+    );
+}
+
+/// A drum whose bed flows from the start. Results count from the first whole second in the last three
+/// fifths of a run on.
+fn flowing() -> Scene {
+    let values = [
+        ("count", "40"),
+        ("duration", "1.1s"),
+        ("output-interval", "0.5s"),
+    ];
+    let mut scene = scene("small-drum", &values);
+    if let SceneContainer::Drum { speed, .. } = &mut scene.container {
+        *speed = 5.0;
+    }
+    scene
+}
+
+/// A row as `flow.csv` has it.
+fn row(d: &FlowDepth) -> String {
+    let error = d.error.unwrap_or(f64::NAN);
+    format!("{:?},{:?},{},{error:?}\n", d.depth, d.velocity, d.samples)
+}
+
+#[test]
+fn the_mean_flow_of_a_recording_is_that_of_its_run_or_none() {
+    let (_folder, out) = recorded(&flowing(), Vec::new());
+    let path = out.join("flow.csv");
+    let written = fs::read_to_string(&path).unwrap();
+    let (heads, body) = written.split_once('\n').unwrap();
+    let lab = playing(&out);
+    let flow = lab.mean_flow();
+    assert!(flow.depths.iter().any(|depth| depth.samples > 0));
+    // Every digit of the file.
+    assert_eq!(flow.depths.iter().map(row).collect::<String>(), body);
+    assert_eq!(lab.recorded_flow().unwrap().read, None);
+    for rows in [
+        "0.0,1e9,3,NaN",
+        "0.0,NaN,3,NaN",
+        "-1.0,0.1,3,NaN",
+        "0.0,0.1,3,-1.0",
+        "0.1,0.1,3,NaN\n0.1,0.1,3,NaN",
+        "0.0,0.1",
+    ] {
+        fs::write(&path, format!("{heads}\n{rows}\n")).unwrap();
+        let recording = Recording::open(&out).unwrap();
+        assert!(recording.flow().is_none(), "{rows}");
+        let said = recording.notes().join("; ");
+        assert!(said.contains("flow.csv"), "{said}");
+    }
+}
+
+#[test]
+fn the_mean_flow_of_an_import_is_measured_on_its_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = flowing();
+    let dump = folder.path().join("a.dump");
+    // As if its second instant came after more than a second.
+    let later = dump_of(&scene).replace("TIMESTEP\n200\n", "TIMESTEP\n80000\n");
+    fs::write(&dump, later).unwrap();
+    let out = folder.path().join("imported");
+    let source = ImportSource::of_scene("drum", scene, Vec::new());
+    import(&[dump], &source, &out, false, &mut ()).unwrap();
+    let written = playing(&out).mean_flow();
+    assert!(!written.depths.is_empty());
+    fs::remove_file(out.join("flow.csv")).unwrap();
+    let mut lab = playing(&out);
+    assert!(lab.recorded_flow().is_none() && lab.mean_flow().depths.is_empty());
+    send(&mut lab, LabCommand::MeasureFlow);
+    for _ in 0..3 {
+        lab.tick(Duration::ZERO);
+    }
+    assert_eq!(lab.recorded_flow().unwrap().read, Some(2));
+    let measured = lab.mean_flow();
+    assert_eq!(measured.depths.len(), written.depths.len());
+    let speeds = written.depths.iter().map(|d| d.velocity.abs());
+    let fastest = speeds.fold(0.0, f64::max);
+    for (own, expected) in measured.depths.iter().zip(&written.depths) {
+        assert_eq!(own.samples, expected.samples);
+        // Places and velocities have the 24 bits of the states' files.
+        let apart = (own.velocity - expected.velocity).abs();
+        assert!(own.samples == 0 || apart < 1e-5 * fastest, "{apart:e}");
+    }
 }

@@ -2,8 +2,10 @@
 //! of the tests, and files that runs of small scenes leave.
 
 use super::{byte_mutator, mutator};
+use grainfall::engines::sound_scene_from;
 use grainfall::lesson::{Lesson, LessonUnderWay, built_in_lessons};
 use grainfall::measure::sample;
+use grainfall::output::{FLOW, flow_table};
 use grainfall::parameters::Settings;
 use grainfall::recording::Recording;
 use grainfall::run::{
@@ -595,9 +597,14 @@ impl Recordings {
                 ..Job::new("a recording", scene, &out)
             };
             run(&job, &mut (), &|| false).expect("it runs");
+            // What a longer run of a bed that flows would write.
+            let heads = flow_table().heads().join(",");
+            let flow = format!("{heads}\n0.0,0.25,40,0.01\n0.001,0.2,39,NaN\n0.002,NaN,0,NaN\n");
+            fs::write(out.join(FLOW), flow).expect("it can be written");
             let names = [
                 "summary.json",
                 "series.csv",
+                FLOW,
                 "grains.pvd",
                 "contacts.pvd",
                 "shapes.vtu",
@@ -638,6 +645,9 @@ fn is_shown(folder: &Path) -> bool {
     states.all(|state| {
         state.is_ok_and(|state| {
             let _ = sample(&state.world);
+            if let Ok(scene) = sound_scene_from(recording.scene(), &state.world) {
+                let _ = world::build(&scene, state.world.clock.time_step);
+            }
             true
         })
     })

@@ -15,6 +15,7 @@ use std::path::PathBuf;
 /// Opens a scene in a window, or runs it without one and writes its numbers to files.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true, args_override_self = true, after_help = EXIT_CODES)]
+#[cfg_attr(feature = "desktop", command(group(clap::ArgGroup::new("pictured").args(["screenshot", "record"]))))]
 pub struct Arguments {
     /// What to open.
     #[command(flatten)]
@@ -35,6 +36,10 @@ pub struct Arguments {
     /// What is said at the end.
     #[command(flatten)]
     pub said: Said,
+    /// Make a film of a run without a window, or of the folder of a run: FILE.gif, FILE.mp4 (with ffmpeg),
+    /// or a folder of PNG files. No display is needed, but a Vulkan driver, which may be a software one
+    #[arg(long, value_name = "FILE", requires = "no_render")]
+    pub record: Option<PathBuf>,
     /// A picture to take.
     #[cfg(feature = "desktop")]
     #[command(flatten)]
@@ -55,18 +60,32 @@ pub struct PictureArguments {
     /// Take a picture of the window and end
     #[arg(long, value_name = "FILE.png", conflicts_with = "no_render")]
     pub screenshot: Option<PathBuf>,
-    /// Simulated time at which the picture is taken: 13s, 500ms
-    #[arg(long, value_name = "TIME", default_value = "0s", requires = "screenshot", value_parser = moment)]
+    /// Simulated time at which the picture is taken, or the film begins: 13s, 500ms
+    #[arg(long, value_name = "TIME", default_value = "0s", requires = "pictured", value_parser = moment)]
     pub at: f64,
     /// Take the picture without a display
     #[arg(long, requires = "screenshot")]
     pub offscreen: bool,
-    /// Take the picture of the grains alone, without panels
-    #[arg(long, requires = "screenshot")]
+    /// Take the picture, or the film, of the grains alone, without panels, clock and scale bar
+    #[arg(long, requires = "pictured")]
     pub plain: bool,
-    /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "screenshot", value_parser = size)]
+    /// Width and height of the picture, or of the film, in pixels
+    #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "pictured", value_parser = size)]
     pub size: (u32, u32),
+    /// Simulated seconds for each second of the film, which has 25 pictures [default: 1, less where the scene
+    /// lasts less than 5 s]
+    #[arg(long, value_name = "FACTOR", requires = "record", value_parser = speed)]
+    pub speed: Option<f64>,
+}
+
+/// `0.25`.
+#[cfg(feature = "desktop")]
+fn speed(text: &str) -> Result<f64, String> {
+    let factor = text
+        .parse()
+        .ok()
+        .filter(|factor| (1e-6..=1e6).contains(factor));
+    factor.ok_or_else(|| "expected a factor from 0.000001 to 1000000, such as 0.25".to_owned())
 }
 
 /// `13s`.

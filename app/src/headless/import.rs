@@ -52,7 +52,6 @@ impl ImportTask {
         let imported = imported.map_err(refused)?;
         if let Some(path) = &self.start {
             let scene = scene_from(&imported.scene, &imported.last);
-            let scene = scene.map_err(RunnerError::Input)?;
             let text = scene.to_text().map_err(RunnerError::Input)?;
             write_file(path, |file| file.write_all(text.as_bytes()))?;
         }

@@ -28,7 +28,7 @@ pub use interruption::{check_threads, heard, interruption};
 pub use named_scene::{named_scene, short_name};
 pub use pack::{write_bed, write_opening, write_packing};
 pub use paper_task::PaperTask;
-pub use program::run;
+pub use program::{RunInApp, finish, run};
 pub use progress::Progress;
 pub use report::{Report, Said};
 pub use shell::{misspelt_command, print_completions, write_manual};

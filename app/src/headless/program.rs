@@ -20,6 +20,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// A [`RunnerError`] when the input asks for something that cannot be, or a file cannot be written.
 pub fn run(job: &Job, report: Report, interrupted: &AtomicBool) -> Result<Ending, RunnerError> {
     let mut runner = Runner::open(job)?;
+    tell_standing(&runner, job, report);
+    let checkpoint = runner.take_checkpoint();
+    let mut run = RunInApp::of(small_app(), job, checkpoint);
+    finish(runner, &mut run, job, report, interrupted)
+}
+
+/// Says where a run goes on that was stopped, or is done.
+fn tell_standing(runner: &Runner, job: &Job, report: Report) {
     if let Some(time) = runner.goes_on_from() {
         report.note(&if runner.is_done() {
             format!(
@@ -33,10 +41,22 @@ pub fn run(job: &Job, report: Report, interrupted: &AtomicBool) -> Result<Ending
             )
         });
     }
-    let mut run = RunInApp::of(job, runner.take_checkpoint());
+}
+
+/// Moves `run` to the end that `job` asks for, as [`run`] does.
+///
+/// # Errors
+/// As [`run`].
+pub fn finish(
+    runner: Runner,
+    run: &mut dyn Advance,
+    job: &Job,
+    report: Report,
+    interrupted: &AtomicBool,
+) -> Result<Ending, RunnerError> {
     let mut progress = Progress::of(report);
     let stop = || interrupted.load(Ordering::Relaxed);
-    let finished = runner.finish(&mut run, &mut progress, &stop);
+    let finished = runner.finish(run, &mut progress, &stop);
     progress.finish();
     if let Err(RunnerError::Output(OutputError::Write { .. })) = &finished {
         report.note(&format!(
@@ -49,8 +69,19 @@ pub fn run(job: &Job, report: Report, interrupted: &AtomicBool) -> Result<Ending
     Ok(finished.ending)
 }
 
+/// Bevy's smallest app.
+fn small_app() -> App {
+    let mut app = App::new();
+    let task_pool_options = TaskPoolOptions::with_num_threads(1);
+    app.add_plugins((
+        MinimalPlugins.set(TaskPoolPlugin { task_pool_options }),
+        SimulationPlugin,
+    ));
+    app
+}
+
 /// A run within an app without a window, in which each update is one tick.
-struct RunInApp {
+pub struct RunInApp {
     app: App,
     /// A run that goes on after a stop, until it stands where it stopped.
     resuming: Option<DirectRun>,
@@ -61,15 +92,10 @@ struct RunInApp {
 }
 
 impl RunInApp {
-    /// The run that `job` asks for: from time zero, or going on from `checkpoint`.
-    fn of(job: &Job, checkpoint: Option<Checkpoint>) -> Self {
-        let mut app = App::new();
-        let task_pool_options = TaskPoolOptions::with_num_threads(1);
-        app.add_plugins((
-            MinimalPlugins.set(TaskPoolPlugin { task_pool_options }),
-            SimulationPlugin,
-        ))
-        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    /// The run that `job` asks for in an `app` with the [`SimulationPlugin`]: from time zero, or
+    /// going on from `checkpoint`.
+    pub fn of(mut app: App, job: &Job, checkpoint: Option<Checkpoint>) -> Self {
+        app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
         let options = options(job);
         let resuming = checkpoint.map(|from| DirectRun::of(job).from_checkpoint(Some(from)));
         if resuming.is_none() {
@@ -89,6 +115,11 @@ impl RunInApp {
         let session = Session::of(&self.name, &Timeline::new(run, 0));
         let simulation = Simulation::resume(session, self.options.clone());
         self.app.insert_resource(simulation);
+    }
+
+    /// The app that it runs in.
+    pub fn app(&mut self) -> &mut App {
+        &mut self.app
     }
 
     fn simulation(&self) -> Option<&Simulation> {

@@ -134,6 +134,7 @@ fn fulfil(
             opener.start_again(recording.scene().clone(), Some(recording), dock);
         }
         (Request::RunOn, Some(recording)) => opener.run_on(recording, dock),
+        (Request::MeasureFlow, Some(recording)) => recording.send(LabCommand::MeasureFlow),
         (Request::Trail, _) => opener.trace_selected(),
         (Request::NoTrails, _) => opener.view.traced.clear(),
         (Request::Camera(request), _) => {
@@ -173,6 +174,7 @@ fn fulfil(
             | Request::EndComparison(_)
             | Request::RunAnew
             | Request::RunOn
+            | Request::MeasureFlow
             | Request::Lesson(_)
             | Request::SaveSession(_)
             | Request::SaveChanges(_),

@@ -22,6 +22,7 @@ use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
 use crate::ui::panels::compare::Compare;
 use crate::ui::panels::energy_stack::EnergyStack;
 use crate::ui::panels::explorer::Explorer;
+use crate::ui::panels::flow_over_depth::FlowOverDepth;
 use crate::ui::panels::lesson::LessonDesk;
 use crate::ui::panels::mean_velocities::MeanVelocities;
 use crate::ui::panels::microscope::Microscope;
@@ -122,6 +123,7 @@ fn right() -> Vec<Section> {
         section(Explorer::default(), false),
         section(EnergyStack, false),
         section(MeanVelocities::default(), false),
+        section(FlowOverDepth::default(), false),
         section(BesidePaper::default(), true),
         section(ColumnBesidePaper, true),
         section(Results::default(), true),

@@ -67,6 +67,7 @@ pub use panels::column_beside_paper::ColumnBesidePaper;
 pub use panels::compare::Compare;
 pub use panels::energy_stack::EnergyStack;
 pub use panels::explorer::Explorer;
+pub use panels::flow_over_depth::FlowOverDepth;
 pub use panels::lesson::LessonDesk;
 pub(crate) use panels::lesson::show_look;
 pub use panels::mean_velocities::MeanVelocities;

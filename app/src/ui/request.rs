@@ -47,6 +47,8 @@ pub enum Request {
     RunAnew,
     /// Start a run with the grains of the recording as they are at the moment shown.
     RunOn,
+    /// Measure the mean flow of the recording that is shown on its states.
+    MeasureFlow,
     /// Write the whole session to the file it has, or let the person choose one.
     Save,
     /// Let the person choose where the whole session goes.

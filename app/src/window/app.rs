@@ -24,6 +24,7 @@ use bevy::render::RenderPlugin;
 use bevy::render::render_resource::BlendState;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
+use grainfall::lab::Options;
 use grainfall::run::Rescue;
 use grainfall::scene::Scene as GranularScene;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -73,28 +74,11 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         picture => app.add_plugins(window_plugins(title, picture.as_ref())),
     };
     let is_plain = job.picture.as_ref().is_some_and(|picture| picture.plain);
-    app.add_plugins(EguiPlugin::default())
-        .insert_resource(EguiGlobalSettings {
-            auto_create_primary_context: false,
-            ..default()
-        })
-        .insert_resource(ViewSettings {
-            show_overlay: !is_plain,
-            show_measured: !is_plain,
-            // Several samples a pixel are the processor's work where there is no graphics card.
-            smooth_edges: !software || job.picture.is_some(),
-            ..default()
-        })
-        .add_plugins((
-            SimulationPlugin,
-            ViewPlugin,
-            ScreenshotPlugin,
-            UiPlugin {
-                options: job.options.clone(),
-            },
-        ))
-        .add_systems(Startup, spawn_panel_camera)
-        .add_systems(Update, follow_title);
+    // Several samples a pixel are the processor's work where there is no graphics card.
+    let smooth_edges = !software || job.picture.is_some();
+    app.add_plugins(ScreenshotPlugin);
+    add_laboratory(&mut app, is_plain, smooth_edges, job.options.clone());
+    app.add_systems(Update, follow_title);
     let mut dock = app.world_mut().resource_mut::<Dock>();
     if job.picture.is_none() {
         dock.remember(UserMemory::user());
@@ -135,6 +119,24 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     app
 }
 
+/// Adds simulation, view and panels to an `app` that draws: `plain` without what is written into the
+/// picture, with smooth edges or without, scenes opened as `options` say.
+pub(super) fn add_laboratory(app: &mut App, is_plain: bool, smooth_edges: bool, options: Options) {
+    app.add_plugins(EguiPlugin::default())
+        .insert_resource(EguiGlobalSettings {
+            auto_create_primary_context: false,
+            ..default()
+        })
+        .insert_resource(ViewSettings {
+            show_overlay: !is_plain,
+            show_measured: !is_plain,
+            smooth_edges,
+            ..default()
+        })
+        .add_plugins((SimulationPlugin, ViewPlugin, UiPlugin { options }))
+        .add_systems(Startup, spawn_panel_camera);
+}
+
 /// Has work that is in no file kept for the case that the program ends unasked, where the system
 /// has a place for that.
 fn keep_unsaved_work(app: &mut App) {
@@ -168,7 +170,7 @@ fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGro
 }
 
 /// Only what a person can act on; `RUST_LOG` shows more.
-fn log() -> LogPlugin {
+pub(super) fn log() -> LogPlugin {
     LogPlugin {
         level: Level::WARN,
         filter: "wgpu=error,naga=error,bevy_render::renderer=error,winit=error,bevy_egui=error"
@@ -216,7 +218,7 @@ fn spawn_panel_camera(mut commands: Commands) {
 }
 
 /// Does `work`; if it panics, says what the panic said instead of printing it.
-fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+pub(super) fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let hook = take_hook();
     set_hook(Box::new(|_| {}));
     let result = catch_unwind(AssertUnwindSafe(work));

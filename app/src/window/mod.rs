@@ -6,6 +6,8 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `headless_film` | a film of a run or of a recording, without a window |
+//! | `film_studio` | takes its pictures |
 //! | `app` | Bevy's app, built and run |
 //! | `screenshot_job`, `screenshot_subject` | takes pictures and films; what they are of |
 //! | `opening_comparison` | the second run that a window opens with |
@@ -16,11 +18,14 @@
 mod app;
 pub mod canvas;
 pub mod environment;
+mod film_studio;
+mod headless_film;
 mod opening_comparison;
 mod screenshot_job;
 mod screenshot_subject;
 mod window_job;
 
 pub use app::run;
+pub use headless_film::{film_recording, film_run};
 pub use screenshot_job::ScreenshotPlugin;
-pub use window_job::{Opened, PictureJob, WindowError, WindowJob};
+pub use window_job::{FilmJob, Opened, PictureJob, WindowError, WindowJob};

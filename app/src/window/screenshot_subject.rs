@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Frames from a state that is reached to one that is surely drawn: panels, then the renderer a
 /// frame behind.
-const UNTIL_DRAWN: u32 = 2;
+pub(super) const UNTIL_DRAWN: u32 = 2;
 
 /// What screenshots are taken of.
 pub(super) enum ScreenshotSubject {
@@ -285,7 +285,7 @@ impl FilmReel {
 }
 
 /// The part of a picture of the window that the panels leave free.
-fn free_area(image: &Image, settings: &ViewSettings) -> URect {
+pub(super) fn free_area(image: &Image, settings: &ViewSettings) -> URect {
     let size = image.size();
     let whole = URect::from_corners(UVec2::ZERO, size);
     let Some(free) = settings.free_rect else {

@@ -106,6 +106,23 @@ pub struct PictureJob {
     pub offscreen: bool,
 }
 
+/// A film that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmJob {
+    /// The GIF or MP4, or the folder of pictures.
+    pub path: PathBuf,
+    /// Simulated time of its first picture [s]; where there is no state yet by then, the first that
+    /// there is.
+    pub at: f64,
+    /// Simulated seconds for each second of the film; as the window first plays the scene where
+    /// none is given.
+    pub speed: Option<f64>,
+    /// Width and height of its pictures [pixels].
+    pub size: UVec2,
+    /// Whether it shows the grains alone, without clock and scale bar.
+    pub plain: bool,
+}
+
 /// Why there is no window or no picture.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {

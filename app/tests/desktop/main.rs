@@ -6,6 +6,7 @@
 )]
 
 mod comparison;
+mod headless_film;
 mod lesson;
 mod measured;
 mod panels;

@@ -108,3 +108,36 @@ fn no_color_is_heeded() {
     let said = command.output().unwrap().stderr;
     assert!(!said.contains(&0x1b), "{}", text(&said));
 }
+
+#[cfg(feature = "desktop")]
+#[test]
+fn film_that_cannot_be_is_refused_before_anything_is_computed() {
+    let place = Place::new();
+    place.write("taken.gif", "");
+    for (film, code, expected) in [
+        ("taken.gif", 2, "exists already"),
+        ("film.avi", 2, "ends in .gif or .mp4"),
+        ("film.gif", 1, "no Vulkan driver was found"),
+    ] {
+        let mut command = place.command(&["bouncing-grain", "--no-render", "--record", film]);
+        command.env("WGPU_BACKEND", "vulkan");
+        command
+            .env("VK_DRIVER_FILES", "none")
+            .env("VK_ICD_FILENAMES", "none");
+        let output = command.output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert!(!place.path("out").exists(), "{film}");
+    }
+}
+
+#[cfg(not(feature = "desktop"))]
+#[test]
+fn film_is_refused_where_nothing_can_be_drawn() {
+    let place = Place::new();
+    let output = place.run(&["bouncing-grain", "--no-render", "--record", "film.gif"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("built without pictures"), "{said}");
+}

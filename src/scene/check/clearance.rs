@@ -1,6 +1,6 @@
 //! How far a point is from the walls of a scene's container, and how deep a touch may be.
 
-use crate::scene::container::SceneContainer;
+use crate::scene::container::{SceneContainer, SceneTube};
 use glam::DVec3;
 
 /// Overlap of a listed polyhedron with a wall that is still a contact, in rounding radii.
@@ -20,7 +20,13 @@ pub(super) fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
         SceneContainer::Box { min, max, .. } => (x - *min).min(*max - x).min_element(),
         SceneContainer::Column { radius, tube, .. } => {
             let inside = radius - (x.x * x.x + x.z * x.z).sqrt();
-            tube.as_ref().map_or(x.y, |_| x.y.min(inside))
+            // Below its rim a tube that has risen holds nothing, and grains lie on both sides of it.
+            let from = |tube: &SceneTube| match tube.rim {
+                rim if x.y < rim => f64::INFINITY,
+                rim if rim > 0.0 => inside.abs(),
+                _ => inside,
+            };
+            tube.as_ref().map_or(x.y, |tube| x.y.min(from(tube)))
         }
         SceneContainer::Planes(planes) => planes
             .iter()

@@ -74,7 +74,15 @@ pub(in crate::scene) fn check_container(container: &SceneContainer) -> Checked {
 fn check_tube(tube: &SceneTube) -> Checked {
     within(&limits::TUBE_SPEED, tube.speed, || {
         "container.tube.speed".to_owned()
-    })
+    })?;
+    if (0.0..=1e5).contains(&tube.rim) {
+        return Ok(());
+    }
+    Err(Problem::value(
+        "container.tube.rim",
+        tube.rim,
+        "the height of its lower rim at the start, 0 to 100000 m",
+    ))
 }
 
 fn check_planes(planes: &[ScenePlane]) -> Checked {

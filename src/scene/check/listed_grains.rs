@@ -5,12 +5,16 @@ use super::clearance::{DEEPEST_ROUNDING, LARGEST_OVERLAP, clearance};
 use super::filling::check_count;
 use super::overlaps::check_overlaps;
 use super::values::{Checked, shown, vector, within};
+use crate::geometry::{Polyhedron, sphere_volume};
 use crate::physics::limits;
 use crate::scene::Scene;
 use crate::scene::container::SceneContainer;
 use crate::scene::error::Problem;
 use crate::scene::grains::SceneGrain;
-use crate::scene::shape::{MOST_POINTS, MOST_SIDES, SceneBody, SceneShape};
+use crate::scene::shape::{MOST_CORNERS, MOST_POINTS, MOST_SIDES, SceneBody, SceneShape};
+
+/// Of a flat body the largest moment is the sum of the two others, but for rounding.
+const OF_ROUNDING: f64 = 1e-6;
 
 impl Scene {
     pub(super) fn check_list(&self, grains: &[SceneGrain]) -> Checked {
@@ -85,7 +89,64 @@ fn check_shape(shape: &SceneShape, path: impl Fn(&str) -> String) -> Checked {
                 "points round a body",
             ))
         }
+        SceneShape::Core { corners, .. } => {
+            let mut corners = corners.iter();
+            corners.try_for_each(|corner| vector(*corner, 1e3, "m", || path("shape.corners")))?;
+            check_core(shape, path)
+        }
     }
+}
+
+/// A core is a closed body, with mass and inertia that a body of its size can have.
+fn check_core(shape: &SceneShape, path: impl Fn(&str) -> String) -> Checked {
+    let (
+        Some(core),
+        SceneShape::Core {
+            rounding,
+            volume,
+            gyration,
+            ..
+        },
+    ) = (shape.core(), shape)
+    else {
+        return Err(Problem::new(
+            path("shape.faces"),
+            "are not those of a body with these corners",
+            format!(
+                "4 to {MOST_CORNERS} corners, and faces that name three or more of them each, counted from 0"
+            ),
+        ));
+    };
+    let (own, reach) = (core.moments().volume, shape.radius());
+    let body = Polyhedron::of_core(core.clone(), *rounding, *volume, *gyration);
+    if !core.is_closed() || !body.is_sound_core() {
+        return Err(Problem::new(
+            path("shape"),
+            "is no body",
+            "faces of which each edge is in two, their corners anticlockwise seen from outside, and a volume and a gyration \
+             above zero",
+        ));
+    }
+    if !(own..=sphere_volume(reach)).contains(volume) {
+        return Err(Problem::value(
+            path("shape.volume"),
+            volume,
+            format!(
+                "one between that of the core, {own:e} m³, and that of a sphere round the grain"
+            ),
+        ));
+    }
+    let largest = gyration.max_element();
+    let others = gyration.element_sum() - largest;
+    if largest <= reach * reach && largest <= (1.0 + OF_ROUNDING) * others {
+        return Ok(());
+    }
+    Err(Problem::value(
+        path("shape.gyration"),
+        shown(*gyration),
+        "principal moments of inertia over the mass: none larger than the two others together, nor than the largest distance \
+         from the centroid squared",
+    ))
 }
 
 fn too_thin(grain: &SceneGrain, path: String) -> Problem {

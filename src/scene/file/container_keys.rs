@@ -43,6 +43,8 @@ pub(super) enum ContainerFile {
 pub(super) struct TubeFile {
     speed: f64,
     material: Option<String>,
+    #[serde(default)]
+    rim: f64,
 }
 
 #[derive(Deserialize)]
@@ -92,6 +94,7 @@ impl ContainerFile {
                     .ok_or_else(|| missing_length("container", "height"))?,
                 tube: tube.map(|tube| SceneTube {
                     speed: tube.speed,
+                    rim: tube.rim,
                     material: tube.material.unwrap_or_else(|| material.clone()),
                 }),
                 material,

@@ -87,10 +87,26 @@ pub(super) struct GrainFile {
 #[serde(rename = "Shape", deny_unknown_fields)]
 enum ShapeFile {
     Sphere,
-    Box { size: DVec3 },
-    Tetrahedron { edge: f64 },
-    Prism { sides: u32, edge: f64, height: f64 },
-    Hull { points: Vec<DVec3> },
+    Box {
+        size: DVec3,
+    },
+    Tetrahedron {
+        edge: f64,
+    },
+    Prism {
+        sides: u32,
+        edge: f64,
+        height: f64,
+    },
+    Hull {
+        points: Vec<DVec3>,
+    },
+    Core {
+        corners: Vec<DVec3>,
+        faces: Vec<Vec<u16>>,
+        volume: f64,
+        gyration: DVec3,
+    },
 }
 
 #[derive(Default, Deserialize)]
@@ -319,6 +335,18 @@ impl ShapeFile {
                 rounding,
             },
             Self::Hull { points } => SceneShape::Hull { points, rounding },
+            Self::Core {
+                corners,
+                faces,
+                volume,
+                gyration,
+            } => SceneShape::Core {
+                corners,
+                faces,
+                rounding,
+                volume,
+                gyration,
+            },
         }
     }
 }

@@ -5,12 +5,13 @@ use super::{built, export_text};
 use glam::{DQuat, DVec3};
 use grainfall::engines::{
     Export, ExportRecord, ImportSource, MpiEngine, export, import, named_files, read_frames,
+    scene_from,
 };
 use grainfall::geometry::{HalfSpace, Solid};
 use grainfall::measure::Measure;
 use grainfall::runner::{Advance, DirectRun, Job};
 use grainfall::scene::Scene;
-use grainfall::world::World;
+use grainfall::world::{World, build};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -395,6 +396,19 @@ fn front_height_and_energy_come_back() {
             );
         }
     }
+    // The last state begins a scene of its own.
+    let text = scene_from(&imported.scene, &imported.last)
+        .to_text()
+        .unwrap();
+    let begun = build(&Scene::parse("start.ron", &text).unwrap(), 1e-6);
+    assert_eq!(begun.grains.position, imported.last.grains.position);
+    assert_eq!(begun.grains.velocity, imported.last.grains.velocity);
+    let shapes = |world: &World| -> Vec<_> {
+        let bodies = world.polyhedra.as_ref().unwrap();
+        let cores = (0..world.grains.len()).map(|i| bodies.shape_of(i).vertices.clone());
+        cores.collect()
+    };
+    assert_eq!(shapes(&begun), shapes(&imported.last));
     let own = &run.run().unwrap().world().grains;
     let largest = (own.position.iter().zip(&imported.last.grains.position))
         .map(|(a, b)| (*a - *b).length())

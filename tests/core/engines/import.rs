@@ -462,7 +462,7 @@ fn last_state_begins_a_new_scene() {
     let source = ImportSource::of_scene("small-drum", job.scene, Vec::new());
     let files = named_files(&[folder.path().to_owned()]).unwrap();
     let imported = import(&files, &source, &folder.path().join("out"), false, &mut ()).unwrap();
-    let scene = scene_from(&imported.scene, &imported.last).unwrap();
+    let scene = scene_from(&imported.scene, &imported.last);
     let text = scene.to_text().unwrap();
     let read = Scene::parse("start.ron", &text).unwrap();
     assert_eq!(read, scene);

@@ -15,11 +15,24 @@ fn scene_as_text_is_read_as_the_same_scene() {
     let belt = |law| belt(law).replace("normal: (-1, 1, 0)", "normal: (-1, 0, 0)");
     let tube = r#"(
         title: "A tube", materials: {"glass": ()},
-        container: Column(radius_mm: 25, height_mm: 50, material: "glass", tube: (speed: 0.1)),
+        container: Column(radius_mm: 25, height_mm: 50, material: "glass", tube: (speed: 0.1, rim: 0.02)),
         grains: List([(position: (0, 0.01, 0), radius_mm: 3, film: 1e-10, material: "glass")]),
         liquid: (case: 3),
     )"#;
+    let cube = r#"(
+        title: "A cube", materials: {"glass": ()}, container: Nothing,
+        grains: List([(
+            shape: Core(
+                corners: [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
+                faces: [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [3, 0, 4, 7]],
+                volume: 11.390625, gyration: (0.84375, 0.84375, 0.84375),
+            ),
+            rounding: 0.125, position: (0, 0.01, 0), material: "glass",
+            orientation: Quaternion(x: 0, y: 0, z: 0.6, w: 0.8),
+        )]),
+    )"#;
     for text in [
+        cube.to_owned(),
         dry_drum(),
         wet_drum(),
         odd,

@@ -179,6 +179,7 @@ fn no_grain_is_smaller_than_the_time_step_counts_on() {
     *tube = Some(SceneTube {
         speed: 0.1,
         material: "floor".to_owned(),
+        rim: 0.0,
     });
     for scene in [free, held] {
         let SceneGrains::Voronoi(cells) = &scene.grains else {

@@ -11,7 +11,7 @@ use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::ui::words::run_names::parameter_name;
 use bevy_egui::egui::{self, Rect, RichText, WidgetInfo, WidgetType, pos2, vec2};
-use grainfall::recording::RecordingFacts;
+use grainfall::recording::{RecordingFacts, RunProgress};
 use grainfall::run::{Changed, Command};
 
 /// Of marks closer together than this one is drawn, in points.
@@ -71,16 +71,30 @@ fn state_in_words(recording: &RecordingFacts, step: u64) -> String {
             .map_or(0.0, |moment| moment.time)
     };
     let place = place_in_words(time(index), time(states.saturating_sub(1)));
-    format!("state {} of {states} · {place}", index + 1)
+    let progress = match recording.progress {
+        RunProgress::UnderWay => " · under way",
+        RunProgress::Stopped => " · not finished",
+        RunProgress::Over => "",
+    };
+    format!("state {} of {states} · {place}{progress}", index + 1)
 }
 
 /// Which state of a recording is shown.
 fn state_ui(ui: &mut egui::Ui, simulation: &Simulation, recording: &RecordingFacts) {
     let text = state_in_words(recording, simulation.step());
-    ui.label(text).on_hover_text(
+    let more = match recording.progress {
+        RunProgress::UnderWay => {
+            ". Its run is under way: states are added as they are written, and while the last one is shown, the picture follows"
+        }
+        RunProgress::Stopped => {
+            ". Its run was not finished, and nobody computes it here now: if somebody goes on with it, its states are added"
+        }
+        RunProgress::Over => "",
+    };
+    ui.label(text).on_hover_text(format!(
         "A recording shows the states that were written, each as it is, until the next is due; nothing is made up between \
-         them",
-    );
+         them{more}"
+    ));
 }
 
 /// Undo and redo.

@@ -12,6 +12,7 @@ pub mod column_beside_paper;
 pub mod compare;
 pub mod energy_stack;
 pub mod explorer;
+pub mod flow_over_depth;
 pub mod lesson;
 pub mod mean_velocities;
 pub mod microscope;

@@ -7,7 +7,10 @@ use bevy_egui::egui::{self, Shape};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::measure::{Avalanche, Series};
+use grainfall::output::{FLOW, flow_table};
+use grainfall::recording::Recording;
 use grainfall::run::Command;
+use grainfall::runner::{self, Job};
 use grainfall::scene::Scene;
 use grainfall_app::simulation::Simulation;
 use grainfall_app::ui::{AvalanchePlots, Curves, Request};
@@ -128,6 +131,36 @@ fn velocities_are_seen_from_the_laboratory_and_from_the_drum() {
     let number = label.trim_start_matches("Velocity map, up to ");
     let speed: f64 = number.trim_end_matches(" mm/s").parse().unwrap();
     assert!((4.18..4.51).contains(&speed), "{label}");
+}
+
+#[test]
+fn mean_flow_of_a_recording_is_shown_or_offered_to_be_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let mut scene = Scene::open("small-drum").unwrap();
+    let values = [
+        ("count", "60"),
+        ("duration", "20ms"),
+        ("output-interval", "10ms"),
+    ];
+    scene.set_all(&values).unwrap();
+    runner::run(&Job::new("drum", scene, &out), &mut (), &|| false).unwrap();
+    let open = || {
+        let recording = Recording::open(&out).unwrap();
+        let mut harness = Window::of(ready(Simulation::play_back(recording, standing())));
+        harness.get_by_label("Flow over depth").click();
+        harness.run_steps(12);
+        harness
+    };
+    // So short a run writes none.
+    let mut harness = open();
+    harness.get_by_label("Measure it on the 3 states").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked[..], [Request::MeasureFlow]);
+    let heads = flow_table().heads().join(",");
+    let flow = format!("{heads}\n0.0,0.25,40,0.01\n0.001,0.2,39,NaN\n");
+    std::fs::write(out.join(FLOW), flow).unwrap();
+    open().get_by_label("Velocity along the surface [mm/s], over depth [mm]");
 }
 
 #[test]
