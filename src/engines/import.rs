@@ -18,7 +18,7 @@ use crate::run::{Run, Sampling, Script, ScriptedCommand, StampedCommand};
 use crate::runner::Watch;
 use crate::scene::{Scene, SceneGrain, SceneGrains, SceneShape};
 use crate::solver::advise;
-use crate::world::{SpeciesId, Wall, World, build};
+use crate::world::{SpeciesId, Surface, Wall, World, build};
 use glam::{DQuat, DVec3};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -372,7 +372,11 @@ pub fn scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
 /// # Errors
 /// In words, why it is none.
 pub fn sound_scene_from(scene: &Scene, world: &World) -> Result<Scene, String> {
-    let moves = |wall: &Wall| wall.motion.velocity != DVec3::ZERO;
+    // What turns about its own axis stays where it is, a mesh does not.
+    let moves = |wall: &Wall| {
+        let turns = matches!(wall.surface, Surface::Mesh(_)) && wall.motion.spin != DVec3::ZERO;
+        wall.motion.velocity != DVec3::ZERO || turns
+    };
     if world.time() > 0.0 && world.container.walls.iter().any(moves) {
         return Err(
             "Walls have moved since the start, and a scene begins with them where they were: run this scene from its start"

@@ -6,15 +6,15 @@
 //! world.
 
 mod polyhedron;
+mod smooth_parts;
 mod solid;
 mod stl;
 mod surface_mesh;
 mod triangle;
 
 pub use polyhedron::{Polyhedron, Rounded, sphere_volume, spheres_volume};
+pub use smooth_parts::{MOST_PARTS, MeshFlaw, open_edges, smooth_parts};
 pub use solid::{Flaw, HalfSpace, Moments, Solid};
 pub use stl::{LARGEST_STL, read_stl};
-pub use surface_mesh::{
-    MOST_PARTS, MOST_TRIANGLES, MeshFlaw, MeshPart, NearestOnPart, smooth_parts,
-};
-pub use triangle::{Region, nearest_on_triangle};
+pub use surface_mesh::{MOST_TRIANGLES, MeshPart, NearestOnPart};
+pub use triangle::{Region, hit_triangle, nearest_on_triangle};

@@ -1,85 +1,53 @@
-//! A surface of triangles, divided into smooth parts that a grain touches at one place each.
+//! A smooth part of a surface of triangles, which a grain touches at one place.
 //!
-//! In: triangles. Out: [`MeshPart`]s, each of which tells the point of it that is nearest to a
-//! point, and whether that is a contact of its own.
+//! In: its triangles, and where its edges and corners are contacts of its own (`smooth_parts` tells).
+//! Out: the point of it that is nearest to a point, and whether that is a contact.
 //!
-//! Where two triangles meet at an edge and the surface turns by no more than [`SMOOTH`], they belong
-//! to one part. The nearest point of a part is its contact: whatever number of triangles meet there,
-//! it is one, and it goes from triangle to triangle as the grain slides or rolls over them. Where the
-//! surface turns more, parts meet: in a corner a grain touches each of them. A point on an edge or at
-//! a corner where parts meet is a contact of the first of them alone, and only where the grain stands
-//! over none of the others' triangles: else that triangle is nearer, and the contact its. So a grain
-//! touches a sharp edge once, and over a face never its edges. (As in Hu et al. 2013, Particuology 11,
-//! 306, contacts with faces go before those with edges, and those before corners; there triangles are
-//! compared one with another, here parts.) Both sides of a triangle are alike.
+//! The nearest point of a part is its contact: whatever number of triangles meet there, it is one,
+//! and it goes from triangle to triangle as the grain slides or rolls over them. Triangles are found
+//! by a tree in the part's own frame, which never changes: a wall that moves costs a rotation of the
+//! point. Both sides of a triangle are alike.
 
-use super::triangle::{Region, nearest_on_triangle};
+use super::triangle::{Region, hit_triangle, nearest_on_triangle};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::sync::Arc;
 
-/// Cosine of the angle by which a smooth surface may turn at an edge: 20°.
-const SMOOTH: f64 = 0.939_692_620_785_908_4;
-/// Corners nearer to each other than this, in extents of the mesh, are one: files round them.
-const SAME_CORNER: f64 = 1e-6;
 /// Least height of a triangle over its longest edge.
 const THINNEST: f64 = 1e-6;
 /// Most triangles of a leaf of a tree.
 const LEAF: usize = 4;
 /// Most triangles of a mesh.
 pub const MOST_TRIANGLES: usize = 20_000;
-/// Most parts of a mesh.
-pub const MOST_PARTS: usize = 64;
 
 /// Marks an edge or a corner that is a contact wherever it is nearest.
-const OPEN: u32 = u32::MAX;
+pub(super) const OPEN: u32 = u32::MAX;
 /// Marks one that belongs to another part.
-const SHUT: u32 = u32::MAX - 1;
+pub(super) const SHUT: u32 = u32::MAX - 1;
 
-/// Why triangles are no surface for grains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MeshFlaw {
-    /// There are none.
-    #[error("it has no triangles")]
-    Empty,
-    /// There are too many.
-    #[error(
-        "it has {0} triangles; expected at most {MOST_TRIANGLES}: a program for meshes can thin it out"
-    )]
-    TooMany(usize),
-    /// A corner is nowhere.
-    #[error("triangle {0} has a corner that is no place")]
-    NotFinite(usize),
-    /// A triangle has no area.
-    #[error("triangle {0} has no area (or next to none)")]
-    Degenerate(usize),
-    /// It is no smooth surface.
-    #[error(
-        "it falls into {0} parts between edges at which it turns by more than 20°; expected at most {MOST_PARTS}"
-    )]
-    TooManyParts(usize),
-}
+/// A smooth part of a mesh; its clones share what it holds.
+#[derive(Clone, Debug)]
+pub struct MeshPart(Arc<Searched>);
 
-/// A smooth part of a mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Stored", into = "Stored")]
-pub struct MeshPart {
+/// A part and the tree by which it is searched.
+#[derive(Debug)]
+struct Searched {
     stored: Stored,
     tree: Vec<Node>,
 }
 
 /// What a part is made of; the tree follows from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Stored {
+pub(super) struct Stored {
     /// Its triangles [m].
-    triangles: Vec<[DVec3; 3]>,
+    pub triangles: Vec<[DVec3; 3]>,
     /// When the edges of each are contacts of this part: always, never, or through a gate.
-    edges: Vec<[u32; 3]>,
+    pub edges: Vec<[u32; 3]>,
     /// The same of the corners.
-    corners: Vec<[u32; 3]>,
+    pub corners: Vec<[u32; 3]>,
     /// Directions in which triangles of other parts lie from an edge or a corner: it is a contact
     /// where none of them leads towards the grain.
-    gates: Vec<Vec<DVec3>>,
+    pub gates: Vec<Vec<DVec3>>,
 }
 
 /// A box round triangles, or round two boxes.
@@ -103,181 +71,8 @@ pub struct NearestOnPart {
     pub is_own: bool,
 }
 
-/// The smooth parts of a surface of `triangles` [m].
-///
-/// # Errors
-/// What is wrong with them.
-pub fn smooth_parts(triangles: &[[DVec3; 3]]) -> Result<Vec<MeshPart>, MeshFlaw> {
-    let welded = Welded::of(triangles)?;
-    let part_of = welded.parts();
-    let count = part_of.iter().max().map_or(0, |last| last + 1);
-    if count > MOST_PARTS {
-        return Err(MeshFlaw::TooManyParts(count));
-    }
-    let (at_edges, at_corners) = (welded.directions_at_edges(), welded.directions_at_corners());
-    let mut parts = vec![Stored::default(); count];
-    for (t, part) in part_of.iter().enumerate() {
-        let stored = &mut parts[*part];
-        let [a, b, c] = welded.triangles[t];
-        stored
-            .triangles
-            .push([a, b, c].map(|corner| welded.places[corner]));
-        let edges = [[a, b], [b, c], [c, a]].map(|[a, b]| {
-            gate(
-                *part,
-                &at_edges[&(a.min(b), a.max(b))],
-                &part_of,
-                &mut stored.gates,
-            )
-        });
-        let corners = [a, b, c].map(|v| gate(*part, &at_corners[v], &part_of, &mut stored.gates));
-        stored.edges.push(edges);
-        stored.corners.push(corners);
-    }
-    Ok(parts.into_iter().map(MeshPart::from).collect())
-}
-
-/// When an edge or a corner is a contact of `part`, at which triangles lie in these directions.
-fn gate(
-    part: usize,
-    lying: &[(usize, DVec3)],
-    part_of: &[usize],
-    gates: &mut Vec<Vec<DVec3>>,
-) -> u32 {
-    if lying.iter().any(|(triangle, _)| part_of[*triangle] < part) {
-        return SHUT;
-    }
-    let others = lying
-        .iter()
-        .filter(|(triangle, _)| part_of[*triangle] != part);
-    let directions: Vec<DVec3> = others.map(|(_, direction)| *direction).collect();
-    if directions.is_empty() {
-        return OPEN;
-    }
-    gates.push(directions);
-    gates.len() as u32 - 1
-}
-
-/// Triangles whose corners are known by number.
-struct Welded {
-    places: Vec<DVec3>,
-    triangles: Vec<[usize; 3]>,
-}
-
-impl Welded {
-    fn of(triangles: &[[DVec3; 3]]) -> Result<Self, MeshFlaw> {
-        if triangles.is_empty() {
-            return Err(MeshFlaw::Empty);
-        }
-        if triangles.len() > MOST_TRIANGLES {
-            return Err(MeshFlaw::TooMany(triangles.len()));
-        }
-        let is_place = |x: &DVec3| x.is_finite() && x.abs().max_element() < 1e6;
-        if let Some(t) = triangles.iter().position(|t| !t.iter().all(is_place)) {
-            return Err(MeshFlaw::NotFinite(t + 1));
-        }
-        let corners = triangles.iter().flatten();
-        let (low, high) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| {
-            (low.min(*x), high.max(*x))
-        });
-        let same = SAME_CORNER * (high - low).max_element();
-        let mut welded = Self {
-            places: Vec::new(),
-            triangles: Vec::with_capacity(triangles.len()),
-        };
-        let mut known: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-        for (t, triangle) in triangles.iter().enumerate() {
-            if is_thin(triangle) {
-                return Err(MeshFlaw::Degenerate(t + 1));
-            }
-            let numbers = triangle.map(|x| welded.number(x, same, &mut known));
-            if numbers[0] == numbers[1] || numbers[1] == numbers[2] || numbers[2] == numbers[0] {
-                return Err(MeshFlaw::Degenerate(t + 1));
-            }
-            welded.triangles.push(numbers);
-        }
-        Ok(welded)
-    }
-
-    /// The number of the corner at `x`: that of one that is the `same`, or a new one.
-    fn number(&mut self, x: DVec3, same: f64, known: &mut HashMap<[i64; 3], Vec<usize>>) -> usize {
-        let cell = (x / (2.0 * same)).floor().to_array().map(|k| k as i64);
-        let near =
-            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [i, j, k])));
-        for [i, j, k] in near {
-            let at = [cell[0] + i, cell[1] + j, cell[2] + k];
-            let found = known.get(&at).into_iter().flatten();
-            let found = found
-                .copied()
-                .find(|n| (self.places[*n] - x).length() <= same);
-            if let Some(number) = found {
-                return number;
-            }
-        }
-        self.places.push(x);
-        let number = self.places.len() - 1;
-        known.entry(cell).or_default().push(number);
-        number
-    }
-
-    /// From each edge the directions in which its triangles lie.
-    fn directions_at_edges(&self) -> HashMap<(usize, usize), Vec<(usize, DVec3)>> {
-        let mut all: HashMap<_, Vec<(usize, DVec3)>> = HashMap::new();
-        for (t, [a, b, c]) in self.triangles.iter().enumerate() {
-            for [from, to, third] in [[a, b, c], [b, c, a], [c, a, b]] {
-                let along = (self.places[*to] - self.places[*from]).normalize();
-                let off = self.places[*third] - self.places[*from];
-                let inward = (off - along * along.dot(off)).normalize();
-                let edge = (*from.min(to), *from.max(to));
-                all.entry(edge).or_default().push((t, inward));
-            }
-        }
-        all
-    }
-
-    /// From each corner the directions of its triangles' edges.
-    fn directions_at_corners(&self) -> Vec<Vec<(usize, DVec3)>> {
-        let mut all = vec![Vec::new(); self.places.len()];
-        for (t, [a, b, c]) in self.triangles.iter().enumerate() {
-            for [from, to] in [[a, b], [b, c], [c, a], [b, a], [c, b], [a, c]] {
-                let along = (self.places[*to] - self.places[*from]).normalize();
-                all[*from].push((t, along));
-            }
-        }
-        all
-    }
-
-    /// The number of the part that each triangle belongs to, from 0 on, in the triangles' order.
-    fn parts(&self) -> Vec<usize> {
-        let mut root: Vec<usize> = (0..self.triangles.len()).collect();
-        let find = |root: &mut Vec<usize>, mut t: usize| {
-            while root[t] != t {
-                root[t] = root[root[t]];
-                t = root[t];
-            }
-            t
-        };
-        for at_edge in self.directions_at_edges().values() {
-            if let [(a, from_a), (b, from_b)] = &at_edge[..]
-                && -from_a.dot(*from_b) >= SMOOTH
-            {
-                let (a, b) = (find(&mut root, *a), find(&mut root, *b));
-                // The lower is the root, whatever the order of the edges.
-                root[a.max(b)] = a.min(b);
-            }
-        }
-        let mut numbers = HashMap::new();
-        let mut part_of = Vec::with_capacity(root.len());
-        for t in 0..root.len() {
-            let top = find(&mut root, t);
-            let next = numbers.len();
-            part_of.push(*numbers.entry(top).or_insert(next));
-        }
-        part_of
-    }
-}
-
-fn is_thin([a, b, c]: &[DVec3; 3]) -> bool {
+/// Whether a triangle has no area, or next to none.
+pub(super) fn is_thin([a, b, c]: &[DVec3; 3]) -> bool {
     let longest = (*b - *a)
         .length()
         .max((*c - *b).length())
@@ -286,9 +81,21 @@ fn is_thin([a, b, c]: &[DVec3; 3]) -> bool {
     doubled.is_nan() || doubled <= THINNEST * longest * longest
 }
 
-impl From<MeshPart> for Stored {
-    fn from(part: MeshPart) -> Self {
-        part.stored
+impl PartialEq for MeshPart {
+    fn eq(&self, other: &Self) -> bool {
+        self.is_same(other) || self.0.stored == other.0.stored
+    }
+}
+
+impl Serialize for MeshPart {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.stored.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for MeshPart {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Stored::deserialize(deserializer).map(Self::from)
     }
 }
 
@@ -309,7 +116,7 @@ impl From<Stored> for MeshPart {
             corners: order.iter().map(|t| stored.corners[*t]).collect(),
             gates: stored.gates,
         };
-        Self { stored, tree }
+        Self(Arc::new(Searched { stored, tree }))
     }
 }
 
@@ -319,6 +126,9 @@ fn grow(triangles: &[[DVec3; 3]], order: &mut [usize], start: usize, tree: &mut 
     let (low, high) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| {
         (low.min(x), high.max(x))
     });
+    if order.is_empty() {
+        return;
+    }
     let place = tree.len();
     let (first, count) = (start as u32, order.len() as u32);
     tree.push(Node {
@@ -359,12 +169,28 @@ impl Node {
 impl MeshPart {
     /// Its triangles [m].
     pub fn triangles(&self) -> &[[DVec3; 3]] {
-        &self.stored.triangles
+        &self.0.stored.triangles
+    }
+
+    /// Whether the two share what they hold.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
+    /// Memory that it takes, once for all clones [bytes].
+    pub fn memory(&self) -> usize {
+        let Searched { stored, tree } = &*self.0;
+        let gates = stored.gates.iter().map(|gate| size_of_val(&gate[..]));
+        size_of_val(&stored.triangles[..])
+            + size_of_val(&stored.edges[..])
+            + size_of_val(&stored.corners[..])
+            + gates.sum::<usize>()
+            + size_of_val(&tree[..])
     }
 
     /// Whether a world can hold it.
     pub fn is_sound(&self) -> bool {
-        let stored = &self.stored;
+        let stored = &self.0.stored;
         let exists = |&gate: &u32| gate >= SHUT || (gate as usize) < stored.gates.len();
         !stored.triangles.is_empty()
             && stored.triangles.len() <= MOST_TRIANGLES
@@ -379,10 +205,12 @@ impl MeshPart {
             && stored.gates.iter().flatten().all(|x| x.is_finite())
     }
 
-    /// Distance of its farthest corner from `x` [m].
-    pub fn farthest(&self, x: DVec3) -> f64 {
-        let all = self.stored.triangles.iter().flatten();
-        all.map(|corner| (*corner - x).length()).fold(0.0, f64::max)
+    /// How far from `origin` a ray along the unit vector `direction` first hits it [m]; none where it
+    /// passes it.
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let all = self.0.stored.triangles.iter();
+        let hits = all.filter_map(|triangle| hit_triangle(origin, direction, *triangle));
+        hits.min_by(f64::total_cmp)
     }
 
     /// The point of it nearest to `x`; of several the one on the first triangle. None of a part
@@ -394,13 +222,13 @@ impl MeshPart {
         while depth > 0 {
             depth -= 1;
             let place = waiting[depth];
-            let node = self.tree.get(place as usize)?;
+            let node = self.0.tree.get(place as usize)?;
             if node.distance_squared(x) > best.0 {
                 continue;
             }
             if node.count > 0 {
                 for t in node.first..node.first + node.count {
-                    let (point, region) = nearest_on_triangle(x, self.stored.triangles[t as usize]);
+                    let (point, region) = nearest_on_triangle(x, self.0.stored.triangles[t as usize]);
                     let squared = (x - point).length_squared();
                     if squared < best.0 || squared == best.0 && t < best.1 {
                         best = (squared, t, point, region);
@@ -410,7 +238,7 @@ impl MeshPart {
             }
             // The nearer child is looked at first.
             let children = [place + 1, node.first];
-            let far = children.map(|child| self.tree[child as usize].distance_squared(x));
+            let far = children.map(|child| self.0.tree[child as usize].distance_squared(x));
             let order = if far[0] <= far[1] { [1, 0] } else { [0, 1] };
             for k in order {
                 waiting[depth] = children[k];
@@ -418,11 +246,11 @@ impl MeshPart {
             }
         }
         let (_, t, point, region) = best;
-        let [a, b, c] = *self.stored.triangles.get(t as usize)?;
+        let [a, b, c] = *self.0.stored.triangles.get(t as usize)?;
         let gate = match region {
             Region::Face => OPEN,
-            Region::Edge(k) => self.stored.edges[t as usize][k],
-            Region::Corner(k) => self.stored.corners[t as usize][k],
+            Region::Edge(k) => self.0.stored.edges[t as usize][k],
+            Region::Corner(k) => self.0.stored.corners[t as usize][k],
         };
         Some(NearestOnPart {
             point,
@@ -437,160 +265,11 @@ impl MeshPart {
             OPEN => true,
             SHUT => false,
             gate => {
-                let others = self.stored.gates.get(gate as usize).into_iter().flatten();
+                let others = self.0.stored.gates.get(gate as usize).into_iter().flatten();
                 others
                     .into_iter()
                     .all(|direction| off.dot(*direction) <= 0.0)
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CORNERS: [[f64; 3]; 4] = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 0.0, 1.0],
-        [0.0, 0.0, 1.0],
-    ];
-
-    fn quad(corners: [[f64; 3]; 4]) -> Vec<[DVec3; 3]> {
-        let [a, b, c, d] = corners.map(DVec3::from_array);
-        vec![[a, b, c], [a, c, d]]
-    }
-
-    /// Contacts of all parts within `radius` of `x`.
-    fn contacts(parts: &[MeshPart], x: DVec3, radius: f64) -> Vec<DVec3> {
-        let all = parts.iter().filter_map(|part| part.nearest(x));
-        let own = all.filter(|found| found.is_own && (found.point - x).length() < radius);
-        own.map(|found| found.point).collect()
-    }
-
-    #[test]
-    fn plane_is_touched_once_wherever_it_is_divided() {
-        let parts = smooth_parts(&quad(CORNERS)).unwrap();
-        assert_eq!(parts.len(), 1);
-        for k in 0..=100 {
-            let s = f64::from(k) / 100.0;
-            // Along the diagonal, across it and over the outer edges.
-            for x in [[s, 0.1, s], [s, 0.1, 1.0 - s], [s, 0.1, 0.0], [1.0, 0.1, s]] {
-                let x = DVec3::from_array(x);
-                let found = contacts(&parts, x, 0.2);
-                assert_eq!(found.len(), 1);
-                assert!((found[0] - x * DVec3::new(1.0, 0.0, 1.0)).length() < 1e-15);
-            }
-        }
-    }
-
-    #[test]
-    fn corner_is_touched_on_each_wall_and_sharp_edge_once() {
-        let mut walls = quad(CORNERS);
-        walls.extend(quad([
-            [0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.0, 1.0, 1.0],
-            [0.0, 0.0, 1.0],
-        ]));
-        let parts = smooth_parts(&walls).unwrap();
-        assert_eq!(parts.len(), 2);
-        // In the corner both, over one alone that one; outside, over the edge, the edge alone.
-        assert_eq!(contacts(&parts, DVec3::new(0.1, 0.1, 0.5), 0.12).len(), 2);
-        assert_eq!(contacts(&parts, DVec3::new(0.3, 0.1, 0.5), 0.12).len(), 1);
-        assert_eq!(
-            contacts(&parts, DVec3::new(-0.05, -0.05, 0.5), 0.12),
-            [DVec3::new(0.0, 0.0, 0.5)]
-        );
-        // From the other side of the floor, just beside the edge: the face, not the edge.
-        let beside = contacts(&parts, DVec3::new(0.02, -0.1, 0.5), 0.12);
-        assert_eq!(beside, [DVec3::new(0.02, 0.0, 0.5)]);
-        let beside = contacts(&parts, DVec3::new(-0.1, 0.02, 0.5), 0.12);
-        assert_eq!(beside, [DVec3::new(0.0, 0.02, 0.5)]);
-        // At the end of the edge, outside of both.
-        assert_eq!(
-            contacts(&parts, DVec3::new(-0.05, -0.05, 1.05), 0.12),
-            [DVec3::Z]
-        );
-    }
-
-    #[test]
-    fn wide_corner_loses_no_contact() {
-        // A wall that leans back by 60° from the floor: between both, one of them is always touched
-        // at a face, and the edge never.
-        let (y, x) = (3.0_f64.sqrt() / 2.0, -0.5);
-        let mut walls = quad(CORNERS);
-        walls.extend(quad([
-            [0.0, 0.0, 0.0],
-            [x, y, 0.0],
-            [x, y, 1.0],
-            [0.0, 0.0, 1.0],
-        ]));
-        let parts = smooth_parts(&walls).unwrap();
-        for k in 0..60 {
-            let angle = f64::from(k).to_radians() * 2.0;
-            let at = 0.1 * DVec3::new(angle.cos(), angle.sin(), 5.0);
-            let found = contacts(&parts, at, 0.11);
-            let edge = DVec3::new(0.0, 0.0, 0.5);
-            assert!(
-                !found.is_empty() && !found.contains(&edge),
-                "{angle}: {found:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn tree_finds_what_a_search_through_all_finds() {
-        let facets = 90;
-        let at = |k: usize, z: f64| {
-            let angle = k as f64 * 2.0 * std::f64::consts::PI / facets as f64;
-            DVec3::new(angle.cos(), angle.sin(), z)
-        };
-        let rim: Vec<[DVec3; 3]> = (0..facets)
-            .flat_map(|k| {
-                let [a, b, c, d] = [at(k, -1.0), at(k + 1, -1.0), at(k + 1, 1.0), at(k, 1.0)];
-                [[a, c, b], [a, d, c]]
-            })
-            .collect();
-        let parts = smooth_parts(&rim).unwrap();
-        assert_eq!(
-            parts.len(),
-            1,
-            "4° at each edge are smooth, and the last corner is the first"
-        );
-        for k in 0..500 {
-            let angle = f64::from(k) * 0.7;
-            let x = DVec3::new(angle.cos(), angle.sin(), 0.3) * (0.2 + 1e-3 * f64::from(k));
-            let found = parts[0].nearest(x).unwrap();
-            let least = rim
-                .iter()
-                .map(|t| (nearest_on_triangle(x, *t).0 - x).length());
-            let least = least.fold(f64::INFINITY, f64::min);
-            // The last corners are those of angle 0: a rounding from where they were stated.
-            assert!(((found.point - x).length() - least).abs() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn flaws_are_named() {
-        let mut triangles = quad(CORNERS);
-        assert_eq!(smooth_parts(&[]), Err(MeshFlaw::Empty));
-        triangles.push([DVec3::ZERO, DVec3::X, DVec3::X * 2.0]);
-        assert_eq!(smooth_parts(&triangles), Err(MeshFlaw::Degenerate(3)));
-        triangles[2] = [DVec3::ZERO, DVec3::NAN, DVec3::X];
-        assert_eq!(smooth_parts(&triangles), Err(MeshFlaw::NotFinite(3)));
-        let apart: Vec<[DVec3; 3]> = (0..=MOST_PARTS)
-            .map(|k| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|x| x + DVec3::Z * k as f64))
-            .collect();
-        assert_eq!(
-            smooth_parts(&apart),
-            Err(MeshFlaw::TooManyParts(MOST_PARTS + 1))
-        );
-        let many = vec![triangles[0]; MOST_TRIANGLES + 1];
-        assert_eq!(
-            smooth_parts(&many),
-            Err(MeshFlaw::TooMany(MOST_TRIANGLES + 1))
-        );
     }
 }

@@ -1,7 +1,8 @@
-//! The point of a triangle nearest to a point.
+//! The point of a triangle nearest to a point, and where a ray hits it.
 //!
 //! In: three corners, a point. Out: the nearest point and whether it lies inside, on an edge or at a
-//! corner (Ericson, Real-Time Collision Detection, 2005, section 5.1.5). Only + − × ÷.
+//! corner (Ericson, Real-Time Collision Detection, 2005, section 5.1.5). Only + − × ÷. A ray is met as
+//! by Möller and Trumbore (1997, J. Graphics Tools 2, 21).
 
 use glam::DVec3;
 
@@ -52,6 +53,23 @@ pub fn nearest_on_triangle(x: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, Region) {
     (x - normal * away, Region::Face)
 }
 
+/// How far from `origin` a ray along the unit vector `direction` hits the triangle `abc`, its edges
+/// included; none where it does not.
+pub fn hit_triangle(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let across = direction.cross(ac);
+    let determinant = ab.dot(across);
+    if determinant == 0.0 {
+        return None;
+    }
+    let off = origin - a;
+    let u = off.dot(across) / determinant;
+    let turned = off.cross(ab);
+    let v = direction.dot(turned) / determinant;
+    let distance = ac.dot(turned) / determinant;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance >= 0.0).then_some(distance)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,5 +102,18 @@ mod tests {
             }
         }
         assert_eq!(regions.len(), 7, "{regions:?}");
+    }
+
+    #[test]
+    fn ray_hits_a_triangle_where_its_plane_is_met_inside_of_it() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let from = DVec3::new(0.25, 0.25, 2.0);
+        assert_eq!(hit_triangle(from, DVec3::NEG_Z, corners), Some(2.0));
+        assert_eq!(hit_triangle(from, DVec3::Z, corners), None);
+        assert_eq!(hit_triangle(from, DVec3::X, corners), None);
+        assert_eq!(
+            hit_triangle(from + DVec3::X, DVec3::NEG_Z, corners),
+            None
+        );
     }
 }

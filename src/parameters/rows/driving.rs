@@ -29,13 +29,13 @@ pub static DRUM_SPEED: ParameterRow = ParameterRow {
         preset("the paper's", 0.5 / TURNING.shown.factor),
         preset("ten times", 5.0 / TURNING.shown.factor),
     ],
-    description: "How fast the drum turns; positive is anticlockwise as you see it.",
+    description: "How fast the drum turns; positive is anticlockwise as you see it, of a mesh about its axis.",
     equation: |_| "v = Ω × r on rim and end plates",
     section: PanelSection::Drum,
     is_basic: |_, _| true,
-    exists: |scene, _| matches!(scene.container, SceneContainer::Drum { .. }),
+    exists: |scene, _| scene.container.turns(),
     in_world: Some(InWorld {
-        read: |world, _| Some(world.container.drum_speed().into()),
+        read: |world, _| Some(world.container.turning_speed().into()),
         write: |world, _, _, value| world.container.set_drum_speed(value.number()),
     }),
     ..ANY
