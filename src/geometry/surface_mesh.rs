@@ -228,7 +228,8 @@ impl MeshPart {
             }
             if node.count > 0 {
                 for t in node.first..node.first + node.count {
-                    let (point, region) = nearest_on_triangle(x, self.0.stored.triangles[t as usize]);
+                    let (point, region) =
+                        nearest_on_triangle(x, self.0.stored.triangles[t as usize]);
                     let squared = (x - point).length_squared();
                     if squared < best.0 || squared == best.0 && t < best.1 {
                         best = (squared, t, point, region);

@@ -111,9 +111,6 @@ mod tests {
         assert_eq!(hit_triangle(from, DVec3::NEG_Z, corners), Some(2.0));
         assert_eq!(hit_triangle(from, DVec3::Z, corners), None);
         assert_eq!(hit_triangle(from, DVec3::X, corners), None);
-        assert_eq!(
-            hit_triangle(from + DVec3::X, DVec3::NEG_Z, corners),
-            None
-        );
+        assert_eq!(hit_triangle(from + DVec3::X, DVec3::NEG_Z, corners), None);
     }
 }

@@ -78,7 +78,8 @@ impl Mesh {
         for (number, wall) in (0..).zip(&world.container.walls) {
             match &wall.surface {
                 Surface::Mesh(part) => {
-                    part.triangles().for_each(|triangle| mesh.face(number, triangle));
+                    part.triangles()
+                        .for_each(|triangle| mesh.face(number, triangle));
                 }
                 &Surface::Plane { point, normal } => {
                     mesh.face(number, plane(&world.container, &bed, point, normal));

@@ -128,7 +128,9 @@ pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
             0 => Ok(surface.volume()),
             edges => Err(Problem::new(
                 "grains",
-                format!("is a `Fill`, but the mesh of the container is open: it ends at {edges} of its edges"),
+                format!(
+                    "is a `Fill`, but the mesh of the container is open: it ends at {edges} of its edges"
+                ),
                 "a closed surface, whose inside is filled; `room: (min: …, max: …)` in the container, a box to fill; or \
                  the grains as a `List`",
             )),

@@ -6,8 +6,8 @@
 //! box round a mesh, or in the room that its scene states, those are taken that are clear of its
 //! walls, and without a stated room inside of it: above them the mesh is met an odd number of times.
 
-use super::mesh::SceneMesh;
 use super::SceneContainer;
+use super::mesh::SceneMesh;
 use super::size_classes::SizeClass;
 use glam::DVec3;
 use std::ops::RangeInclusive;
@@ -144,9 +144,7 @@ impl Lattice {
                 (CellRegion::Box { min, counts }, cell)
             }
             SceneContainer::Mesh {
-                ref surface,
-                room,
-                ..
+                ref surface, room, ..
             } => {
                 let (min, max) = room.unwrap_or_else(|| surface.bounds());
                 let counts = (max - min).to_array().map(|length| whole(length / pitch));

@@ -93,6 +93,12 @@ impl SceneMesh {
         &self.parts
     }
 
+    /// Memory that it takes, once for all scenes and worlds that share it [bytes].
+    pub fn memory(&self) -> usize {
+        let parts = self.parts.iter().map(MeshPart::memory);
+        size_of_val(&self.triangles[..]) + parts.sum::<usize>()
+    }
+
     /// Lower and upper corner of the box round it [m].
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let corners = self.triangles.iter().flatten();

@@ -127,7 +127,9 @@ impl WallBody {
                     normal: n,
                 },
             ) if normal == n => (point - p).dot(normal).abs(),
-            (&Surface::Tube { radius, rim }, &Surface::Tube { radius: r, rim: y }) if radius == r => {
+            (&Surface::Tube { radius, rim }, &Surface::Tube { radius: r, rim: y })
+                if radius == r =>
+            {
                 (rim - y).abs()
             }
             (&Surface::Cylinder { radius }, &Surface::Cylinder { radius: r }) if radius == r => 0.0,

@@ -11,6 +11,8 @@ mod doors;
 mod engines;
 mod lesson;
 mod measure;
+#[path = "../common/meshes.rs"]
+mod meshes;
 mod paper;
 mod parameters;
 mod recorder;

@@ -29,7 +29,7 @@ pub static DRUM_SPEED: ParameterRow = ParameterRow {
         preset("the paper's", 0.5 / TURNING.shown.factor),
         preset("ten times", 5.0 / TURNING.shown.factor),
     ],
-    description: "How fast the drum turns; positive is anticlockwise as you see it, of a mesh about its axis.",
+    description: "How fast the drum turns; positive is anticlockwise as you see it.",
     equation: |_| "v = Ω × r on rim and end plates",
     section: PanelSection::Drum,
     is_basic: |_, _| true,

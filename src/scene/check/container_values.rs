@@ -123,9 +123,9 @@ fn check_motion(motion: &MeshMotion) -> Checked {
                 "the direction of the axis; its length does not matter, but must not be zero",
             ))
         }
-        MeshMotion::Moving { velocity } => {
-            vector(velocity, 1e3, "m/s", || "container.motion.velocity".to_owned())
-        }
+        MeshMotion::Moving { velocity } => vector(velocity, 1e3, "m/s", || {
+            "container.motion.velocity".to_owned()
+        }),
     }
 }
 

@@ -13,7 +13,11 @@ pub(in crate::scene) type Checked = Result<(), Problem>;
 pub(super) const MOST_KINDS: usize = 200;
 
 /// Refuses a `value` of the key at `path` that is not within `limits`.
-pub(in crate::scene) fn within(limits: &Limits, value: f64, path: impl FnOnce() -> String) -> Checked {
+pub(in crate::scene) fn within(
+    limits: &Limits,
+    value: f64,
+    path: impl FnOnce() -> String,
+) -> Checked {
     if limits.accept(value) {
         Ok(())
     } else {

@@ -176,15 +176,13 @@ fn surface(
                 )
             })
         }
-        (None, Some(triangles)) if scale.is_none() => {
-            SceneMesh::new(triangles).map_err(|flaw| {
-                Problem::new(
-                    "container.triangles",
-                    format!("are no surface for grains: {flaw}"),
-                    "triangles of three corners each, in m",
-                )
-            })
-        }
+        (None, Some(triangles)) if scale.is_none() => SceneMesh::new(triangles).map_err(|flaw| {
+            Problem::new(
+                "container.triangles",
+                format!("are no surface for grains: {flaw}"),
+                "triangles of three corners each, in m",
+            )
+        }),
         (None, Some(_)) => Err(Problem::new(
             "container.scale",
             "is that of a file, but the `triangles` are given, in m",

@@ -1,6 +1,7 @@
 //! Scenes written as text are read as the same scenes.
 
 use super::{HOOKE, SPRING_DASHPOT, belt, dry_drum, wet_drum};
+use crate::meshes::{drum, key};
 use grainfall::scene::Scene;
 
 #[test]
@@ -19,7 +20,19 @@ fn scene_as_text_is_read_as_the_same_scene() {
         grains: List([(position: (0, 0.01, 0), radius_mm: 3, film: 1e-10, material: "glass")]),
         liquid: (case: 3),
     )"#;
+    let mesh = |motion: &str| {
+        format!(
+            "(title: \"A mesh\", materials: {{\"glass\": ()}}, container: Mesh({}, material: \"glass\"{motion}), \
+             grains: List([(position: (0, 0, 0), radius_mm: 1, material: \"glass\")]))",
+            key(&drum(0.03, 0.01, 12))
+        )
+    };
     for text in [
+        mesh(""),
+        mesh(", motion: Turning(through: (0, 0.1, 0), axis: (0, -1, 0), speed_rpm: 7)"),
+        mesh(
+            ", motion: Moving(velocity: (0.1, 0, 1e-3)), room: (min: (-0.01, 0, 0), max: (0.01, 0.02, 0.005))",
+        ),
         dry_drum(),
         wet_drum(),
         odd,
