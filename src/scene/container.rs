@@ -139,7 +139,7 @@ pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
             Err(Problem::new(
                 "grains",
                 "is a `Fill`, but the container is open",
-                "a `Drum`, a `Box` or a `Mesh` to fill, or the grains as a `List`",
+                "a `Drum` or a `Box` to fill, or a closed `Mesh`, or the grains as a `List`",
             ))
         }
     }

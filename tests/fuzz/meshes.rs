@@ -45,7 +45,7 @@ impl MeshFiles {
 
 impl Target for MeshFiles {
     fn take(&mut self, rng: &mut ChaCha8Rng) -> bool {
-        let bytes = byte_mutator::bytes(one_of(&self.whole, rng), rng);
+        let bytes = byte_mutator::bytes(one_of::<Vec<u8>>(&self.whole, rng), rng);
         self.place.write("walls.stl", bytes);
         let Ok(scene) = Scene::load(&self.scene) else {
             return false;
