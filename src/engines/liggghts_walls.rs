@@ -18,7 +18,8 @@ pub const FACETS: usize = 360;
 
 /// What the mesh of a container that is one is called.
 pub const MESH: &str = "mesh";
-/// Angle up to which an edge of a mesh is smooth, as in [`crate::geometry::smooth_parts`] [deg].
+/// Angle up to which an edge of a mesh is smooth, as in [`crate::geometry::smooth_parts`] [deg]. The
+/// program takes it of meshes with sharper triangles where it is told to be tolerant.
 const SMOOTH: f64 = 20.0;
 
 /// The walls of a script.
@@ -125,7 +126,7 @@ impl Walls {
         let kind = types.of_wall(first.material);
         let _ = writeln!(
             self.script,
-            "fix {name} all mesh/surface file {name}.stl type {kind} curvature {SMOOTH}"
+            "fix {name} all mesh/surface file {name}.stl type {kind} curvature {SMOOTH} curvature_tolerant yes"
         );
         let (spin, velocity) = (first.motion.spin, first.motion.velocity);
         let far = if let Some((through, axis)) = pose.axis().filter(|_| spin != DVec3::ZERO) {

@@ -18,6 +18,9 @@ const GAPS: [f64; 2] = [0.1, 0.02];
 
 /// Most cells of a region that a mesh bounds: each is asked how far the mesh is.
 const MOST_IN_MESH: f64 = 1e7;
+/// Most pairs of an upright line of cells and a triangle that are looked at to tell inside from
+/// outside.
+const MOST_CROSSINGS: f64 = 3e8;
 /// Where in a cell, in its edges, the upright line stands that tells inside from outside.
 const OFF_MIDDLE: [f64; 2] = [0.500_137, 0.500_071];
 
@@ -155,8 +158,14 @@ impl Lattice {
             }
         };
         let clear = gap * largest + block_radius(pitch, classes, &divisions, 3.0);
-        let is_mesh = matches!(container, SceneContainer::Mesh { .. });
-        let is_too_fine = is_mesh && region.size() > MOST_IN_MESH;
+        let is_too_fine = match (container, &region) {
+            (SceneContainer::Mesh { surface, room, .. }, CellRegion::Box { counts, .. }) => {
+                let lines = counts[0] as f64 * counts[2] as f64;
+                let crossings = lines * surface.triangles().len() as f64;
+                region.size() > MOST_IN_MESH || room.is_none() && crossings > MOST_CROSSINGS
+            }
+            _ => false,
+        };
         (region.has_room() && !is_too_fine).then(|| Self {
             mesh: InMesh::of(container, &region, cell, clear),
             cell,

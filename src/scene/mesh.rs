@@ -126,8 +126,8 @@ impl SceneMesh {
 
     /// The heights at which an upright line through `x` meets it [m].
     pub fn heights_at(&self, x: DVec3) -> Vec<f64> {
-        let (min, _) = self.bounds();
-        let below = DVec3::new(x.x, min.y - 1.0, x.z);
+        // Below all that a scene takes.
+        let below = DVec3::new(x.x, -2e4, x.z);
         let all = self.triangles.iter();
         let hits = all.filter_map(|triangle| hit_triangle(below, DVec3::Y, *triangle));
         hits.map(|way| below.y + way).collect()

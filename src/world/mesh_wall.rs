@@ -236,7 +236,9 @@ impl MeshWall {
     }
 
     /// Distances, and the components of the directions, of the first `count` of the points whose
-    /// coordinates these are; `contacts` alone or all.
+    /// coordinates these are; `contacts` alone or all. Cold, so that the pair loop keeps its registers
+    /// for walls that are none.
+    #[cold]
     #[inline(never)]
     pub(super) fn side_by_side(
         &self,

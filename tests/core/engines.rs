@@ -193,7 +193,7 @@ fn mesh_is_handed_to_liggghts_as_it_stands_and_refused_for_others() {
     export_text(&meshed(motion), MpiEngine::Liggghts, folder.path()).unwrap();
     let script = body(folder.path(), "in.liggghts");
     for line in [
-        "fix mesh all mesh/surface file mesh.stl type 2 curvature 20\n",
+        "fix mesh all mesh/surface file mesh.stl type 2 curvature 20 curvature_tolerant yes\n",
         "rotate origin 0e0 1e-1 0e0 axis 0e0 0e0 -1e0 period 1.5707963267948966e0\n",
         "mesh n_meshes 1 meshes mesh",
     ] {

@@ -59,7 +59,7 @@ impl Scene {
         )
         .advise(match self.container {
             SceneContainer::Mesh { .. } => {
-                "Take fewer or smaller grains or a larger mesh; where it is ten million times as large as a grain, state \
+                "Take fewer or smaller grains or a larger mesh; where it is far larger than its grains, or of very many triangles, state \
                  the `room` that they fill"
             }
             _ => "Take fewer or smaller grains or a larger container",
