@@ -7,7 +7,7 @@
 use super::atoms_file::DomainBox;
 use super::wall_mesh::WallMesh;
 use crate::scene::{Scene, TimeStep};
-use crate::world::{Clock, Shape, Surface, Wall, World};
+use crate::world::{Clock, MeshWall, Shape, Surface, Wall, World};
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -181,6 +181,10 @@ pub fn domain(world: &World) -> (DomainBox, &'static str) {
             (-corner, corner, "f f f")
         }
         Shape::Box { min, max } => (min, max, "f f f"),
+        Shape::Mesh { .. } => {
+            let (min, max) = extent(world);
+            (min, max, "f f f")
+        }
         Shape::Planes | Shape::Column { .. } => {
             let (min, max) = extent(world);
             (min, max, "m m m")
@@ -198,12 +202,14 @@ pub fn domain(world: &World) -> (DomainBox, &'static str) {
     (domain, boundary)
 }
 
-/// The box round the grains and the points of planes [m].
+/// The box round the grains, the points of planes and the corners of meshes [m].
 fn extent(world: &World) -> (DVec3, DVec3) {
     let grains = world.grains.position.iter().zip(world.grains.radius.iter());
     let of_grains = grains.flat_map(|(x, r)| [*x - *r, *x + *r]);
     let points = world.container.walls.iter().filter_map(Wall::point);
-    let mut all = of_grains.chain(points);
+    let meshes = world.container.walls.iter().filter_map(Wall::mesh);
+    let corners = meshes.flat_map(MeshWall::triangles).flatten();
+    let mut all = of_grains.chain(points).chain(corners);
     let first = all.next().unwrap_or(DVec3::ZERO);
     all.fold((first, first), |(low, high), x| (low.min(x), high.max(x)))
 }
@@ -213,7 +219,15 @@ impl Wall {
     fn point(&self) -> Option<DVec3> {
         match self.surface {
             Surface::Plane { point, .. } => Some(point),
-            Surface::Cylinder { .. } | Surface::Tube { .. } => None,
+            Surface::Cylinder { .. } | Surface::Tube { .. } | Surface::Mesh(_) => None,
+        }
+    }
+
+    /// The part of a mesh that it is; none of other walls.
+    pub(super) fn mesh(&self) -> Option<&MeshWall> {
+        match &self.surface {
+            Surface::Mesh(mesh) => Some(mesh),
+            _ => None,
         }
     }
 }

@@ -99,7 +99,8 @@ fn refused(handed: Handed) -> Vec<String> {
         // Tubes are refused for all engines.
         if !is_plane && !matches!(wall.surface, Surface::Tube { .. }) || is_plane && moves {
             refused.push(format!(
-                "the wall `{}` is no plane at rest: columns, boxes and planes at rest are handed to exaDEM",
+                "the wall `{}` is no plane at rest: columns, boxes and planes at rest are handed to exaDEM (`--to liggghts` \
+                 takes meshes)",
                 wall.name
             ));
         }
@@ -213,7 +214,7 @@ fn walls(world: &World) -> String {
         .iter()
         .filter_map(|wall| match wall.surface {
             Surface::Plane { point, normal } => Some((point.dot(normal), normal)),
-            Surface::Cylinder { .. } | Surface::Tube { .. } => None,
+            Surface::Cylinder { .. } | Surface::Tube { .. } | Surface::Mesh(_) => None,
         });
     let mut text = String::new();
     for (id, (offset, normal)) in planes.enumerate() {

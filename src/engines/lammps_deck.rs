@@ -10,7 +10,7 @@ use super::deck::{
 };
 use crate::physics::ContactLaw;
 use crate::physics::law::{Pairing, natural_log};
-use crate::world::{Surface, Wall, World};
+use crate::world::{Shape, Surface, Wall, World};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -46,6 +46,13 @@ pub fn lammps_deck(handed: Handed, types: &AtomTypes) -> Result<Deck, Vec<String
         );
     }
     faults.extend(refused_restitution(world));
+    if matches!(world.container.shape, Shape::Mesh { .. }) {
+        faults.push(
+            "its walls are a mesh: walls of LAMMPS are regions of plain shapes; `--to liggghts` takes meshes, or state the \
+             walls as a `Drum`, a `Box` or `Planes`"
+                .to_owned(),
+        );
+    }
     if !faults.is_empty() {
         return Err(faults);
     }
@@ -243,16 +250,17 @@ fn walls(world: &World, types: &AtomTypes) -> String {
 fn engine_radius(wall: &Wall, radius: f64) -> f64 {
     match wall.surface {
         Surface::Cylinder { radius: rim } => radius * 2.0 * rim / (2.0 * rim - radius),
-        Surface::Plane { .. } | Surface::Tube { .. } => radius,
+        Surface::Plane { .. } | Surface::Tube { .. } | Surface::Mesh(_) => radius,
     }
 }
 
 fn region(wall: &Wall) -> String {
     match wall.surface {
+        // It and a rising tube are refused before.
+        Surface::Mesh(_) => String::new(),
         Surface::Plane { point, normal } => {
             format!("plane {} {} side in units box", words(point), words(normal))
         }
-        // A rising tube is refused before.
         Surface::Cylinder { radius } | Surface::Tube { radius, .. } => {
             format!("cylinder z 0 0 {radius:e} -10 10 side in units box open 1 open 2")
         }

@@ -8,13 +8,14 @@
 use super::atom_types::AtomTypes;
 use super::deck::{Deck, GRAINS, Handed, common_deviations, domain, numbers, refused, run_lines};
 use super::liggghts_model::ContactModel;
-use super::liggghts_walls::{FACETS, Walls, rim_radius};
+use super::liggghts_walls::{FACETS, MESH, Walls, rim_radius};
 use crate::physics::law::Pairing;
 use crate::physics::{
     BridgeLaw, BridgeVolume, CapillaryGap, ContactLaw, Liquid, MaterialId, PairAngle,
     PairProperties, Rupture, SmallestGap,
 };
 use crate::world::World;
+use glam::DVec3;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
@@ -62,12 +63,13 @@ pub fn liggghts_deck(handed: Handed, types: &AtomTypes) -> Result<Deck, Vec<Stri
     script += &walls.script;
     let format = format!("format \"%d %d{}\"", " %.15e".repeat(13));
     script += &run_lines(handed, &format);
+    let way = walls.way * handed.scene.duration;
     Ok(Deck {
         deviations: deviations(handed, &walls),
-        // Squares and rims that turn stay inside.
+        // Squares and rims that turn stay inside, and meshes that move straight on.
         domain: super::atoms_file::DomainBox {
-            min: domain.min.min(-walls.reach),
-            max: domain.max.max(walls.reach),
+            min: domain.min.min(-walls.reach) + way.min(DVec3::ZERO),
+            max: domain.max.max(walls.reach) + way.max(DVec3::ZERO),
         },
         types: types.count(),
         script,
@@ -257,6 +259,13 @@ fn deviations(handed: Handed, walls: &Walls) -> Vec<String> {
              within {:.1e} m.",
             rim_radius(world).unwrap_or(0.0) * (PI / FACETS as f64).powi(2) / 2.0
         ));
+    }
+    if walls.meshes.iter().any(|mesh| mesh.name == MESH) {
+        found.push(
+            "A grain that touches a mesh at several triangles is told from one that touches it once by the program's own \
+             rule (`curvature 20`); here it touches each smooth part of the mesh at one place."
+                .to_owned(),
+        );
     }
     for (name, edge) in &walls.squares {
         found.push(format!(

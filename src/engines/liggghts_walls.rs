@@ -1,19 +1,26 @@
 //! Walls in the words of LIGGGHTS 3.8.
 //!
 //! In: the walls of a world. Out: their lines in an input script, and meshes of those that turn or
-//! move: walls at rest along the axes are primitives.
+//! move: walls at rest along the axes are primitives. The parts of a mesh are one mesh there, whose
+//! edges the program tells apart itself.
 
 use super::atom_types::AtomTypes;
 use super::deck::{wall_name, words};
 use super::liggghts_model::ContactModel;
 use super::wall_mesh::WallMesh;
-use crate::world::{Shape, Surface, Wall, World};
+use crate::world::{MeshWall, Shape, Surface, Wall, World};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 /// Flat facets of a rim that turns.
 pub const FACETS: usize = 360;
+
+/// What the mesh of a container that is one is called.
+pub const MESH: &str = "mesh";
+/// Angle up to which an edge of a mesh is smooth, as in [`crate::geometry::smooth_parts`] [deg]. The
+/// program takes it of meshes with sharper triangles where it is told to be tolerant.
+const SMOOTH: f64 = 20.0;
 
 /// The walls of a script.
 pub struct Walls {
@@ -23,6 +30,8 @@ pub struct Walls {
     pub meshes: Vec<WallMesh>,
     /// How far meshes reach from the origin [m].
     pub reach: DVec3,
+    /// Velocity of a mesh that moves straight on [m/s].
+    pub way: DVec3,
     /// Whether one is a rim.
     pub has_rim: bool,
     /// Endless planes that became squares, with their edges [m].
@@ -38,10 +47,12 @@ impl Walls {
             script: String::new(),
             meshes: Vec::new(),
             reach: DVec3::ZERO,
+            way: DVec3::ZERO,
             has_rim: false,
             squares: Vec::new(),
         };
         let mut meshes = Vec::new();
+        meshes.extend(walls.whole_mesh(world, types));
         for (index, wall) in world.container.walls.iter().enumerate() {
             let name = wall_name(wall, index);
             let kind = types.of_wall(wall.material);
@@ -89,7 +100,7 @@ impl Walls {
                 self.squares.push((wall.name.clone(), 2.0 * half_edge));
                 WallMesh::square(name, point, normal, half_edge)
             }
-            Surface::Tube { .. } => return None,
+            Surface::Tube { .. } | Surface::Mesh(_) => return None,
         };
         let turns = wall.motion.spin != DVec3::ZERO;
         for corner in mesh.triangles().iter().flatten() {
@@ -101,6 +112,50 @@ impl Walls {
             self.reach = self.reach.max(1.01 * far);
         }
         Some(mesh)
+    }
+
+    /// Adds the mesh that the container is, where it is one, as it stands now; says what it is
+    /// called.
+    fn whole_mesh(&mut self, world: &World, types: &AtomTypes) -> Option<String> {
+        let first = world.container.walls.first()?;
+        let pose = first.mesh()?.pose();
+        let parts = world.container.walls.iter().filter_map(Wall::mesh);
+        let triangles: Vec<_> = parts.flat_map(MeshWall::triangles).collect();
+        let corners = || triangles.iter().flatten();
+        let name = MESH.to_owned();
+        let kind = types.of_wall(first.material);
+        let _ = writeln!(
+            self.script,
+            "fix {name} all mesh/surface file {name}.stl type {kind} curvature {SMOOTH} curvature_tolerant yes"
+        );
+        let (spin, velocity) = (first.motion.spin, first.motion.velocity);
+        let far = if let Some((through, axis)) = pose.axis().filter(|_| spin != DVec3::ZERO) {
+            let _ = writeln!(
+                self.script,
+                "fix turn_{name} all move/mesh mesh {name} rotate origin {} axis {} period {:e}",
+                words(through),
+                words(spin.normalize()),
+                2.0 * PI / spin.length()
+            );
+            let from_axis = |x: &DVec3| axis.cross(*x - through).length();
+            let along = |x: &DVec3| (*x - through).length();
+            let most = corners().map(|x| from_axis(x).max(along(x)));
+            through.abs() + most.fold(0.0, f64::max)
+        } else {
+            if velocity != DVec3::ZERO {
+                self.way = velocity;
+                let _ = writeln!(
+                    self.script,
+                    "fix move_{name} all move/mesh mesh {name} linear {}",
+                    words(velocity)
+                );
+            }
+            corners().fold(DVec3::ZERO, |far, x| far.max(x.abs()))
+        };
+        self.reach = self.reach.max(1.01 * far);
+        let mesh = WallMesh::of_triangles(&name, triangles);
+        self.meshes.push(mesh);
+        Some(name)
     }
 
     /// Lets the mesh of `wall` turn.
@@ -134,7 +189,7 @@ fn primitive(wall: &Wall) -> Option<String> {
             let found = axes.into_iter().find(|(_, axis)| normal.abs() == *axis);
             found.map(|(word, axis)| format!("{word} {:e}", point.dot(axis)))
         }
-        Surface::Tube { .. } => None,
+        Surface::Tube { .. } | Surface::Mesh(_) => None,
     }
 }
 

@@ -4,7 +4,7 @@
 //! are then, between its walls where they stand by then. Contacts begin without springs and bridges:
 //! no file of states holds them.
 
-use crate::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, SceneShape};
+use crate::scene::{Scene, SceneContainer, SceneGrain, SceneGrains, SceneMesh, SceneShape};
 use crate::world::{Container, Surface, World};
 use glam::DQuat;
 
@@ -85,6 +85,16 @@ fn container_from(asked: &SceneContainer, now: &Container) -> SceneContainer {
                 if let Surface::Plane { point, .. } = wall.surface {
                     plane.point = point;
                 }
+            }
+        }
+        SceneContainer::Mesh { surface, .. } => {
+            let parts = now.walls.iter().filter_map(|wall| match &wall.surface {
+                Surface::Mesh(mesh) => Some(mesh.triangles()),
+                _ => None,
+            });
+            // Corners that met meet still, so that what was a surface is one.
+            if let Ok(turned) = SceneMesh::new(parts.flatten().collect()) {
+                *surface = turned;
             }
         }
         // A drum looks the same however far it has turned; boxes and floors stand.

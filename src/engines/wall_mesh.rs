@@ -1,6 +1,6 @@
 //! Walls as triangles, for engines whose moving walls are meshes.
 //!
-//! In: a drum's rim, or a plane. Out: an STL file in text, in metres. The facets of a rim lie
+//! In: a drum's rim, a plane, or the triangles of a mesh. Out: an STL file in text, in metres. The facets of a rim lie
 //! between its circle and the chords such that their mean distance from the axis is the radius;
 //! a plane is a square.
 
@@ -39,6 +39,14 @@ impl WallMesh {
         Self {
             name: name.to_owned(),
             triangles: triangles.collect(),
+        }
+    }
+
+    /// These triangles [m].
+    pub fn of_triangles(name: &str, triangles: Vec<[DVec3; 3]>) -> Self {
+        Self {
+            name: name.to_owned(),
+            triangles,
         }
     }
 

@@ -55,7 +55,7 @@ fn sphere_below(r: f64, height: f64) -> f64 {
 /// inside.
 fn container_below(shape: Shape, normal: DVec2, height: f64) -> f64 {
     match shape {
-        Shape::Planes | Shape::Column { .. } => f64::NAN,
+        Shape::Planes | Shape::Column { .. } | Shape::Mesh { .. } => f64::NAN,
         Shape::Drum { radius, width } => width * segment_area(radius, height),
         Shape::Box { min, max } => {
             let corners = [

@@ -296,13 +296,17 @@ quantities! {
 }
 
 impl Measure {
-    /// Whether it has a meaning in `world`: only a drum or a box holds a bed that has a surface,
-    /// only a drum is turned, only a column has a front, and without liquid there are no bridges
+    /// Whether it has a meaning in `world`: only a drum, a box or a mesh holds a bed that has a
+    /// surface (of a mesh nobody says how much room is below it), only a drum is turned, only a column has a front, and without liquid there are no bridges
     /// but where it can be poured in.
     pub fn applies_to(self, world: &World) -> bool {
         let shape = &world.container.shape;
-        let has_bed = matches!(shape, Shape::Drum { .. } | Shape::Box { .. });
+        let has_bed = matches!(
+            shape,
+            Shape::Drum { .. } | Shape::Box { .. } | Shape::Mesh { .. }
+        );
         match self.quantity().scope {
+            Scope::Beds if matches!(shape, Shape::Mesh { .. }) => self != Self::PackingFraction,
             Scope::Everywhere => true,
             Scope::Beds => has_bed,
             Scope::Drums => matches!(shape, Shape::Drum { .. }),

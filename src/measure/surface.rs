@@ -9,11 +9,14 @@
 //! Only grains that touch something count, unless none does, so a single grain in flight does not
 //! lift the surface; two that meet in flight can, for the moment of their impact.
 //!
-//! There is no surface line without a drum or a box, or with fewer than three bins that hold a
+//! Where a container is a mesh, its walls are met by a ray from within the bed, at the depth of the
+//! bed's middle: what stands in the chamber at other depths does not count.
+//!
+//! There is no surface line without a drum, a box or a mesh, or with fewer than three bins that hold a
 //! grain.
 
-use crate::world::{Grains, Shape, World};
-use glam::DVec2;
+use crate::world::{Container, Grains, Shape, World};
+use glam::{DVec2, DVec3};
 
 /// Bins of a surface at most: a large container with a few small grains takes no memory.
 const MOST_BINS: f64 = 1e5;
@@ -66,12 +69,12 @@ impl SurfaceLine {
 /// The line through the free surface of `world`, fitted over the `middle_share` (0 … 1, usually
 /// [`MIDDLE_SHARE`]) of its length.
 pub fn surface_line(world: &World, middle_share: f64) -> Option<SurfaceLine> {
-    let shape = world.container.shape;
+    let container = &world.container;
     let grains = Silhouette::of(&world.grains)?;
-    let mut guess = first_guess(shape, &grains)?;
+    let mut guess = first_guess(container.shape, &grains)?;
     let mut line = None;
     for done in 0..MOST_FITS {
-        let (low, high) = chord(shape, guess)?;
+        let (low, high) = chord(container, guess, &grains)?;
         let middle = FittedPart {
             centre: 0.5 * (low + high),
             half_length: 0.5 * (high - low) * middle_share,
@@ -140,6 +143,8 @@ struct FittedPart {
 struct Silhouette {
     discs: Vec<(DVec2, f64)>,
     mean_radius: f64,
+    /// Mean of the centres' z [m].
+    mean_depth: f64,
 }
 
 impl Silhouette {
@@ -153,6 +158,7 @@ impl Silhouette {
         (!discs.is_empty()).then(|| Self {
             discs,
             mean_radius: mean_radius(grains),
+            mean_depth: grains.position.iter().map(|x| x.z).sum::<f64>() / grains.len() as f64,
         })
     }
 
@@ -184,19 +190,26 @@ impl Silhouette {
 }
 
 /// Where to begin: in a drum, the centre of mass lies straight below the middle of a level surface
-/// in the bed's own frame, so its direction tells the angle; in a box, a level surface.
+/// in the bed's own frame, so its direction tells the angle; in a box or a mesh, a level surface.
 fn first_guess(shape: Shape, grains: &Silhouette) -> Option<Guess> {
     let mean = grains.mean_position();
     match shape {
         Shape::Planes | Shape::Column { .. } => None,
-        Shape::Box { .. } => Some(Guess::at_angle(0.0, mean.y)),
+        Shape::Box { .. } | Shape::Mesh { .. } => Some(Guess::at_angle(0.0, mean.y)),
         Shape::Drum { .. } => Some(Guess::at_angle(f64::atan2(mean.x, -mean.y), -mean.length())),
     }
 }
 
 /// Between which `s` the line runs inside the container, seen along z.
-fn chord(shape: Shape, line: Guess) -> Option<(f64, f64)> {
-    match shape {
+fn chord(container: &Container, line: Guess, grains: &Silhouette) -> Option<(f64, f64)> {
+    match container.shape {
+        Shape::Mesh { .. } => {
+            let middle = grains.mean_position().dot(line.direction);
+            let from = line.point(middle).extend(grains.mean_depth);
+            let way = line.direction.extend(0.0);
+            let reach = |way: DVec3| container.first_hit(from, way);
+            Some((middle - reach(-way)?, middle + reach(way)?))
+        }
         Shape::Planes | Shape::Column { .. } => None,
         Shape::Drum { radius, .. } => {
             let half_squared = radius * radius - line.height * line.height;

@@ -28,7 +28,7 @@ pub struct Temperatures {
 /// Granular temperature in the laboratory frame [m²/s²] of the grains of `world` turning with their
 /// drum as one rigid body; NaN where no grain has a neighbour.
 pub fn rotation_temperature(world: &World) -> f64 {
-    let drum_spin = DVec3::new(0.0, 0.0, world.container.drum_speed());
+    let drum_spin = world.container.spin();
     let (mut sum, mut count) = (0.0, 0_u32);
     for around in neighbourhoods(world)
         .iter()
@@ -59,7 +59,7 @@ impl Around {
 
 /// Granular temperatures of `world` now.
 pub fn granular_temperatures(world: &World) -> Temperatures {
-    let drum_spin = DVec3::new(0.0, 0.0, world.container.drum_speed());
+    let drum_spin = world.container.spin();
     let (mut laboratory, mut corotating, mut count) = (0.0, 0.0, 0_u32);
     for (own, around) in world.grains.velocity.iter().zip(neighbourhoods(world)) {
         if around.count == 0 {
@@ -83,7 +83,7 @@ pub fn granular_temperatures(world: &World) -> Temperatures {
 /// The part of each grain in the temperature of the drum's frame, `|U_i|²/3`, zero without a
 /// neighbour [m²/s²].
 pub(super) fn fluctuations(world: &World) -> Vec<f64> {
-    let drum_spin = DVec3::new(0.0, 0.0, world.container.drum_speed());
+    let drum_spin = world.container.spin();
     let around = neighbourhoods(world);
     let grains = world.grains.velocity.iter().zip(around);
     let part = |(own, around): (&DVec3, Around)| {

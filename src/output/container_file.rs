@@ -3,8 +3,8 @@
 //! In: a world. Out: a file with the faces of each wall, which look towards the grains and bear its
 //! number as `wall`. A circle is a polygon of [`SIDES`] sides; a plane without bounds ends about one
 //! size of the bed beyond it, the floor of a column where the grains may come to. Walls that only
-//! move in themselves, as a drum does, stay where they are; a tube that is lifted is shown where it
-//! began.
+//! move in themselves, as a drum does, stay where they are; a tube that is lifted, or a mesh, is
+//! shown where it began. The triangles of a mesh look where their file has them look.
 
 use super::vtk::{Array, DataSet};
 use crate::run::Provenance;
@@ -76,11 +76,15 @@ impl Mesh {
         let mut mesh = Self::default();
         let bed = Bed::of(world);
         for (number, wall) in (0..).zip(&world.container.walls) {
-            match wall.surface {
-                Surface::Plane { point, normal } => {
+            match &wall.surface {
+                Surface::Mesh(part) => {
+                    part.triangles()
+                        .for_each(|triangle| mesh.face(number, triangle));
+                }
+                &Surface::Plane { point, normal } => {
                     mesh.face(number, plane(&world.container, &bed, point, normal));
                 }
-                Surface::Cylinder { radius } => {
+                &Surface::Cylinder { radius } => {
                     let half = match world.container.shape {
                         Shape::Drum { width, .. } => 0.5 * width,
                         _ => bed.reach,
@@ -90,7 +94,7 @@ impl Mesh {
                         DVec3::new(radius * cos, radius * sin, half * end)
                     });
                 }
-                Surface::Tube { radius, rim } => {
+                &Surface::Tube { radius, rim } => {
                     let height = match world.container.shape {
                         Shape::Column { height, .. } => height,
                         _ => bed.reach,
@@ -182,7 +186,7 @@ fn plane(container: &Container, bed: &Bed, point: DVec3, normal: DVec3) -> Vec<D
             let reach = FLOOR * (radius + height);
             square(point, reach * across, reach * up)
         }
-        Shape::Drum { .. } | Shape::Planes => {
+        Shape::Drum { .. } | Shape::Planes | Shape::Mesh { .. } => {
             let on_it = bed.middle - normal * normal.dot(bed.middle - point);
             square(on_it, bed.reach * across, bed.reach * up)
         }

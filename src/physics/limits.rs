@@ -73,6 +73,8 @@ pub const CELL: Limits = between(
 pub const ROUNDING: Limits = between(1e-7, 1.0, "a rounding radius between 1e-7 m and 1 m");
 /// Angular speeds of drums [rad/s].
 pub const DRUM_SPEED: Limits = between(-1000.0, 1000.0, "a speed between -1000 and 1000 rad/s");
+/// Units of length of files of triangles [m].
+pub const MESH_SCALE: Limits = between(1e-9, 1e6, "a length between 1e-9 m and 1e6 m");
 /// Speeds of tubes upwards [m/s].
 pub const TUBE_SPEED: Limits = between(0.0, 100.0, "a speed upwards between 0 and 100 m/s");
 /// Components of the gravitational acceleration, and its magnitude in a run [m/s²].

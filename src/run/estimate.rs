@@ -7,7 +7,7 @@
 use super::machine::{free_disk, free_memory};
 use crate::measure::Measure;
 use crate::scene::SAMPLE_INTERVAL;
-use crate::scene::{Scene, SceneGrains};
+use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::solver::advise;
 use std::fmt;
 use std::fs;
@@ -43,6 +43,8 @@ const POLYHEDRON: Cost = Cost {
 };
 /// Memory that the points of a lattice take while its cells are cut, for each [bytes].
 const LATTICE_POINT: f64 = 500.0;
+/// Files that state a triangle of a mesh: records as text, checkpoints [bytes].
+const TRIANGLE: f64 = 1e3;
 /// Memory of the program itself [bytes].
 const PROGRAM: f64 = 20e6;
 /// A number of `series.csv` [bytes].
@@ -133,14 +135,24 @@ impl Estimate {
         let grain = grains as f64;
         let series = samples * columns;
         let frames = outputs * (grain * cost.file + 2e3);
+        let (mesh, triangles) = match &scene.container {
+            SceneContainer::Mesh { surface, .. } => {
+                (surface.memory() as f64, surface.triangles().len() as f64)
+            }
+            _ => (0.0, 0.0),
+        };
         // A checkpoint is replaced by one that lies beside it until it is whole.
         let checkpoints = 2.0 * grain * cost.file + 8.0 * series;
         Self {
             grains,
             steps,
             // A run has all its samples at its end, in vectors that double.
-            memory: PROGRAM + grain * cost.memory + points * LATTICE_POINT + 1.5 * 8.0 * series,
-            files: frames + checkpoints + series * TABLE_CELL,
+            memory: PROGRAM
+                + mesh
+                + grain * cost.memory
+                + points * LATTICE_POINT
+                + 1.5 * 8.0 * series,
+            files: frames + checkpoints + series * TABLE_CELL + triangles * TRIANGLE,
             frames,
             time: (steps + settling) * grain * cost.time,
             settling: settling * grain * cost.time,

@@ -1,6 +1,7 @@
 //! The walls of a scene.
 
 use super::error::Problem;
+use super::mesh::{MeshMotion, SceneMesh};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -43,6 +44,18 @@ pub enum SceneContainer {
     },
     /// Unbounded planes.
     Planes(Vec<ScenePlane>),
+    /// A surface of triangles.
+    Mesh {
+        /// The triangles.
+        surface: SceneMesh,
+        /// Name of its material.
+        material: String,
+        /// How it moves.
+        motion: MeshMotion,
+        /// Lower and upper corner of the box in which a filling is placed [m]; the inside of the
+        /// surface where there is none.
+        room: Option<(DVec3, DVec3)>,
+    },
 }
 
 /// A thin upright tube round a column, pulled up from time zero on, unbounded above.
@@ -73,6 +86,15 @@ pub struct ScenePlane {
 }
 
 impl SceneContainer {
+    /// Whether it is one that turns.
+    pub fn turns(&self) -> bool {
+        let motion = match self {
+            Self::Mesh { motion, .. } => motion,
+            _ => &MeshMotion::Fixed,
+        };
+        matches!(self, Self::Drum { .. }) || matches!(motion, MeshMotion::Turning { .. })
+    }
+
     /// Whether it has a curved wall at the start, into which Voronoi cells are cut to fit.
     pub fn cuts_cells(&self) -> bool {
         matches!(self, Self::Drum { .. } | Self::Column { tube: Some(_), .. })
@@ -91,7 +113,7 @@ impl SceneContainer {
                 Some((-corner, corner))
             }
             Self::Box { min, max, .. } => Some((min, max)),
-            Self::Nothing | Self::Planes(_) => None,
+            Self::Nothing | Self::Planes(_) | Self::Mesh { .. } => None,
         }
     }
 }
@@ -101,11 +123,26 @@ pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
     match container {
         SceneContainer::Drum { radius, width, .. } => Ok(PI * radius * radius * width),
         SceneContainer::Box { min, max, .. } => Ok((*max - *min).element_product()),
+        SceneContainer::Mesh {
+            room: Some((min, max)),
+            ..
+        } => Ok((*max - *min).element_product()),
+        SceneContainer::Mesh { surface, .. } => match surface.open_edges() {
+            0 => Ok(surface.volume()),
+            edges => Err(Problem::new(
+                "grains",
+                format!(
+                    "is a `Fill`, but the mesh of the container is open: it ends at {edges} of its edges"
+                ),
+                "a closed surface, whose inside is filled; `room: (min: …, max: …)` in the container, a box to fill; or \
+                 the grains as a `List`",
+            )),
+        },
         SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
             Err(Problem::new(
                 "grains",
                 "is a `Fill`, but the container is open",
-                "a `Drum` or a `Box` to fill, or the grains as a `List`",
+                "a `Drum` or a `Box` to fill, or a closed `Mesh`, or the grains as a `List`",
             ))
         }
     }

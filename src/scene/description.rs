@@ -140,9 +140,9 @@ impl Scene {
     pub fn has_walls_of(&self, name: &str) -> bool {
         match &self.container {
             SceneContainer::Nothing => false,
-            SceneContainer::Drum { material, .. } | SceneContainer::Box { material, .. } => {
-                material == name
-            }
+            SceneContainer::Drum { material, .. }
+            | SceneContainer::Box { material, .. }
+            | SceneContainer::Mesh { material, .. } => material == name,
             SceneContainer::Column { material, tube, .. } => {
                 material == name || tube.as_ref().is_some_and(|tube| tube.material == name)
             }

@@ -64,6 +64,24 @@ pub(crate) fn lies_in(folder: &Path, path: &Path) -> bool {
     matches!((folder, path.canonicalize()), (Ok(folder), Ok(path)) if path.starts_with(&folder))
 }
 
+/// Where the file is that a scene in `folder` calls `name`; refused where it lies elsewhere.
+fn path_beside(folder: &Path, name: &Path) -> Result<PathBuf, PackingError> {
+    let path = folder.join(name);
+    let is_allowed = ANYWHERE.load(Ordering::Relaxed) || lies_in(folder, &path);
+    if path.exists() && !is_allowed {
+        return Err(PackingError::Elsewhere);
+    }
+    Ok(path)
+}
+
+/// The bytes, `most` of them at most, of the file that a scene in `folder` calls `name`.
+///
+/// # Errors
+/// When it lies elsewhere than in that folder or below it, or cannot be read.
+pub(super) fn open_beside(folder: &Path, name: &Path, most: u64) -> Result<Vec<u8>, PackingError> {
+    Ok(read_whole(&path_beside(folder, name)?, most)?)
+}
+
 /// Grains that a file holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Reference", into = "Reference")]
@@ -108,12 +126,7 @@ impl StoredCells {
     /// # Errors
     /// As [`StoredCells::read`], and when it lies elsewhere than in that folder or below it.
     pub fn beside(folder: &Path, name: &Path) -> Result<Self, PackingError> {
-        let path = folder.join(name);
-        let is_allowed = ANYWHERE.load(Ordering::Relaxed) || lies_in(folder, &path);
-        if path.exists() && !is_allowed {
-            return Err(PackingError::Elsewhere);
-        }
-        Self::read(&path)
+        Self::read(&path_beside(folder, name)?)
     }
 
     /// The grains in the file at `path`.

@@ -1,13 +1,14 @@
 //! A scene as the text of a scene file: what [`Scene::parse`] reads as the same scene.
 //!
-//! In: a scene whose grains are listed spheres and cores. Out: its file, every number with every digit; a
-//! plane's normal may change in its last one, as it is made a unit vector when it is read. The keys
-//! are those of `file`.
+//! In: a scene whose grains are listed spheres and cores. Out: its file, every number with every
+//! digit; a plane's normal, or a mesh's axis, may change in its last one, as it is made a unit vector
+//! when it is read. A mesh is written as its triangles. The keys are those of `file`.
 
 use super::container::{SceneContainer, ScenePlane};
 use super::description::{Scene, TimeStep};
 use super::grains::{SceneGrain, SceneGrains};
 use super::materials::{PairOverride, SceneMaterial};
+use super::mesh::MeshMotion;
 use super::shape::SceneShape;
 use crate::physics::{Integrator, Liquid};
 use glam::DVec3;
@@ -115,6 +116,26 @@ fn pair(pair: &PairOverride) -> String {
     )
 }
 
+fn triangle([a, b, c]: &[DVec3; 3]) -> String {
+    format!("({}, {}, {})", vector(*a), vector(*b), vector(*c))
+}
+
+fn mesh_motion(motion: MeshMotion) -> String {
+    match motion {
+        MeshMotion::Fixed => "Fixed".to_owned(),
+        MeshMotion::Turning {
+            through,
+            axis,
+            speed,
+        } => format!(
+            "Turning(through: {}, axis: {}, speed: {speed:?})",
+            vector(through),
+            vector(axis)
+        ),
+        MeshMotion::Moving { velocity } => format!("Moving(velocity: {})", vector(velocity)),
+    }
+}
+
 fn container(container: &SceneContainer) -> String {
     match container {
         SceneContainer::Nothing => "Nothing".to_owned(),
@@ -149,6 +170,22 @@ fn container(container: &SceneContainer) -> String {
             format!(
                 "Column(radius: {radius:?}, height: {height:?}, material: {}{tube})",
                 quoted(material)
+            )
+        }
+        SceneContainer::Mesh {
+            surface,
+            material,
+            motion,
+            room,
+        } => {
+            let room = room.map_or_else(String::new, |(min, max)| {
+                format!(", room: (min: {}, max: {})", vector(min), vector(max))
+            });
+            format!(
+                "Mesh(triangles: {}, material: {}, motion: {}{room})",
+                list('[', surface.triangles().iter().map(triangle), ']'),
+                quoted(material),
+                mesh_motion(*motion)
             )
         }
         SceneContainer::Planes(planes) => {

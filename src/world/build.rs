@@ -3,17 +3,18 @@
 //! In: a checked scene. Out: its world at time zero. A filling of spheres is put on the scene's
 //! lattice from below: which size stands where, how far each grain is off its site and which
 //! species it is of come from the seed. Voronoi cells come from [`Packing`]; only their species are
-//! chosen here.
+//! chosen here. The walls come from `walls`.
 
 use super::mixture::{assign_species, labelled, random};
+use super::walls::{container, material_id};
 use super::{
-    Clock, Container, Grains, Ledger, Packing, PlacedPolyhedron, Polyhedra, Polyhedron, Rounded,
-    Shape, Species, SpeciesId, Surface, Wall, WallMotion, World,
+    Clock, Grains, Ledger, Packing, PlacedPolyhedron, Polyhedra, Polyhedron, Rounded, Species,
+    SpeciesId, World,
 };
-use crate::physics::{Material, MaterialId, Materials, PairProperties};
+use crate::physics::{Material, Materials, PairProperties};
 use crate::scene::{
-    Lattice, Scene, SceneCells, SceneContainer, SceneGrain, SceneGrains, SceneMaterial, ScenePlane,
-    SceneShape, SceneSpecies, SceneTube, SizeClass, size_classes, species_counts,
+    Lattice, Scene, SceneCells, SceneGrain, SceneGrains, SceneMaterial, SceneShape, SceneSpecies,
+    SizeClass, size_classes, species_counts,
 };
 use glam::{DQuat, DVec3};
 use rand::RngExt;
@@ -166,139 +167,6 @@ fn among_itself(material: &SceneMaterial) -> PairProperties {
         friction: material.friction,
         wet_friction: material.wet_friction.unwrap_or(material.friction),
         rolling_friction: material.rolling_friction,
-    }
-}
-
-fn material_id(scene: &Scene, name: &str) -> MaterialId {
-    let index = scene.material(name).map_or(0, |(index, _)| index);
-    MaterialId(index as u16)
-}
-
-fn container(scene: &Scene) -> Container {
-    let (shape, walls) = match &scene.container {
-        SceneContainer::Nothing => (Shape::Planes, Vec::new()),
-        SceneContainer::Drum {
-            radius,
-            width,
-            speed,
-            material,
-        } => (
-            Shape::Drum {
-                radius: *radius,
-                width: *width,
-            },
-            drum_walls(*radius, *width, *speed, material_id(scene, material)),
-        ),
-        SceneContainer::Box { min, max, material } => (
-            Shape::Box {
-                min: *min,
-                max: *max,
-            },
-            box_walls(*min, *max, material_id(scene, material)),
-        ),
-        SceneContainer::Column {
-            radius,
-            height,
-            material,
-            tube,
-        } => (
-            Shape::Column {
-                radius: *radius,
-                height: *height,
-            },
-            column_walls(scene, *radius, material, tube.as_ref()),
-        ),
-        SceneContainer::Planes(planes) => (
-            Shape::Planes,
-            planes.iter().map(|plane| wall(scene, plane)).collect(),
-        ),
-    };
-    Container {
-        shape,
-        walls,
-        angle: 0.0,
-    }
-}
-
-/// Rim, back plate and front plate, turning as one body.
-fn drum_walls(radius: f64, width: f64, speed: f64, material: MaterialId) -> Vec<Wall> {
-    let plate = |normal: DVec3| Surface::Plane {
-        point: -0.5 * width * normal,
-        normal,
-    };
-    [
-        ("rim", Surface::Cylinder { radius }),
-        ("back plate", plate(DVec3::Z)),
-        ("front plate", plate(DVec3::NEG_Z)),
-    ]
-    .map(|(name, surface)| Wall {
-        name: name.to_owned(),
-        surface,
-        material,
-        motion: WallMotion {
-            velocity: DVec3::ZERO,
-            spin: DVec3::new(0.0, 0.0, speed),
-        },
-    })
-    .into()
-}
-
-/// The floor and, where there is one, the tube that stands on it and rises.
-fn column_walls(scene: &Scene, radius: f64, floor: &str, tube: Option<&SceneTube>) -> Vec<Wall> {
-    let floor = Wall {
-        name: "floor".to_owned(),
-        surface: Surface::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Y,
-        },
-        material: material_id(scene, floor),
-        motion: WallMotion::default(),
-    };
-    let tube = tube.map(|tube| Wall {
-        name: "tube".to_owned(),
-        surface: Surface::Tube {
-            radius,
-            rim: tube.rim,
-        },
-        material: material_id(scene, &tube.material),
-        motion: WallMotion {
-            velocity: tube.speed * DVec3::Y,
-            spin: DVec3::ZERO,
-        },
-    });
-    [floor].into_iter().chain(tube).collect()
-}
-
-fn box_walls(min: DVec3, max: DVec3, material: MaterialId) -> Vec<Wall> {
-    [
-        ("left", min, DVec3::X),
-        ("right", max, DVec3::NEG_X),
-        ("floor", min, DVec3::Y),
-        ("ceiling", max, DVec3::NEG_Y),
-        ("back", min, DVec3::Z),
-        ("front", max, DVec3::NEG_Z),
-    ]
-    .map(|(name, point, normal)| Wall {
-        name: name.to_owned(),
-        surface: Surface::Plane { point, normal },
-        material,
-        motion: WallMotion::default(),
-    })
-    .into()
-}
-
-fn wall(scene: &Scene, plane: &ScenePlane) -> Wall {
-    Wall {
-        name: plane.name.clone(),
-        surface: Surface::Plane {
-            point: plane.point,
-            normal: plane.normal,
-        },
-        material: material_id(scene, &plane.material),
-        motion: WallMotion {
-            velocity: plane.velocity,
-            spin: DVec3::ZERO,
-        },
     }
 }
 

@@ -1,5 +1,7 @@
-//! Walls: analytic surfaces that move as rigid bodies.
+//! Walls: analytic surfaces, and meshes, that move as rigid bodies.
 
+use super::mesh_wall::MeshWall;
+use super::motion::WallMotion;
 use crate::lanes::{Lanes, One, dot, minus, plus, splat_vector, times};
 use crate::physics::MaterialId;
 use glam::DVec3;
@@ -12,7 +14,7 @@ pub struct Container {
     pub shape: Shape,
     /// Its surfaces, the partners of the grains.
     pub walls: Vec<Wall>,
-    /// Angle through which a drum has turned since the start [rad].
+    /// Angle through which a drum, or a mesh, has turned since the start [rad].
     pub angle: f64,
 }
 
@@ -44,6 +46,13 @@ pub enum Shape {
         /// Its height at the start [m].
         height: f64,
     },
+    /// A surface of triangles; each smooth part of it is a wall.
+    Mesh {
+        /// Lower corner of the box round it at the start [m].
+        min: DVec3,
+        /// Upper corner [m].
+        max: DVec3,
+    },
 }
 
 /// One wall.
@@ -60,7 +69,7 @@ pub struct Wall {
 }
 
 /// Where a wall is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Surface {
     /// An unbounded plane.
     Plane {
@@ -82,62 +91,97 @@ pub enum Surface {
         /// Height of its lower rim [m].
         rim: f64,
     },
-}
-
-/// The velocity field of a rigid body: `velocity + spin × x`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WallMotion {
-    /// Velocity at the origin [m/s].
-    pub velocity: DVec3,
-    /// Angular velocity about the origin [rad/s].
-    pub spin: DVec3,
-}
-
-impl WallMotion {
-    /// Velocity at the point `x` [m/s].
-    pub fn velocity_at(&self, x: DVec3) -> DVec3 {
-        self.velocity + self.spin.cross(x)
-    }
+    /// A smooth part of a mesh; both of its sides act.
+    Mesh(MeshWall),
 }
 
 impl Container {
-    /// Drum speed about z [rad/s]; zero where nothing turns.
+    /// Drum speed about z [rad/s]; zero of what is no drum.
     pub fn drum_speed(&self) -> f64 {
-        self.walls.first().map_or(0.0, |wall| wall.motion.spin.z)
+        match self.shape {
+            Shape::Drum { .. } => self.spin().z,
+            _ => 0.0,
+        }
+    }
+
+    /// Angular velocity of a drum or a mesh [rad/s]; zero where nothing turns.
+    pub fn spin(&self) -> DVec3 {
+        let first = self.walls.first();
+        first.map_or(DVec3::ZERO, |wall| wall.motion.spin)
+    }
+
+    /// Speed at which a drum turns about z, or a mesh about its own axis [rad/s]; zero where nothing
+    /// turns.
+    pub fn turning_speed(&self) -> f64 {
+        match self.walls.first().map(|wall| &wall.surface) {
+            Some(Surface::Mesh(mesh)) => {
+                let axis = mesh.pose().axis();
+                axis.map_or(0.0, |(_, axis)| self.spin().dot(axis))
+            }
+            _ => self.drum_speed(),
+        }
+    }
+
+    /// How far from `origin` a ray along the unit vector `direction` first hits a mesh [m]; none
+    /// where it hits none.
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let hits = self.walls.iter().filter_map(|wall| match &wall.surface {
+            Surface::Mesh(mesh) => mesh.first_hit(origin, direction),
+            _ => None,
+        });
+        hits.min_by(f64::total_cmp)
     }
 
     /// Lets the walls move on for `time` [s] as they do now: for states that another program, or
     /// another run, came to. A solver moves them step by step, to other last bits.
     pub fn carry(&mut self, time: f64) {
-        self.angle += self.drum_speed() * time;
+        self.angle += self.turning_speed() * time;
         for wall in &mut self.walls {
             let way = wall.motion.velocity * time;
             match &mut wall.surface {
                 Surface::Plane { point, .. } => *point += way,
                 Surface::Tube { rim, .. } => *rim += way.y,
                 Surface::Cylinder { .. } => {}
+                Surface::Mesh(mesh) => mesh.advance(&wall.motion, time),
             }
         }
     }
 
-    /// Turns all walls of a drum as one body at `speed` [rad/s] about z.
+    /// Turns all walls as one body at `speed` [rad/s]: of a drum about z, of a mesh about its axis.
     pub fn set_drum_speed(&mut self, speed: f64) {
         for wall in &mut self.walls {
-            wall.motion.spin = DVec3::new(0.0, 0.0, speed);
+            match &wall.surface {
+                Surface::Mesh(mesh) => wall.motion = mesh.turning(speed),
+                _ => wall.motion.spin = DVec3::new(0.0, 0.0, speed),
+            }
         }
     }
 }
 
 impl Surface {
-    /// Distance of the point `x` from the wall, positive on the grains' side [m], and the unit
-    /// vector from `x` towards the wall.
+    /// Distance of the point `x` from the wall, positive on the grains' side [m] and on both of a
+    /// mesh, and the unit vector from `x` towards the wall.
     pub fn distance(&self, x: DVec3) -> (f64, DVec3) {
         let x = x.to_array().map(|x| One::splat((), x));
         let (distance, direction) = self.distance_in_lanes((), x);
         (distance.get(), DVec3::from_array(direction.map(One::get)))
     }
 
-    /// The same for points side by side.
+    /// The same for points side by side, as far as they are centres of grains that touch it: a
+    /// part of a mesh is far from a grain that touches another part at the edge between them.
+    #[inline(always)]
+    pub fn contact_in_lanes<N: Lanes>(
+        &self,
+        processor: N::Processor,
+        position: [N; 3],
+    ) -> (N, [N; 3]) {
+        match self {
+            Self::Mesh(mesh) => of_mesh(mesh, processor, position, true),
+            _ => self.distance_in_lanes(processor, position),
+        }
+    }
+
+    /// [`Surface::distance`] for points side by side.
     ///
     /// With the distance `ρ` of a point from the axis, a cylinder is `R − ρ` away, radially; the
     /// nearest point of a tube stands at `R − ρ` radially and, below its rim, at that height. On
@@ -150,13 +194,14 @@ impl Surface {
     ) -> (N, [N; 3]) {
         let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
         let [x, y, z] = position;
-        match *self {
-            Self::Plane { point, normal } => {
+        match self {
+            Self::Mesh(mesh) => of_mesh(mesh, processor, position, false),
+            &Self::Plane { point, normal } => {
                 let inward = splat_vector(processor, normal.to_array());
                 let away = minus(position, splat_vector(processor, point.to_array()));
                 (dot(away, inward), [-inward[0], -inward[1], -inward[2]])
             }
-            Self::Cylinder { radius } => {
+            &Self::Cylinder { radius } => {
                 let rho = (x * x + y * y).sqrt();
                 let off_axis = rho.exceeds(zero);
                 let outward = [
@@ -166,7 +211,7 @@ impl Surface {
                 ];
                 (N::splat(processor, radius) - rho, outward)
             }
-            Self::Tube { radius, rim } => {
+            &Self::Tube { radius, rim } => {
                 let rho = (x * x + z * z).sqrt();
                 let off_axis = rho.exceeds(zero);
                 let outward = [
@@ -189,4 +234,17 @@ impl Surface {
             }
         }
     }
+}
+
+/// Distances from a mesh and directions towards it, of `contacts` alone or of all points.
+#[inline(always)]
+fn of_mesh<N: Lanes>(
+    mesh: &MeshWall,
+    processor: N::Processor,
+    position: [N; 3],
+    contacts: bool,
+) -> (N, [N; 3]) {
+    let found = mesh.side_by_side(position.map(N::numbers), N::COUNT, contacts);
+    let [distance, x, y, z] = [0, 1, 2, 3].map(|k| N::load(processor, &found[k]));
+    (distance, [x, y, z])
 }

@@ -4,8 +4,8 @@ use super::{Bridge, Grains, Polyhedra, World};
 use std::mem::size_of_val;
 
 impl World {
-    /// Memory that a clone of this world takes [bytes]; shapes of polyhedra are shared by all
-    /// clones and do not count.
+    /// Memory that a clone of this world takes [bytes]; shapes of polyhedra and
+    /// meshes of walls are shared by all clones and do not count.
     pub fn memory(&self) -> usize {
         let bridges = self.contacts.iter().filter(|c| c.bridge.is_some()).count();
         size_of_val(self)

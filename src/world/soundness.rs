@@ -7,6 +7,7 @@
 
 use super::{Contact, Container, Feature, Grains, Partner, Polyhedra, Polyhedron, Shape};
 use super::{Surface, Wall, World};
+use crate::geometry::MOST_PARTS;
 use crate::physics::limits::{self, Limits};
 use crate::physics::{Liquid, Materials};
 use glam::DVec3;
@@ -256,6 +257,12 @@ impl Container {
                     && limits::LENGTH.accept(radius)
                     && limits::LENGTH.accept(height)
             }
+            Shape::Mesh { min, max } => {
+                let are_parts = |wall: &Wall| matches!(wall.surface, Surface::Mesh(_));
+                (1..=MOST_PARTS).contains(&walls)
+                    && self.walls.iter().all(are_parts)
+                    && limits::LENGTH.accept((max - min).max_element())
+            }
         };
         require(fits, || {
             format!("the container is {:?} of {walls} walls", self.shape)
@@ -273,15 +280,21 @@ impl Wall {
         })?;
         vector(self.motion.velocity, LARGEST, name)?;
         vector(self.motion.spin, LARGEST, name)?;
-        match self.surface {
-            Surface::Plane { point, normal } => {
+        match &self.surface {
+            Surface::Mesh(mesh) => {
+                let flaw = mesh.flaw();
+                require(flaw.is_none(), || {
+                    format!("{} is {}", name(), flaw.unwrap_or_default())
+                })
+            }
+            &Surface::Plane { point, normal } => {
                 vector(point, FARTHEST, name)?;
                 require(normal.is_normalized(), || {
                     format!("the normal of {} is {normal}", name())
                 })
             }
-            Surface::Cylinder { radius } => within(&limits::LENGTH, radius, name),
-            Surface::Tube { radius, rim } => {
+            &Surface::Cylinder { radius } => within(&limits::LENGTH, radius, name),
+            &Surface::Tube { radius, rim } => {
                 within(&limits::LENGTH, radius, name)?;
                 require(rim.abs() <= FARTHEST, || {
                     format!("the rim of {} is {rim:?}", name())

@@ -180,6 +180,57 @@ fn what_an_engine_does_not_have_is_refused_by_name() {
 }
 
 #[test]
+fn mesh_is_handed_to_liggghts_as_it_stands_and_refused_for_others() {
+    let motion = "Turning(through: (0, 0.1, 0), axis: (0, 0, -2), speed: 4)";
+    let meshed = |motion: &str| {
+        format!(
+            "(title: \"A mesh\", materials: {{\"glass\": (), \"steel\": ()}}, container: Mesh({}, material: \"steel\", \
+             motion: {motion}), grains: List([(position: (0, 0, 0), radius_mm: 1, material: \"glass\")]), duration: 2)",
+            crate::meshes::key(&crate::meshes::drum(0.03, 0.01, 36))
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    export_text(&meshed(motion), MpiEngine::Liggghts, folder.path()).unwrap();
+    let script = body(folder.path(), "in.liggghts");
+    for line in [
+        "fix mesh all mesh/surface file mesh.stl type 2 curvature 20 curvature_tolerant yes\n",
+        "rotate origin 0e0 1e-1 0e0 axis 0e0 0e0 -1e0 period 1.5707963267948966e0\n",
+        "mesh n_meshes 1 meshes mesh",
+    ] {
+        assert!(script.contains(line), "{line}: {script}");
+    }
+    let stl = fs::read(folder.path().join("mesh.stl")).unwrap();
+    let triangles = grainfall::geometry::read_stl(&stl).unwrap();
+    assert_eq!(triangles.len(), 4 * 36);
+    let out = folder.path().join("moving");
+    export_text(
+        &meshed("Moving(velocity: (0, 0.5, 0))"),
+        MpiEngine::Liggghts,
+        &out,
+    )
+    .unwrap();
+    let script = body(&out, "in.liggghts");
+    assert!(
+        script.contains("move/mesh mesh mesh linear 0e0 5e-1 0e0\n"),
+        "{script}"
+    );
+    let data = body(&out, "grains.data");
+    let high = data.lines().find(|line| line.ends_with("ylo yhi")).unwrap();
+    let high: f64 = high.split(' ').nth(1).unwrap().parse().unwrap();
+    assert!(high > 1.03, "room for its way of 1 m: {high}");
+    let out = folder.path().join("refused");
+    for (engine, expected) in [
+        (MpiEngine::Lammps, "`--to liggghts` takes meshes"),
+        (MpiEngine::Exadem, "no plane at rest"),
+    ] {
+        let error = export_text(&meshed(motion), engine, &out)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn folder_of_others_or_with_results_stays_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();

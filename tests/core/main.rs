@@ -12,6 +12,8 @@ mod engines;
 mod kept_results;
 mod lesson;
 mod measure;
+#[path = "../common/meshes.rs"]
+mod meshes;
 mod paper;
 mod parameters;
 mod recorder;

@@ -15,6 +15,7 @@ mod golden;
 mod imex;
 mod impact;
 mod liggghts;
+mod mesh;
 mod pair_forces;
 mod polyhedra;
 mod published;
@@ -54,7 +55,7 @@ fn overlap(world: &World, index: usize) -> f64 {
             grains.radius[i] + grains.radius[j] - distance
         }
         Partner::Wall(w) => {
-            let surface = world.container.walls[w as usize].surface;
+            let surface = &world.container.walls[w as usize].surface;
             grains.radius[i] - surface.distance(grains.position[i]).0
         }
     }

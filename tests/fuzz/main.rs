@@ -15,6 +15,7 @@
 mod allocator;
 mod byte_mutator;
 mod engines;
+mod meshes;
 mod mutator;
 #[path = "../common/small_export.rs"]
 mod small_export;
@@ -151,6 +152,11 @@ fn beds() {
 #[test]
 fn packings() {
     fuzz("packing", targets::PackingFiles::new());
+}
+
+#[test]
+fn meshes() {
+    fuzz("mesh", meshes::MeshFiles::new());
 }
 
 #[test]

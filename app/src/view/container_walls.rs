@@ -2,7 +2,8 @@
 //!
 //! In: the container of the world shown. Out: a few meshes, rebuilt when the container is another,
 //! turned and moved with it. Every pane faces the grains and is drawn only from that side, so the
-//! near walls never stand in the way.
+//! near walls never stand in the way; which side of a mesh's triangle that is, is told by the middle
+//! of the bed when the mesh is built.
 
 use crate::simulation::DrawnIn;
 use crate::view::colour::{Scheme, round_up};
@@ -16,7 +17,7 @@ use bevy::camera::visibility::NoFrustumCulling;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use grainfall::lab::Half;
-use grainfall::world::{Container, Shape, Surface, World};
+use grainfall::world::{Container, Shape, Surface, Wall, World};
 
 /// Adds the walls' material and what keeps them up to date.
 pub(super) fn plugin(app: &mut App) {
@@ -42,6 +43,11 @@ enum WallPiece {
     Fixed,
     /// Rises with the tube that is this wall.
     Tube {
+        /// The wall's index.
+        wall: usize,
+    },
+    /// Turns and moves with the part of a mesh that is this wall.
+    Mesh {
         /// The wall's index.
         wall: usize,
     },
@@ -83,9 +89,17 @@ impl Paint {
 /// Cells from the middle to where a floor with a grid has faded away.
 const FLOOR_CELLS: f32 = 40.0;
 
-/// What decides the meshes: the shape, for planes how many there are and how long grains fly over
-/// them [s], and whether they are wanted twice.
+/// What decides the meshes: the shape, of how many walls and triangles it is made, for planes how
+/// long grains fly over them [s], and whether they are wanted twice.
 type Built = (Shape, usize, f64, bool);
+
+/// Of how many walls and triangles `wall` is made.
+fn pieces_of(wall: &Wall) -> usize {
+    match &wall.surface {
+        Surface::Mesh(mesh) => 1 + mesh.part().triangles().len(),
+        _ => 1,
+    }
+}
 
 /// Builds the pieces anew when the container is another.
 fn rebuild(
@@ -101,7 +115,7 @@ fn rebuild(
     };
     let now = (
         world.container.shape,
-        world.container.walls.len(),
+        world.container.walls.iter().map(pieces_of).sum(),
         shown.watched,
         shown.is_pair(),
     );
@@ -177,6 +191,7 @@ fn place(shown: Res<ShownWorlds>, mut pieces: Query<(&DrawnIn, &WallPiece, &mut 
                 Transform::from_rotation(Quat::from_rotation_z(world.container.angle as f32))
             }
             WallPiece::Tube { wall } => tube_transform(&world.container, wall),
+            WallPiece::Mesh { wall } => mesh_transform(&world.container, wall),
             WallPiece::Plane { wall, near } => plane_transform(&world.container, wall, near),
         });
     }
@@ -185,7 +200,8 @@ fn place(shown: Res<ShownWorlds>, mut pieces: Query<(&DrawnIn, &WallPiece, &mut 
 /// Where the piece of the plane `wall` lies: its z axis along the normal, its middle at the foot of
 /// `near`.
 fn plane_transform(container: &Container, wall: usize, near: DVec3) -> Transform {
-    let Some(Surface::Plane { point, normal }) = container.walls.get(wall).map(|wall| wall.surface)
+    let Some(&Surface::Plane { point, normal }) =
+        container.walls.get(wall).map(|wall| &wall.surface)
     else {
         return Transform::IDENTITY;
     };
@@ -196,10 +212,22 @@ fn plane_transform(container: &Container, wall: usize, near: DVec3) -> Transform
 
 /// Where the piece of the tube `wall` is: its lower end at the rim.
 fn tube_transform(container: &Container, wall: usize) -> Transform {
-    match container.walls.get(wall).map(|wall| wall.surface) {
-        Some(Surface::Tube { rim, .. }) => Transform::from_xyz(0.0, rim as f32, 0.0),
+    match container.walls.get(wall).map(|wall| &wall.surface) {
+        Some(Surface::Tube { rim, .. }) => Transform::from_xyz(0.0, *rim as f32, 0.0),
         _ => Transform::IDENTITY,
     }
+}
+
+/// Where the part of a mesh that is `wall` has come to: turned about its axis, or shifted.
+fn mesh_transform(container: &Container, wall: usize) -> Transform {
+    let Some(Surface::Mesh(mesh)) = container.walls.get(wall).map(|wall| &wall.surface) else {
+        return Transform::IDENTITY;
+    };
+    let pose = mesh.pose();
+    let turn = pose.axis().map_or(Quat::IDENTITY, |(_, axis)| {
+        Quat::from_axis_angle(axis.as_vec3().normalize(), pose.angle() as f32)
+    });
+    Transform::from_translation(pose.place(DVec3::ZERO).as_vec3()).with_rotation(turn)
 }
 
 fn look(paint: Paint, settings: &ViewSettings) -> WallLook {
@@ -232,6 +260,7 @@ fn build(world: &World, watched: f64) -> Vec<(WallPiece, Paint, Mesh)> {
         Shape::Box { min, max } => box_panes(min.as_vec3(), max.as_vec3()),
         Shape::Column { radius, height } => column_floors(world, radius, height),
         Shape::Planes => planes(world, watched),
+        Shape::Mesh { min, max } => mesh_panes(world, (max - min).max_element()),
     };
     pieces.extend(tubes(world));
     pieces
@@ -281,6 +310,51 @@ fn box_panes(min: Vec3, max: Vec3) -> Vec<(WallPiece, Paint, Mesh)> {
     pieces
 }
 
+/// The parts of a mesh of this `size` [m], each a pane with a grid.
+fn mesh_panes(world: &World, size: f64) -> Vec<(WallPiece, Paint, Mesh)> {
+    let cell = round_up(size / 20.0) as f32;
+    let bed = grain_box(world).map_or(DVec3::ZERO, |(min, max)| (min + max) / 2.0);
+    let parts = world.container.walls.iter().enumerate();
+    let parts = parts.filter_map(|(wall, own)| match &own.surface {
+        Surface::Mesh(mesh) => Some((wall, mesh)),
+        _ => None,
+    });
+    parts
+        .map(|(wall, mesh)| {
+            let mut builder = Builder::default();
+            for (own, now) in mesh.part().triangles().iter().zip(mesh.triangles()) {
+                let [a, b, c] = now;
+                let faces_bed = (b - a).cross(c - a).dot(bed - a) > 0.0;
+                let [a, b, c] = own.map(|x| x.as_vec3());
+                mesh_triangle(
+                    &mut builder,
+                    if faces_bed { [a, b, c] } else { [a, c, b] },
+                    cell,
+                );
+            }
+            let pane = Paint::Pane(Pattern::Grid);
+            (WallPiece::Mesh { wall }, pane, builder.mesh())
+        })
+        .collect()
+}
+
+/// Adds a triangle with a grid of this `cell` along the two axes that it leans towards least.
+fn mesh_triangle(builder: &mut Builder, corners: [Vec3; 3], cell: f32) {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+    let steepest = normal.abs();
+    let across = |x: Vec3| match steepest.max_element() {
+        most if most == steepest.x => [x.y, x.z],
+        most if most == steepest.y => [x.x, x.z],
+        _ => [x.x, x.y],
+    };
+    let first = builder.indices.len() as u32;
+    for corner in corners {
+        builder.vertex(corner, normal, across(corner).map(|x| x / cell));
+    }
+    builder.indices.extend([first, first + 1, first + 2]);
+}
+
 /// A fading floor for each plane.
 fn planes(world: &World, watched: f64) -> Vec<(WallPiece, Paint, Mesh)> {
     let (min, max) = surroundings(world, watched).unwrap_or((DVec3::ZERO, DVec3::ONE));
@@ -315,7 +389,7 @@ fn floors(
 ) -> Vec<(WallPiece, Paint, Mesh)> {
     let cell = cell as f32;
     let is_plane = |wall: &usize| {
-        let surface = world.container.walls[*wall].surface;
+        let surface = &world.container.walls[*wall].surface;
         matches!(surface, Surface::Plane { .. })
     };
     (0..world.container.walls.len())

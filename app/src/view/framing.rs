@@ -30,7 +30,9 @@ pub fn outline(world: &World, watched: f64) -> Vec<Vec3> {
                 })
                 .collect()
         }
-        Shape::Box { min, max } => corners(min.as_vec3(), max.as_vec3()).to_vec(),
+        Shape::Box { min, max } | Shape::Mesh { min, max } => {
+            corners(min.as_vec3(), max.as_vec3()).to_vec()
+        }
         Shape::Column { radius, height } => column_outline(radius, height),
         Shape::Planes => surroundings(world, watched).map_or_else(Vec::new, |(min, max)| {
             corners(min.as_vec3(), max.as_vec3()).to_vec()

@@ -128,7 +128,7 @@ fn distance_to_piece(point: Pos2, [from, to]: [Pos2; 2]) -> f32 {
 fn front_plane(world: &World, camera: &OrbitCamera) -> f64 {
     let (low, high) = match world.container.shape {
         Shape::Drum { width, .. } => (-0.5 * width, 0.5 * width),
-        Shape::Box { min, max } => (min.z, max.z),
+        Shape::Box { min, max } | Shape::Mesh { min, max } => (min.z, max.z),
         Shape::Column { .. } | Shape::Planes => (0.0, 0.0),
     };
     let is_before = f64::from(camera.eye().z) >= 0.5 * (low + high);

@@ -122,7 +122,7 @@ fn leaves_picture(world: &World, camera: &OrbitCamera) -> bool {
 fn home(shape: Shape) -> (f32, f32) {
     match shape {
         Shape::Column { .. } => (0.55, 0.3),
-        Shape::Planes | Shape::Box { .. } | Shape::Drum { .. } => HOME,
+        Shape::Planes | Shape::Box { .. } | Shape::Drum { .. } | Shape::Mesh { .. } => HOME,
     }
 }
 

@@ -33,9 +33,9 @@ pub static DRUM_SPEED: ParameterRow = ParameterRow {
     equation: |_| "v = Ω × r on rim and end plates",
     section: PanelSection::Drum,
     is_basic: |_, _| true,
-    exists: |scene, _| matches!(scene.container, SceneContainer::Drum { .. }),
+    exists: |scene, _| scene.container.turns(),
     in_world: Some(InWorld {
-        read: |world, _| Some(world.container.drum_speed().into()),
+        read: |world, _| Some(world.container.turning_speed().into()),
         write: |world, _, _, value| world.container.set_drum_speed(value.number()),
     }),
     ..ANY

@@ -213,6 +213,7 @@ fn wall_and_grains(scene: &Scene) -> Option<(String, Vec<String>)> {
     let wall = match &scene.container {
         SceneContainer::Column { material, .. }
         | SceneContainer::Drum { material, .. }
+        | SceneContainer::Mesh { material, .. }
         | SceneContainer::Box { material, .. } => material.clone(),
         SceneContainer::Nothing | SceneContainer::Planes(_) => return None,
     };

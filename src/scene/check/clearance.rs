@@ -10,7 +10,7 @@ pub(super) const DEEPEST_ROUNDING: f64 = 0.5;
 /// smaller grain.
 pub(super) const LARGEST_OVERLAP: f64 = 0.1;
 
-/// Distance of `x` from the nearest wall, negative behind it [m].
+/// Distance of `x` from the nearest wall, negative behind it [m]; of a mesh, on whichever side.
 pub(super) fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
     match container {
         SceneContainer::Nothing => f64::INFINITY,
@@ -28,6 +28,7 @@ pub(super) fn clearance(container: &SceneContainer, x: DVec3) -> f64 {
             };
             tube.as_ref().map_or(x.y, |tube| x.y.min(from(tube)))
         }
+        SceneContainer::Mesh { surface, .. } => surface.distance(x),
         SceneContainer::Planes(planes) => planes
             .iter()
             .map(|plane| (x - plane.point).dot(plane.normal))

@@ -5,12 +5,16 @@ use crate::physics::limits;
 use crate::scene::Scene;
 use crate::scene::container::{SceneContainer, ScenePlane, SceneTube};
 use crate::scene::error::Problem;
+use crate::scene::mesh::{MeshMotion, SceneMesh};
+use glam::DVec3;
 
 impl Scene {
     pub(super) fn check_container_materials(&self) -> Checked {
         match &self.container {
             SceneContainer::Nothing => Ok(()),
-            SceneContainer::Drum { material, .. } | SceneContainer::Box { material, .. } => {
+            SceneContainer::Drum { material, .. }
+            | SceneContainer::Box { material, .. }
+            | SceneContainer::Mesh { material, .. } => {
                 self.check_material(material, || "container.material".to_owned())
             }
             SceneContainer::Column { material, tube, .. } => {
@@ -41,21 +45,18 @@ pub(in crate::scene) fn check_container(container: &SceneContainer) -> Checked {
             within(&limits::LENGTH, *width, || "container.width".to_owned())?;
             within(&limits::DRUM_SPEED, *speed, || "container.speed".to_owned())
         }
-        SceneContainer::Box { min, max, .. } => {
-            vector(*min, 1e4, "m", || "container.min".to_owned())?;
-            vector(*max, 1e4, "m", || "container.max".to_owned())?;
-            let size = (*max - *min).to_array();
-            if size.iter().all(|&length| limits::LENGTH.accept(length)) {
-                return Ok(());
+        SceneContainer::Box { min, max, .. } => check_box("container", *min, *max),
+        SceneContainer::Mesh {
+            surface,
+            motion,
+            room,
+            ..
+        } => {
+            check_size(surface)?;
+            if let Some((min, max)) = room {
+                check_box("container.room", *min, *max)?;
             }
-            Err(Problem::value(
-                "container.max",
-                shown(*max),
-                format!(
-                    "between 1e-6 m and 1000 m beyond `min` {} along each axis",
-                    shown(*min)
-                ),
-            ))
+            check_motion(motion)
         }
         SceneContainer::Column {
             radius,
@@ -68,6 +69,63 @@ pub(in crate::scene) fn check_container(container: &SceneContainer) -> Checked {
             tube.as_ref().map_or(Ok(()), check_tube)
         }
         SceneContainer::Planes(planes) => check_planes(planes),
+    }
+}
+
+fn check_box(path: &str, min: DVec3, max: DVec3) -> Checked {
+    vector(min, 1e4, "m", || format!("{path}.min"))?;
+    vector(max, 1e4, "m", || format!("{path}.max"))?;
+    let size = (max - min).to_array();
+    if size.iter().all(|&length| limits::LENGTH.accept(length)) {
+        return Ok(());
+    }
+    Err(Problem::value(
+        format!("{path}.max"),
+        shown(max),
+        format!(
+            "between 1e-6 m and 1000 m beyond `min` {} along each axis",
+            shown(min)
+        ),
+    ))
+}
+
+fn check_size(surface: &SceneMesh) -> Checked {
+    let (min, max) = surface.bounds();
+    let size = (max - min).max_element();
+    if limits::LENGTH.accept(size) && min.abs().max(max.abs()).max_element() <= 1e4 {
+        return Ok(());
+    }
+    Err(Problem::new(
+        "container",
+        format!("is a mesh between {} m and {} m", shown(min), shown(max)),
+        "a size between 1e-6 m and 1000 m, within 10 km of the origin",
+    )
+    .advise("STL files state no unit: `scale` is the length of theirs in m, 0.001 for millimetres"))
+}
+
+fn check_motion(motion: &MeshMotion) -> Checked {
+    match *motion {
+        MeshMotion::Fixed => Ok(()),
+        MeshMotion::Turning {
+            through,
+            axis,
+            speed,
+        } => {
+            let path = |key: &str| format!("container.motion.{key}");
+            vector(through, 1e4, "m", || path("through"))?;
+            within(&limits::DRUM_SPEED, speed, || path("speed"))?;
+            if axis.is_normalized() {
+                return Ok(());
+            }
+            Err(Problem::value(
+                path("axis"),
+                shown(axis),
+                "the direction of the axis; its length does not matter, but must not be zero",
+            ))
+        }
+        MeshMotion::Moving { velocity } => vector(velocity, 1e3, "m/s", || {
+            "container.motion.velocity".to_owned()
+        }),
     }
 }
 

@@ -57,7 +57,13 @@ impl Scene {
             format!("do not fit into the container: {count} grains are {part:.3} of its volume, before they settle"),
             "a filling that leaves the grains room to be placed apart, about 0.4 of the volume or less",
         )
-        .advise("Take fewer or smaller grains or a larger container"))
+        .advise(match self.container {
+            SceneContainer::Mesh { .. } => {
+                "Take fewer or smaller grains or a larger mesh; where it is far larger than its grains, or of very many triangles, state \
+                 the `room` that they fill"
+            }
+            _ => "Take fewer or smaller grains or a larger container",
+        }))
     }
 
     fn check_widths(&self, species: &[SceneSpecies]) -> Checked {
@@ -100,6 +106,10 @@ fn narrowest(container: &SceneContainer) -> f64 {
     match container {
         SceneContainer::Drum { radius, width, .. } => width.min(2.0 * radius),
         SceneContainer::Box { min, max, .. } => (*max - *min).min_element(),
+        SceneContainer::Mesh { surface, room, .. } => {
+            let (min, max) = room.unwrap_or_else(|| surface.bounds());
+            (max - min).min_element()
+        }
         SceneContainer::Nothing | SceneContainer::Column { .. } | SceneContainer::Planes(_) => {
             f64::INFINITY
         }

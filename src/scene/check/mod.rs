@@ -24,7 +24,7 @@ mod values;
 mod voronoi_cells;
 
 pub(super) use container_values::check_container;
-pub(super) use values::fraction;
+pub(super) use values::{fraction, within};
 
 use super::description::{Scene, TimeStep};
 use super::error::Problem;
@@ -32,7 +32,7 @@ use super::grains::SceneGrains;
 use crate::physics::limits;
 use crate::physics::{ContactLaw, Liquid};
 use material_values::{check_materials, check_pairs};
-use values::{Checked, vector, within};
+use values::{Checked, vector};
 
 /// States a run may write.
 const MOST_OUTPUTS: f64 = 1e6;

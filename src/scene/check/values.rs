@@ -7,13 +7,17 @@ use crate::scene::error::Problem;
 use glam::DVec3;
 
 /// Nothing, or the first mistake.
-pub(super) type Checked = Result<(), Problem>;
+pub(in crate::scene) type Checked = Result<(), Problem>;
 
 /// Materials, species, planes or pairs a scene may have.
 pub(super) const MOST_KINDS: usize = 200;
 
 /// Refuses a `value` of the key at `path` that is not within `limits`.
-pub(super) fn within(limits: &Limits, value: f64, path: impl FnOnce() -> String) -> Checked {
+pub(in crate::scene) fn within(
+    limits: &Limits,
+    value: f64,
+    path: impl FnOnce() -> String,
+) -> Checked {
     if limits.accept(value) {
         Ok(())
     } else {

@@ -114,6 +114,13 @@ impl Scene {
                 "`Hooke(normal_stiffness: …, tangential_stiffness: …)`, or no `law` for the springs of Man et al. 2023",
             ));
         }
+        if matches!(self.container, SceneContainer::Mesh { .. }) {
+            return Err(Problem::new(
+                "container",
+                "is a `Mesh`, whose walls spheres touch, but the scene has polyhedra",
+                "a `Drum`, a `Box`, a `Column` or `Planes`, or spheres",
+            ));
+        }
         if self.liquid.is_some() {
             return Err(Problem::new(
                 "liquid",

@@ -157,7 +157,7 @@ impl SceneFile {
     /// The scene it states; `folder` is the one it stands in. Numbers are as the file gives them,
     /// sensible or not.
     pub fn into_scene(self, folder: &Path) -> Result<Scene, Problem> {
-        let container = self.container.into_container()?;
+        let container = self.container.into_container(folder)?;
         let grains = self.grains.into_grains(&container, folder)?;
         let mut scene = Scene {
             title: self.title,
@@ -209,7 +209,7 @@ fn meaning(key: &str) -> &'static str {
     match key {
         "title" => "one line that names the scene",
         "materials" => "the materials by name: `{\"glass\": (density: 2500), …}`",
-        "container" => "`Drum(…)`, `Box(…)`, `Column(…)`, `Planes([…])` or `Nothing`",
+        "container" => "`Drum(…)`, `Box(…)`, `Column(…)`, `Planes([…])`, `Mesh(…)` or `Nothing`",
         "grains" => "`Fill(…)`, `Voronoi(…)` or `List([…])`",
         "species" => "the kinds of grain, `[(radius: 0.003, material: \"glass\")]`",
         "material" => "the name of one of the scene's materials",
@@ -220,6 +220,10 @@ fn meaning(key: &str) -> &'static str {
             "`Box(size: …)`, `Tetrahedron(edge: …)`, `Prism(…)`, `Hull(points: […])` or `Sphere`"
         }
         "orientation" => "`Turned(axis: …, angle_deg: …)`, `Quaternion(…)` or `Upright`",
+        "motion" => "`Fixed`, `Turning(axis: …, speed: …)` or `Moving(velocity: …)`",
+        "file" => "the name of an STL file in the scene's folder, in double quotes",
+        "room" => "the box that is filled, `(min: …, max: …)` in m",
+        "scale" => "the file's unit of length in m, 0.001 for millimetres",
         "tube" => "`(speed: …)` in m/s",
         "width" => "a length in m, or in mm as `width_mm`",
         "speed" => "rad/s, or turns per minute as `speed_rpm`",

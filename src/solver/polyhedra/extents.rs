@@ -33,9 +33,13 @@ impl Extents {
         let largest = |v: DVec3| v.abs().max_element();
         let centres = bodies.iter().map(|body| largest(body.centre()));
         let walls = walls.surfaces().map(|surface| match surface {
-            Surface::Plane { point, .. } => largest(point),
-            Surface::Cylinder { radius } => radius,
+            Surface::Plane { point, .. } => largest(*point),
+            Surface::Cylinder { radius } => *radius,
             Surface::Tube { radius, rim } => radius.max(rim.abs()),
+            Surface::Mesh(mesh) => {
+                let corners = mesh.triangles().flatten();
+                corners.map(largest).fold(0.0, f64::max)
+            }
         });
         let coordinate = centres.chain(walls).fold(0.0, f64::max);
         let reach = bodies.iter().map(Body::reach).fold(0.0, f64::max);

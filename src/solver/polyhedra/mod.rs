@@ -290,7 +290,8 @@ impl PolyhedronKernel {
         self.reference.clear();
         self.reference.extend(positions);
         self.reference_surfaces.clear();
-        self.reference_surfaces.extend(self.walls.surfaces());
+        self.reference_surfaces
+            .extend(self.walls.surfaces().cloned());
         self.set_geometry_constants();
         self.known = Known::default();
         self.compute_constants(world);

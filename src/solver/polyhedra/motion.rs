@@ -150,7 +150,7 @@ impl Surroundings<'_> {
     pub fn has_sides(&self, pair: &Pair) -> bool {
         self.wall(pair).is_some_and(|wall| match wall.surface {
             Surface::Plane { .. } | Surface::Cylinder { .. } => true,
-            Surface::Tube { .. } => false,
+            Surface::Tube { .. } | Surface::Mesh(_) => false,
         })
     }
 }

@@ -60,6 +60,8 @@ pub struct Neighbours {
     reach: Option<f64>,
     /// Grain positions when the inner list was filtered.
     pub reference: Vec<Row>,
+    /// Where the walls were then.
+    surfaces: Vec<Surface>,
     /// Outer lists built since the start.
     pub searches: u64,
 }
@@ -100,6 +102,7 @@ impl Neighbours {
     pub fn inner_covers(&self, bodies: &[Sphere], walls: &Walls) -> bool {
         let slack = self.slack();
         self.covers(bodies, walls)
+            && walls.surfaces().eq(&self.surfaces)
             && self.reference.len() + 1 == bodies.len()
             && bodies
                 .iter()
@@ -112,7 +115,7 @@ impl Neighbours {
         let inner = self.skins.inner.max(self.reach.unwrap_or(0.0));
         let slack = 0.5 * (self.skins.outer - inner);
         self.outer_reference.len() + 1 == bodies.len()
-            && walls.surfaces().eq(self.outer_surfaces.iter().copied())
+            && walls.are_near(&self.outer_surfaces, slack)
             && bodies.iter().zip(&self.outer_reference).all(|(body, old)| {
                 length_squared(sub(body.position, *old)) < slack * slack && body.radius() == old[3]
             })
@@ -227,6 +230,8 @@ impl Neighbours {
         self.bridge_effects.resize(wet, BridgeEffect::default());
         self.parts
             .fill(&self.grains.pairs, &self.walls.pairs, slots);
+        self.surfaces.clear();
+        self.surfaces.extend(walls.surfaces().cloned());
         self.reference.clear();
         self.reference
             .extend(bodies[..count].iter().map(|body| body.position));
@@ -332,7 +337,7 @@ impl Neighbours {
             }
         }
         self.outer_surfaces.clear();
-        self.outer_surfaces.extend(walls.surfaces());
+        self.outer_surfaces.extend(walls.surfaces().cloned());
         self.outer_reference.clear();
         self.outer_reference.extend(bodies.iter().map(with_radius));
     }

@@ -2,7 +2,7 @@
 //!
 //! In: the rows of as many pairs as there are lanes. Out: normals, overlaps, relative velocities
 //! and spins, which is all that the pair loop knows of what a partner is. Not here: forces
-//! ([`super::contacts`]), the distance from a wall ([`crate::world::Surface::distance_in_lanes`]).
+//! ([`super::contacts`]), the distance from a wall ([`crate::world::Surface::contact_in_lanes`]).
 
 use super::super::walls::WallBody;
 use super::rows::Sphere;
@@ -147,7 +147,7 @@ impl<'a, N: Lanes> GrainAndWall<'a, N> {
         let position = [x, y, z];
         let [x, y, z, _] = N::gather(processor, rows(grain, |body| &body.velocity));
         let middle = minus(position, times([x, y, z], half_step));
-        let (gap, normal) = wall.surface.distance_in_lanes(processor, position);
+        let (gap, normal) = wall.surface.contact_in_lanes(processor, position);
         let (middle_gap, middle_normal) = wall.surface.distance_in_lanes(processor, middle);
         // A centre on or behind the surface is no contact any more: the check after the step
         // reports it.

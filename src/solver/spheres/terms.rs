@@ -53,7 +53,7 @@ impl LawUser for Explanation<'_> {
             Partner::Wall(w) => {
                 let wall = &self.world.container.walls[w as usize];
                 let wall = WallBody {
-                    surface: wall.surface,
+                    surface: wall.surface.clone(),
                     motion: wall.motion,
                 };
                 let half_step = half_step::<One, L>((), self.world.clock.time_step);

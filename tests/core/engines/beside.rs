@@ -2,6 +2,7 @@
 //! the programs, and are asked for by name:
 //! `cargo test --test core engines::beside -- --ignored`. `MPIRUN` is what starts them.
 
+use crate::meshes::{drum, key};
 use glam::DVec3;
 use grainfall::engines::{Export, MpiEngine, export, read_frames};
 use grainfall::runner::{Advance, DirectRun, Job};
@@ -34,8 +35,7 @@ fn compute(engine: MpiEngine, folder: &Path) {
 
 /// Distances of grains in `engine` from where they are here, at the last dump, and the median way
 /// that they have come [m].
-fn distances(scene: &str, settings: &[(&str, &str)], engine: MpiEngine) -> (Vec<f64>, f64) {
-    let mut scene = Scene::open(scene).unwrap();
+fn distances(mut scene: Scene, settings: &[(&str, &str)], engine: MpiEngine) -> (Vec<f64>, f64) {
     scene.set_all(settings).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let job = Job::new("drum", scene, folder.path().join("ours"));
@@ -79,13 +79,14 @@ fn median(sorted: &[f64]) -> f64 {
 }
 
 /// The median distance after 0.1 s is below `bound` [m], and grains have moved.
-fn stands_beside(scene: &str, settings: &[(&str, &str)], engine: MpiEngine, bound: f64) {
+fn stands_beside(scene: Scene, settings: &[(&str, &str)], engine: MpiEngine, bound: f64) {
     let length = [("duration", "100ms"), ("output-interval", "100ms")];
     let settings = [settings, &length].concat();
+    let title = scene.title.clone();
     let (distances, way) = distances(scene, &settings, engine);
     let (middle, farthest) = (median(&distances), distances[distances.len() - 1]);
     println!(
-        "{scene} in {engine}: median {:.2} um, at most {:.1} um, of a way of {:.1} um",
+        "{title} in {engine}: median {:.2} um, at most {:.1} um, of a way of {:.1} um",
         middle * 1e6,
         farthest * 1e6,
         way * 1e6
@@ -96,18 +97,41 @@ fn stands_beside(scene: &str, settings: &[(&str, &str)], engine: MpiEngine, boun
 #[test]
 #[ignore = "needs LIGGGHTS and mpirun"]
 fn dry_drum_in_liggghts_stands_within_micrometres_of_ours() {
-    stands_beside("dry-r3", &[], MpiEngine::Liggghts, 3e-6);
+    stands_beside(
+        Scene::open("dry-r3").unwrap(),
+        &[],
+        MpiEngine::Liggghts,
+        3e-6,
+    );
 }
 
 #[test]
 #[ignore = "needs LIGGGHTS and mpirun"]
 fn wet_drum_as_coded_in_liggghts_stands_within_micrometres_of_ours() {
     let as_coded = [("bridge-law", "as-coded")];
-    stands_beside("wet", &as_coded, MpiEngine::Liggghts, 15e-6);
+    stands_beside(
+        Scene::open("wet").unwrap(),
+        &as_coded,
+        MpiEngine::Liggghts,
+        15e-6,
+    );
+}
+
+#[test]
+#[ignore = "needs LIGGGHTS and mpirun"]
+fn meshed_drum_in_liggghts_stands_within_micrometres_of_ours() {
+    let text = format!(
+        "(title: \"A meshed drum\", materials: {{\"glass\": (), \"drum\": (friction: 0.5)}}, container: Mesh({}, material: \
+         \"drum\", motion: Turning(axis: (0, 0, 1), speed_rpm: 4)), \
+         grains: Fill(count: 90, species: [(radius_mm: 2, material: \"glass\")]))",
+        key(&drum(0.03, 0.012, 360))
+    );
+    let scene = Scene::parse("meshed drum", &text).unwrap();
+    stands_beside(scene, &[], MpiEngine::Liggghts, 10e-6);
 }
 
 #[test]
 #[ignore = "needs LAMMPS and mpirun"]
 fn dry_drum_in_lammps_stands_within_micrometres_of_ours() {
-    stands_beside("dry-r3", &[], MpiEngine::Lammps, 3e-6);
+    stands_beside(Scene::open("dry-r3").unwrap(), &[], MpiEngine::Lammps, 3e-6);
 }

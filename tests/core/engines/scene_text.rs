@@ -1,6 +1,7 @@
 //! Scenes written as text are read as the same scenes.
 
 use super::{HOOKE, SPRING_DASHPOT, belt, dry_drum, wet_drum};
+use crate::meshes::{drum, key};
 use grainfall::scene::Scene;
 
 #[test]
@@ -31,8 +32,20 @@ fn scene_as_text_is_read_as_the_same_scene() {
             orientation: Quaternion(x: 0, y: 0, z: 0.6, w: 0.8),
         )]),
     )"#;
+    let mesh = |motion: &str| {
+        format!(
+            "(title: \"A mesh\", materials: {{\"glass\": ()}}, container: Mesh({}, material: \"glass\"{motion}), \
+             grains: List([(position: (0, 0, 0), radius_mm: 1, material: \"glass\")]))",
+            key(&drum(0.03, 0.01, 12))
+        )
+    };
     for text in [
         cube.to_owned(),
+        mesh(""),
+        mesh(", motion: Turning(through: (0, 0.1, 0), axis: (0, -1, 0), speed_rpm: 7)"),
+        mesh(
+            ", motion: Moving(velocity: (0.1, 0, 1e-3)), room: (min: (-0.01, 0, 0), max: (0.01, 0.02, 0.005))",
+        ),
         dry_drum(),
         wet_drum(),
         odd,

@@ -38,7 +38,7 @@ pub fn collide(mut world: World) -> Impact {
                     (world.grains.position[j as usize] - world.grains.position[i]).normalize()
                 }
                 Partner::Wall(w) => {
-                    let surface = world.container.walls[w as usize].surface;
+                    let surface = &world.container.walls[w as usize].surface;
                     surface.distance(world.grains.position[i]).1
                 }
             };

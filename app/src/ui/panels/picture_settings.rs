@@ -252,7 +252,7 @@ fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
 /// The upright line, by x and z [m], round which a quarter is cut out.
 fn middle(world: &World) -> (f64, f64) {
     match world.container.shape {
-        Shape::Box { min, max } => {
+        Shape::Box { min, max } | Shape::Mesh { min, max } => {
             let middle = 0.5 * (min + max);
             (middle.x, middle.z)
         }
@@ -268,7 +268,7 @@ fn extent(world: &World, axis: CoordinateAxis) -> RangeInclusive<f64> {
             let half = DVec3::new(radius, radius, 0.5 * width);
             (-half, half)
         }
-        Shape::Box { min, max } => (min, max),
+        Shape::Box { min, max } | Shape::Mesh { min, max } => (min, max),
         Shape::Planes | Shape::Column { .. } => {
             let grains = world.grains.position.iter().zip(&world.grains.radius);
             grains.fold(
