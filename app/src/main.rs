@@ -45,37 +45,8 @@ fn main() -> ExitCode {
 fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     let allowed = arguments.allowed;
     allowed.take_effect();
-    match arguments.task {
-        Some(Task::Bed { scene, out }) => return headless::write_bed(&scene, &allowed, &out),
-        Some(Task::Opening { out }) => return headless::write_opening(&out),
-        Some(Task::Verify { file, threads }) => {
-            let threads = checked_threads(threads, Report::Text)?;
-            return headless::confirm(&file, threads, &allowed, &*interruption()?);
-        }
-        Some(Task::Scenes { json }) => return list_scenes(json),
-        Some(Task::Completions { shell }) => {
-            headless::print_completions(shell);
-            return Ok(exit::DONE);
-        }
-        Some(Task::Man { folder }) => {
-            headless::write_manual(&folder)?;
-            return Ok(exit::DONE);
-        }
-        Some(Task::Settings { scene, json }) => return list_settings(&scene, json),
-        Some(Task::Pack { scene, set, out }) => {
-            return headless::write_packing(&scene, &set, &allowed, &out);
-        }
-        Some(Task::Sweep(task)) => return run_sweep(&task, &allowed),
-        Some(Task::Import(task)) => return task.carry_out(),
-        Some(Task::Export {
-            what,
-            to,
-            out,
-            unsettled,
-            said,
-        }) => return export_scene(&what, to, (out, !unsettled), (&allowed, said.report())),
-        Some(Task::Paper(task)) => return run_paper(&task, &allowed),
-        None => {}
+    if let Some(task) = arguments.task {
+        return carry_out_task(task, &allowed);
     }
     let what = arguments.what;
     #[cfg(feature = "desktop")]
@@ -103,14 +74,12 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     if arguments.record.is_some() {
         return Err(RunnerError::Input(NO_FILM.into()));
     }
-    #[cfg(feature = "desktop")]
-    if let Some(film) = film.as_ref().filter(|_| Recording::is_at(&name)) {
-        return film_folder(&name, &what, film, report);
-    }
     if Kept::is_at(&name) {
-        return Err(RunnerError::Input(format!(
-            "{name} holds what was computed: it opens in a window, and `grainfall verify` computes it again without one"
-        )));
+        #[cfg(feature = "desktop")]
+        if let Some(film) = film.as_ref().filter(|_| Recording::is_at(&name)) {
+            return film_folder(&name, &what, film, report);
+        }
+        return Err(RunnerError::Input(kept_says(&name)));
     }
     if Lesson::is_at(&name) {
         #[cfg(feature = "desktop")]
@@ -137,7 +106,6 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     }
     let name = short_name(&name);
     let out = arguments.out.unwrap_or(Path::new("out").join(&name));
-    let interruption = interruption()?;
     let job = Job {
         threads: checked_threads(what.threads, report)?,
         script,
@@ -148,10 +116,17 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
     allowed.begin(&Estimate::of(&job.scene), &job.out, report)?;
     #[cfg(feature = "desktop")]
     if let Some(film) = film {
-        return Ok(film_run(&job, &film, report, &interruption)?.exit_code());
+        let ending = film_run(&job, &film, report, &*interruption()?)?;
+        return Ok(ending.exit_code());
     }
-    let ending = headless::run(&job, report, &interruption)?;
-    Ok(ending.exit_code())
+    Ok(headless::run(&job, report, &*interruption()?)?.exit_code())
+}
+
+/// That what is called `name` takes a window.
+fn kept_says(name: &str) -> String {
+    format!(
+        "{name} holds what was computed: it opens in a window, and `grainfall verify` computes it again without one"
+    )
 }
 
 /// The film that is asked for.
@@ -172,6 +147,39 @@ fn film_folder(name: &str, what: &What, film: &FilmJob, report: Report) -> Resul
     match unchanged(name, what)? {
         Opened::Recording(recording) => film_recording(*recording, film, report, &*interruption()?),
         _ => Err(RunnerError::Input(format!("{name} is no folder of a run"))),
+    }
+}
+
+/// Does what is to be done instead of opening a scene. Returns the exit code.
+fn carry_out_task(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
+    match task {
+        Task::Bed { scene, out } => headless::write_bed(&scene, allowed, &out),
+        Task::Opening { out } => headless::write_opening(&out),
+        Task::Verify { file, threads } => {
+            let threads = checked_threads(threads, Report::Text)?;
+            headless::confirm(&file, threads, allowed, &*interruption()?)
+        }
+        Task::Scenes { json } => list_scenes(json),
+        Task::Completions { shell } => {
+            headless::print_completions(shell);
+            Ok(exit::DONE)
+        }
+        Task::Man { folder } => {
+            headless::write_manual(&folder)?;
+            Ok(exit::DONE)
+        }
+        Task::Settings { scene, json } => list_settings(&scene, json),
+        Task::Pack { scene, set, out } => headless::write_packing(&scene, &set, allowed, &out),
+        Task::Sweep(task) => run_sweep(&task, allowed),
+        Task::Import(task) => task.carry_out(),
+        Task::Export {
+            what,
+            to,
+            out,
+            unsettled,
+            said,
+        } => export_scene(&what, to, (out, !unsettled), (allowed, said.report())),
+        Task::Paper(task) => run_paper(&task, allowed),
     }
 }
 

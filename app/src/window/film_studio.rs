@@ -157,16 +157,15 @@ impl Film {
     /// # Errors
     /// Why there is no film.
     pub(super) fn finish(mut self, watch: &mut dyn FnMut(usize)) -> Result<String, RunnerError> {
-        let outcome = match self.failure.take() {
-            Some(failure) => Err(failure),
-            None => {
-                self.writer.finish();
-                while !self.writer.has_ended() {
-                    watch(self.writer.waiting());
-                    std::thread::sleep(WAIT);
-                }
-                self.writer.outcome()
+        let outcome = if let Some(failure) = self.failure.take() {
+            Err(failure)
+        } else {
+            self.writer.finish();
+            while !self.writer.has_ended() {
+                watch(self.writer.waiting());
+                std::thread::sleep(WAIT);
             }
+            self.writer.outcome()
         };
         outcome.map_err(|error| unwritten(&self.path, &error))?;
         let time = self.pictures.saturating_sub(1) as f64 * self.interval;
