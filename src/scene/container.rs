@@ -122,8 +122,8 @@ impl SceneContainer {
 pub(super) fn volume(container: &SceneContainer) -> Result<f64, Problem> {
     match container {
         SceneContainer::Drum { radius, width, .. } => Ok(PI * radius * radius * width),
-        SceneContainer::Box { min, max, .. } => Ok((*max - *min).element_product()),
-        SceneContainer::Mesh {
+        SceneContainer::Box { min, max, .. }
+        | SceneContainer::Mesh {
             room: Some((min, max)),
             ..
         } => Ok((*max - *min).element_product()),

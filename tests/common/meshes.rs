@@ -64,7 +64,7 @@ pub fn stl(triangles: &[[DVec3; 3]]) -> Vec<u8> {
     bytes.extend((triangles.len() as u32).to_le_bytes());
     for triangle in triangles {
         bytes.extend([0; 12]);
-        for x in triangle.iter().flat_map(|corner| corner.to_array()) {
+        for x in triangle.iter().flat_map(DVec3::to_array) {
             bytes.extend((x as f32).to_le_bytes());
         }
         bytes.extend([0; 2]);

@@ -72,7 +72,7 @@ fn tessellated_floor_moves_a_grain_as_the_plane_does_and_seams_do_not_show() {
         touching += meshed.grains.contact_count[0];
     }
     assert!(touching > 3000, "{touching} steps in contact");
-    let way = (plane.grains.position[0] - DVec3::new(-0.011, 0.0009992, -0.006)).length();
+    let way = (plane.grains.position[0] - DVec3::new(-0.011, 0.000_999_2, -0.006)).length();
     assert!(way > 0.012, "over several seams: {way} m");
     // Forces to rounding too, tangential ones among them: a history that were lost or doubled at a
     // seam would show as a jump of their size.
