@@ -5,6 +5,7 @@
 
 use grainfall::engines::MpiEngine;
 use grainfall::lab::Kept;
+#[cfg(feature = "desktop")]
 use grainfall::lab::Options;
 use grainfall::lesson::Lesson;
 use grainfall::parameters::Settings;
