@@ -316,7 +316,7 @@ fn killed_sweep_goes_on_to_the_same_table() {
     let place = Place::new();
     let sweep = |out| {
         let scene = ["sweep", "small-drum", "--duration", "600ms"];
-        let varied = ["--vary", "seed=1,2", "--threads", "1", "--out", out];
+        let varied = ["--vary", "seed=1,2", "--jobs", "1", "--out", out];
         [&scene[..], &varied].concat()
     };
     assert!(place.run(&sweep("whole")).status.success());
