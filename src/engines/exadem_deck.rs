@@ -29,6 +29,8 @@ pub struct ExademDeck {
     pub deviations: Vec<String>,
 }
 
+/// Shapes that it tells apart as it is built by default, in eight bits.
+const SHAPES: usize = 256;
 /// Slack of its neighbour lists, in the largest radius.
 const SLACK: f64 = 0.1;
 
@@ -290,6 +292,13 @@ fn deviations(handed: Handed, clock: &Clock) -> Vec<String> {
         found.push(format!(
             "Dashpots are explicit, here implicit (`integrator: Imex`): its step is {:e} s, here {:e} s.",
             clock.time_step, world.clock.time_step
+        ));
+    }
+    let shapes = world.polyhedra.as_ref().map_or(0, |all| all.shapes.len());
+    if shapes > SHAPES {
+        found.push(format!(
+            "As it is built by default it tells {SHAPES} shapes apart, and takes the others of these {shapes} for the first \
+             ones without a word: exaNBody is to be built with -DXNB_PARTICLE_TYPE_INT=uint32_t. An import finds it out."
         ));
     }
     found.extend(uneven_dumps(handed.scene, clock));

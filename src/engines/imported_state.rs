@@ -136,7 +136,7 @@ fn place_bodies(
         if (stated / known - 1.0).abs() > SAME_RADIUS {
             return Err(format!(
                 "the farthest point of grain {id} is {stated:e} m from its centroid, in the scene {known:e} m: is it \
-                 the scene, and its seed, that was run?"
+                 the scene, and its seed, that was run, by an exaDEM that tells as many shapes apart?"
             ));
         }
         grains.position[i] = atom.position;

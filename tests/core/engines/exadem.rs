@@ -291,6 +291,24 @@ fn implicit_dashpots_get_a_step_that_explicit_ones_bear() {
     assert!(built(&column("Imex")).1.clock.time_step > imex);
 }
 
+/// More shapes than eight bits number are taken for others by exaDEM as it is built by default.
+#[test]
+fn more_shapes_than_exadem_tells_apart_by_itself_are_told() {
+    let is_told = |radius: &str| {
+        let text = column("Explicit").replace("radius_mm: 8", radius);
+        let folder = tempfile::tempdir().unwrap();
+        let exported = export_text(&text, MpiEngine::Exadem, folder.path()).unwrap();
+        let shapes = fs::read_to_string(folder.path().join("grains.shp")).unwrap();
+        let told = exported
+            .deviations
+            .iter()
+            .any(|text| text.contains("XNB_PARTICLE_TYPE_INT"));
+        (read_shapes(&shapes).len() > 256, told)
+    };
+    assert_eq!(is_told("radius_mm: 8"), (false, false));
+    assert_eq!(is_told("radius_mm: 27"), (true, true));
+}
+
 /// The file that exaDEM writes of `world` by its script.
 fn xyz(world: &World) -> String {
     let (grains, bodies) = (&world.grains, world.polyhedra.as_ref().unwrap());
