@@ -325,7 +325,7 @@ fn mesh_panes(world: &World, size: f64) -> Vec<(WallPiece, Paint, Mesh)> {
             for (own, now) in mesh.part().triangles().iter().zip(mesh.triangles()) {
                 let [a, b, c] = now;
                 let faces_bed = (b - a).cross(c - a).dot(bed - a) > 0.0;
-                let [a, b, c] = own.map(|x| x.as_vec3());
+                let [a, b, c] = own.map(DVec3::as_vec3);
                 mesh_triangle(
                     &mut builder,
                     if faces_bed { [a, b, c] } else { [a, c, b] },
