@@ -224,12 +224,7 @@ impl AskFile {
                 let si = |value: f64| value / quantity.quantity().unit.shown.factor;
                 Ok(Question {
                     text: file.question,
-                    measurement: Measurement {
-                        quantity,
-                        of: file.of,
-                        span: file.span.0..file.span.1,
-                        scatter: file.scatter.map(|scatter| scatter.of(quantity)),
-                    },
+                    measurement: measurement(quantity, file.of, file.span, file.scatter),
                     kind: QuestionKind::Number {
                         tolerance: si(file.tolerance),
                         expected: file.expected.map(|(low, high)| (si(low), si(high))),
@@ -246,12 +241,7 @@ impl AskFile {
                 })?;
                 Ok(Question {
                     text: file.question,
-                    measurement: Measurement {
-                        quantity,
-                        of: file.of,
-                        span: file.span.0..file.span.1,
-                        scatter: file.scatter.map(|scatter| scatter.of(quantity)),
-                    },
+                    measurement: measurement(quantity, file.of, file.span, file.scatter),
                     kind: QuestionKind::Change {
                         than,
                         same_within: file.same_within / quantity.quantity().unit.shown.factor,
@@ -260,6 +250,20 @@ impl AskFile {
                 })
             }
         }
+    }
+}
+
+fn measurement(
+    quantity: Measure,
+    of: Statistic,
+    span: (f64, f64),
+    scatter: Option<ScatterFile>,
+) -> Measurement {
+    Measurement {
+        quantity,
+        of,
+        span: span.0..span.1,
+        scatter: scatter.map(|scatter| scatter.of(quantity)),
     }
 }
 

@@ -54,4 +54,4 @@ pub use profile_files::{FLOW, flow_table};
 pub use recorder::{IMPORTED, Recorder, Subject, Written, WrittenRest};
 pub use run_so_far::RunSoFar;
 pub use series_file::SERIES;
-pub use shapes_file::{SHAPES, with_faces_moved, write_shapes};
+pub use shapes_file::{SHAPES, write_shapes};

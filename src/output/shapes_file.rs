@@ -3,8 +3,9 @@
 //!
 //! In: a world of polyhedra. Out: the file, which holds for the whole run. A cell is the grain's
 //! core with its faces moved out by the rounding radius: the solid whose edges the rounding takes
-//! off, of a Voronoi grain its whole cell. A core without faces is a single point. A point `p` of
-//! grain `id` is at `x + p₁ e₁ + p₂ e₂ + p₃ e₃`, where `x` is the point and `e` are the rows of
+//! off, of a Voronoi grain its whole cell; a corner sharper than a needle is blunt. A core without
+//! faces is a single point. What the grain is computed with stands beside it: corners of its core,
+//! volume, moments. A point `p` of grain `id` is at `x + p₁ e₁ + p₂ e₂ + p₃ e₃`, where `x` is the point and `e` are the rows of
 //! `tensor` of that grain in `grains_file`; `docs/analysis.md` does it for `ParaView` and pyvista.
 
 use super::vtk::{Array, DataSet};
@@ -12,17 +13,22 @@ use crate::run::Provenance;
 use crate::world::{Polyhedra, Polyhedron, World};
 use glam::{DMat3, DVec3};
 use std::io::{self, Write};
-use std::iter::once;
+use std::iter::{once, repeat_n};
 
 /// The file.
 pub const SHAPES: &str = "shapes.vtu";
 /// VTK's numbers of the kinds of cell.
 const VERTEX: u8 = 1;
 const POLYHEDRON: u8 = 42;
+/// Farthest that a corner of the solid is drawn from that of the core, in rounding radii: five for
+/// one as sharp as 23°. Where faces hardly differ in direction the place where they meet can be
+/// anywhere.
+const SHARPEST: f64 = 10.0;
 
 /// Writes the shapes of the grains of `world`, which are `polyhedra` and come `from` there, to
-/// `file`: each point with the `id` and the `rounding` radius \[m\] of its grain. Cells have no data
-/// of their own: meshio mixes up those of polyhedra.
+/// `file`: each point with the corner of the `core` \[m\] that it belongs to, and the `id`, `rounding`
+/// radius \[m\], `volume` \[m³\] and principal `gyration` (`inertia / mass`) \[m²\] of its grain. Cells
+/// have no data of their own: meshio mixes up those of polyhedra.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -45,7 +51,10 @@ pub fn write_shapes(
                 "PointData",
                 vec![
                     Array::integers("id", points, move || cells.owners()).appended(),
-                    Array::scalars("rounding", points, move || cells.roundings()).appended(),
+                    Array::vectors("core", points, move || cells.cores()).appended(),
+                    cells.scalars("rounding", points, |shape| shape.rounding),
+                    cells.scalars("volume", points, |shape| shape.volume),
+                    cells.vectors("gyration", points, |shape| shape.gyration),
                 ],
             ),
             (
@@ -88,10 +97,22 @@ impl<'a> Cells<'a> {
         (0..self.count).map(move |i| self.polyhedra.shape_of(i))
     }
 
-    /// The rounding radius of each point's cell [m].
-    fn roundings(self) -> impl Iterator<Item = f64> {
-        let of_points = |shape: &'a Polyhedron| shape.vertices.iter().map(|_| shape.rounding);
-        self.shapes().flat_map(of_points)
+    /// A number of each point's grain.
+    fn scalars(self, name: &'static str, points: usize, of: fn(&Polyhedron) -> f64) -> Array<'a> {
+        let of_points = move |shape: &'a Polyhedron| repeat_n(of(shape), shape.vertices.len());
+        Array::scalars(name, points, move || self.shapes().flat_map(of_points)).appended()
+    }
+
+    /// A vector of each point's grain.
+    fn vectors(self, name: &'static str, points: usize, of: fn(&Polyhedron) -> DVec3) -> Array<'a> {
+        let of_points = move |shape: &'a Polyhedron| repeat_n(of(shape), shape.vertices.len());
+        Array::vectors(name, points, move || self.shapes().flat_map(of_points)).appended()
+    }
+
+    /// The corner of the core of each point [m].
+    fn cores(self) -> impl Iterator<Item = DVec3> {
+        self.shapes()
+            .flat_map(|shape| shape.vertices.iter().copied())
     }
 
     /// The points of each cell along the axes of its body [m].
@@ -159,17 +180,12 @@ fn kind(shape: &Polyhedron) -> u8 {
     }
 }
 
-/// The corners of `shape` where its faces, moved out by the rounding radius, meet.
+/// The corners of `shape` where its faces, moved out by the rounding radius, meet. Exact where three
+/// faces meet in a corner; of more, the place that lies nearest to all of them.
 fn solid(shape: &Polyhedron) -> Vec<DVec3> {
-    with_faces_moved(&shape.vertices, &shape.faces, shape.rounding)
-}
-
-/// `corners` of a solid where its `faces`, moved out by `distance` [m], meet. Exact where three
-/// faces meet in a corner; of more, the place that lies nearest to all of them. Moved back by as
-/// much, the corners are where they were.
-pub fn with_faces_moved(corners: &[DVec3], faces: &[Vec<u16>], distance: f64) -> Vec<DVec3> {
+    let corners = &shape.vertices;
     let mut sums = vec![(DMat3::ZERO, DVec3::ZERO); corners.len()];
-    for face in faces {
+    for face in &shape.faces {
         let normal = outward(corners, face);
         for &corner in face {
             let (squares, sum) = &mut sums[usize::from(corner)];
@@ -178,8 +194,9 @@ pub fn with_faces_moved(corners: &[DVec3], faces: &[Vec<u16>], distance: f64) ->
         }
     }
     let moved = |(corner, (squares, sum)): (&DVec3, (DMat3, DVec3))| {
-        let out = *corner + distance * (squares.inverse() * sum);
-        if out.is_finite() { out } else { *corner }
+        let out = squares.inverse() * sum;
+        let out = if out.is_finite() { out } else { DVec3::ZERO };
+        *corner + shape.rounding * out.clamp_length_max(SHARPEST)
     };
     corners.iter().zip(sums).map(moved).collect()
 }

@@ -1,19 +1,25 @@
 //! `shapes.vtu`, read back: what each polyhedron of a run looks like.
 //!
-//! In: the file, in which a grain is its core with the faces moved out by the rounding radius. Out:
-//! the grains' shapes, in the axes of their bodies, with mass properties of these solids.
+//! In: the file. Out: the grains' shapes, in the axes of their bodies, in the file's 24 bits.
 
 use super::RecordingError;
 use super::vtk_arrays::VtkArrays;
 use crate::geometry::Solid;
-use crate::output::with_faces_moved;
 use crate::physics::limits::MOST_POLYHEDRA;
 use crate::world::Polyhedron;
 use glam::DVec3;
 use std::sync::Arc;
 
 /// Its arrays.
-pub const WANTED: [&str; 5] = ["rounding", "Points", "offsets", "faces", "faceoffsets"];
+pub const WANTED: [&str; 7] = [
+    "core",
+    "rounding",
+    "volume",
+    "gyration",
+    "offsets",
+    "faces",
+    "faceoffsets",
+];
 /// Features of one kind that a shape may have.
 const MOST_FEATURES: usize = 1 << 12;
 
@@ -30,8 +36,10 @@ pub fn shapes(file: &VtkArrays) -> Result<Arc<[Polyhedron]>, RecordingError> {
         )));
     }
     let cells = Cells {
-        places: file.vectors("Points", "Points", points)?,
+        corners: file.vectors("PointData", "core", points)?,
         rounding: file.numbers("PointData", "rounding", 1, Some(points))?,
+        volume: file.numbers("PointData", "volume", 1, Some(points))?,
+        gyration: file.vectors("PointData", "gyration", points)?,
         offsets: file.numbers("Cells", "offsets", 1, Some(cells))?,
         faces: file.numbers("Cells", "faces", 1, None)?,
         face_offsets: file.numbers("Cells", "faceoffsets", 1, Some(cells))?,
@@ -45,8 +53,12 @@ pub fn shapes(file: &VtkArrays) -> Result<Arc<[Polyhedron]>, RecordingError> {
 
 /// What the file holds.
 struct Cells<'a> {
-    places: Vec<DVec3>,
+    /// Of each point: the corner of the core [m], and its grain's rounding radius [m], volume [m³]
+    /// and principal moments of inertia over the mass [m²].
+    corners: Vec<DVec3>,
     rounding: &'a [f64],
+    volume: &'a [f64],
+    gyration: Vec<DVec3>,
     offsets: &'a [f64],
     faces: &'a [f64],
     face_offsets: &'a [f64],
@@ -60,24 +72,14 @@ impl Cells<'_> {
             None => 0,
         };
         let end = index(self.offsets[cell])?;
-        let corners = self.places.get(first..end)?;
+        let corners = self.corners.get(first..end)?;
         let rounding = *self.rounding.get(first)?;
         if corners.len() == 1 {
             return Some(Polyhedron::sphere(rounding)).filter(Polyhedron::is_sound_sphere);
         }
         let faces = self.faces_of(cell, first, corners.len())?;
-        let solid = Solid::new(corners.to_vec(), faces);
-        let moments = solid.moments();
-        let second = moments.second;
-        let second = DVec3::new(second.x_axis.x, second.y_axis.y, second.z_axis.z);
-        let shape = Polyhedron {
-            vertices: with_faces_moved(corners, &solid.faces, -rounding),
-            edges: solid.edges(),
-            faces: solid.faces,
-            rounding,
-            volume: moments.volume,
-            gyration: (DVec3::splat(second.element_sum()) - second) / moments.volume,
-        };
+        let core = Solid::new(corners.to_vec(), faces);
+        let shape = Polyhedron::of_core(core, rounding, self.volume[first], self.gyration[first]);
         Some(shape).filter(Polyhedron::is_sound_core)
     }
 

@@ -53,6 +53,9 @@ impl Scene {
         line("time_step", time_step(self.time_step));
         line("duration", format!("{:?}", self.duration));
         line("output_interval", format!("{:?}", self.output_interval));
+        if let Some(interval) = self.sample_interval {
+            line("sample_interval", format!("{interval:?}"));
+        }
         line("seed", self.seed.to_string());
         line(
             "grains",

@@ -10,7 +10,7 @@ fn scene_as_text_is_read_as_the_same_scene() {
         .replace("Three grains", "Three \\\"grains\\\" \\\\ of α")
         .replace(
             "time_step: Given(1e-5)",
-            "gravity: (0.1, -9, 1e-17), seed: 18446744073709551615",
+            "gravity: (0.1, -9, 1e-17), seed: 18446744073709551615, sample_interval: 2.5e-3",
         );
     // Normals across the axes are made unit vectors anew when they are read, to the last digit.
     let belt = |law| belt(law).replace("normal: (-1, 1, 0)", "normal: (-1, 0, 0)");
