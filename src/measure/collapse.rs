@@ -10,6 +10,9 @@ use super::series::Series;
 /// front no farther from its last place than [`STILL`] of it.
 const AT_REST: f64 = 0.01;
 const STILL: f64 = 0.01;
+/// For how long, as a share of `t_f`, a column has been at rest when that is believed: a front that
+/// creeps on moves its last place, and with it the time at which it was near it.
+const BELIEVED: f64 = 0.25;
 
 /// What the samples of a collapse show so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +52,12 @@ impl Collapse {
             front,
             height: last.value(Measure::DepositHeight),
         })
+    }
+
+    /// Whether nothing more is to come of it `now` [s], at the last sample.
+    pub fn is_over(&self, now: f64) -> bool {
+        self.rest_time
+            .is_some_and(|rest| now >= (1.0 + BELIEVED) * rest)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::solver::Fault;
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
-    /// It reached its duration.
+    /// It reached its duration, or the rest that ends it.
     Done,
     /// Somebody stopped it; its files are whole.
     Interrupted,

@@ -19,7 +19,12 @@ pub static MAN2023: Paper = Paper {
     name: "man2023",
     source: "Man et al. 2023, the collapse of columns of grains of two frictions",
     scene: "column",
-    settings: &["duration=440ms", "time-step=2.2us", "output-interval=20ms"],
+    settings: &[
+        "duration=800ms",
+        "until=rest",
+        "time-step=2.2us",
+        "output-interval=20ms",
+    ],
     keys: &["mu11", "mu22", "height", "mix"],
     batches: &[
         Batch::new("h1", H1, MIXES, (1, 3)),
@@ -33,6 +38,7 @@ pub static MAN2023: Paper = Paper {
     ],
     small_settings: &[
         "duration=60ms",
+        "until=duration",
         "radius=10mm",
         "cell=4mm",
         "rounding=0.4mm",

@@ -170,6 +170,8 @@ parameters! {
     Seed => run::SEED,
     /// Simulated time of a run without a window [s].
     Duration => run::DURATION,
+    /// What ends a run without a window.
+    Until => run::UNTIL,
     /// Simulated time between two written states [s].
     OutputInterval => run::OUTPUT_INTERVAL,
     /// Simulated time between two samples [s].

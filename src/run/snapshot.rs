@@ -108,6 +108,16 @@ impl Checkpoint {
         &self.world
     }
 
+    /// The samples of the run until then.
+    pub fn series(&self) -> &Series {
+        &self.series
+    }
+
+    /// How many commands were carried out until then.
+    pub fn command_count(&self) -> usize {
+        self.commands.len()
+    }
+
     /// The same with the samples of the run until then, and the profiles of its flowing layer in
     /// the first seconds, which are kept apart.
     #[must_use]

@@ -14,7 +14,7 @@ use crate::output::{
     CHECKPOINT, FRAME_LOG, Frame, OutputError, PROFILES, RunSoFar, SAMPLES, Written, WrittenRest,
 };
 use crate::run::{Checkpoint, CheckpointParts, Measured, Stored, VERSION};
-use crate::scene::Scene;
+use crate::scene::{Scene, Until};
 use crate::solver::advise;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -97,6 +97,7 @@ impl CheckpointFile {
         let path = job.out.join(CHECKPOINT);
         let scene = Scene {
             duration: 0.0,
+            until: Until::Duration,
             output_interval: if job.grains {
                 job.scene.output_interval
             } else {

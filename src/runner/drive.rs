@@ -4,6 +4,7 @@
 //! loop hears whether to stop, tells how far the run has come, and holds at each output time.
 
 use super::checkpoint::{CheckpointFile, CheckpointLookup, Kept};
+use super::rest::RestWatch;
 use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
 use crate::measure::Summary;
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
@@ -128,7 +129,7 @@ pub fn standing(job: &Job) -> Result<Standing, RunnerError> {
     let Some(kept) = find(job, &mut CheckpointFile::of(job)?, &folder)? else {
         return Ok(Standing::Nothing);
     };
-    Ok(if is_done(&kept, &folder, job.scene.duration)? {
+    Ok(if is_done(&kept, &folder, job)? {
         Standing::Done
     } else {
         Standing::Until(kept.checkpoint.world().time())
@@ -145,7 +146,8 @@ impl DirectRun {
 
 /// A job that is being run.
 pub struct Runner {
-    duration: f64,
+    end: End,
+    rest: Option<RestWatch>,
     recorder: Recorder,
     checkpoints: Option<CheckpointFile>,
     /// Where the run goes on, if it was stopped before.
@@ -182,7 +184,7 @@ impl Runner {
         };
         let warnings = folder.warning().into_iter().collect();
         let is_done = match &kept {
-            Some(kept) => is_done(kept, &folder, job.scene.duration)?,
+            Some(kept) => is_done(kept, &folder, job)?,
             None => false,
         };
         if kept.is_some() && !is_done {
@@ -199,8 +201,13 @@ impl Runner {
             }
             None => (Recorder::begin(subject, folder)?, None),
         };
+        let end = match &checkpoint {
+            Some(end) if is_done => End::Step(end.world().clock.step, end.world().time()),
+            _ => End::Time(job.scene.duration),
+        };
         Ok(Self {
-            duration: job.scene.duration,
+            end,
+            rest: RestWatch::of(job),
             recorder,
             checkpoints,
             checkpoint,
@@ -245,11 +252,17 @@ impl Runner {
         watch: &mut dyn Watch,
         stop: &dyn Fn() -> bool,
     ) -> Result<Finished, RunnerError> {
-        let end = End::Time(self.duration);
+        let end = self.end;
         let writing = (!self.is_done).then_some(&mut self);
         let ending = drive(run, end, writing, watch, stop)?;
         self.warnings.extend(run.warnings());
         let view = run.at().state();
+        if ending == Ending::Done && view.is_some_and(|view| self.still_moves(view)) {
+            self.warnings.push(format!(
+                "the column still moves at t = {:.6} s, its duration: a longer --duration lets it come to rest",
+                end.time()
+            ));
+        }
         if self.is_done {
             return Ok(Finished {
                 ending,
@@ -279,7 +292,8 @@ impl Runner {
         })
     }
 
-    /// Writes what is due at the present state; returns the step of the next output.
+    /// Writes what is due at the present state; returns the step at which something is due next,
+    /// none where the run ends here.
     fn record(&mut self, run: RunSoFar) -> Result<Option<u64>, RunnerError> {
         let all = if self.recorder.rewrites_series(run) {
             self.forgotten(run)?
@@ -296,7 +310,19 @@ impl Runner {
         if checkpoints.is_some_and(|file| file.is_due(is_output)) {
             self.keep(run)?;
         }
-        Ok(self.recorder.next_output(&run.world.clock))
+        if self.rest.is_some_and(|rest| rests(rest, run)) {
+            return Ok(None);
+        }
+        let clock = &run.world.clock;
+        let look = self.rest.map(|rest| rest.next_look(clock));
+        let due = [self.recorder.next_output(clock), look];
+        Ok(Some(due.into_iter().flatten().min().unwrap_or(u64::MAX)))
+    }
+
+    /// Whether the run was to come to rest and has not.
+    fn still_moves(&self, run: RunSoFar) -> bool {
+        self.rest
+            .is_some_and(|rest| !self.is_done && !rests(rest, run))
     }
 
     /// All that was measured of `run`, where some of it was forgotten.
@@ -308,7 +334,8 @@ impl Runner {
 
     /// What of the run may be forgotten: it stands in the table of samples and in the checkpoint.
     fn stored(&self) -> Stored {
-        (self.checkpoints.as_ref()).map_or_else(Stored::default, CheckpointFile::stored)
+        let file = self.checkpoints.as_ref().filter(|_| self.rest.is_none());
+        file.map_or_else(Stored::default, CheckpointFile::stored)
     }
 
     /// Keeps a checkpoint, if any is to be kept.
@@ -378,16 +405,25 @@ fn check_method(folder: &OutputFolder) -> Result<(), RunnerError> {
     }
 }
 
-/// Whether `folder` holds all files of the run that is `kept`, which has come to its `duration`
-/// [s].
-fn is_done(kept: &Kept, folder: &OutputFolder, duration: f64) -> Result<bool, RunnerError> {
-    let (summary, world) = (folder.summary()?, kept.checkpoint.world());
+/// Whether `run` has come to the rest that ends it.
+fn rests(rest: RestWatch, run: RunSoFar) -> bool {
+    rest.ends(run.world, run.series, run.commands.len())
+}
+
+/// Whether `folder` holds all files of the run that is `kept`, which has come to the end of `job`.
+fn is_done(kept: &Kept, folder: &OutputFolder, job: &Job) -> Result<bool, RunnerError> {
+    let (summary, end) = (folder.summary()?, &kept.checkpoint);
+    let world = end.world();
+    let rest = RestWatch::of(job);
+    let is_at_rest = rest.is_some_and(|rest| rest.ends(world, end.series(), end.command_count()));
     let files = summary["files"].as_object();
     let is_there = |name: &String| folder.path().join(name).is_file();
-    Ok(world.clock.step_at(duration) <= world.clock.step
-        && summary["status"] == "done"
-        && summary["state_hash"] == world.hash().to_string()
-        && files.is_some_and(|files| files.keys().all(is_there)))
+    Ok(
+        (is_at_rest || world.clock.step_at(job.scene.duration) <= world.clock.step)
+            && summary["status"] == "done"
+            && summary["state_hash"] == world.hash().to_string()
+            && files.is_some_and(|files| files.keys().all(is_there)),
+    )
 }
 
 /// Where a run ends.
@@ -436,16 +472,16 @@ pub fn drive(
             }
             At::State(view) => {
                 pace.tell(view.world.time(), end.time(), watch);
-                let output = match &mut runner {
+                let due = match &mut runner {
                     Some(runner) => runner.record(view)?,
-                    None => None,
+                    None => Some(u64::MAX),
                 };
                 let clock = &view.world.clock;
                 let last = end.step(clock);
-                if clock.step >= last {
-                    return Ok(Ending::Done);
+                match due {
+                    Some(due) if clock.step < last => due.min(last),
+                    _ => return Ok(Ending::Done),
                 }
-                output.unwrap_or(last).min(last)
             }
         };
         if stop() {

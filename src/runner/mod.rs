@@ -12,6 +12,7 @@
 //! | `verify` | computing again what a file states |
 //! | `drive` | the loop, and how a run ended |
 //! | `checkpoint` | going on after a stop |
+//! | `rest` | ending when a column is at rest |
 //! | `log` | what was measured, in files that grow |
 //! | `advance` | what the loop moves: a run in short pieces |
 //! | `job` | what to run and where its files go |
@@ -28,6 +29,7 @@ mod error;
 pub mod exit;
 mod job;
 mod log;
+mod rest;
 mod setting;
 mod verify;
 mod watch;

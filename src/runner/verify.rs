@@ -6,6 +6,7 @@
 //! were written.
 
 use super::drive::{End, drive};
+use super::rest::RestWatch;
 use super::{Advance, DirectRun, RunnerError, Watch, exit};
 use crate::files::read_whole;
 use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file, is_own_name};
@@ -183,9 +184,11 @@ impl RunRecord {
             compare("grains", grains.to_string(), world.grains.len().to_string());
         }
         let last = world.clock.step_at(self.scene.duration);
+        let rest = RestWatch::of_scene(&self.scene, self.commands.len());
+        let is_at_rest = rest.is_some_and(|rest| rest.ends(world, run.series, run.commands.len()));
         let status = match self.status.as_deref() {
             Some("fault") | None => None,
-            Some(_) if world.clock.step >= last => Some("done"),
+            Some(_) if world.clock.step >= last || is_at_rest => Some("done"),
             Some(_) => Some("interrupted"),
         };
         if let (Some(status), Some(stated)) = (status, &self.status) {

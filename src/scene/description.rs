@@ -42,6 +42,9 @@ pub struct Scene {
     pub time_step: TimeStep,
     /// Simulated time of a headless run [s].
     pub duration: f64,
+    /// What ends a headless run; a record says nothing of its duration alone.
+    #[serde(default, skip_serializing_if = "Until::is_duration")]
+    pub until: Until,
     /// Simulated time between two written states [s].
     pub output_interval: f64,
     /// Simulated time between two samples [s]; none where samples follow what happens.
@@ -63,6 +66,23 @@ pub enum TimeStep {
     /// The largest stable step at any time: a change that moves the limit changes the step too, as
     /// a command of its own.
     Following,
+}
+
+/// What ends a run without a window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Until {
+    /// Its duration.
+    #[default]
+    Duration,
+    /// That its column is at rest, or its duration, whatever comes first.
+    Rest,
+}
+
+impl Until {
+    /// Whether it is the duration alone.
+    pub fn is_duration(&self) -> bool {
+        *self == Self::Duration
+    }
 }
 
 impl Scene {

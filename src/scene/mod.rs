@@ -26,7 +26,7 @@ mod text;
 
 pub use built_in::{BuiltIn, built_in};
 pub use container::{SceneContainer, ScenePlane, SceneTube};
-pub use description::{SAMPLE_INTERVAL, Scene, TimeStep};
+pub use description::{SAMPLE_INTERVAL, Scene, TimeStep, Until};
 pub(crate) use error::{Problem, one_of, suggestion};
 pub use error::{SceneError, nearest};
 pub(crate) use file::count_of;

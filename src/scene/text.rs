@@ -5,7 +5,7 @@
 //! when it is read. A mesh is written as its triangles. The keys are those of `file`.
 
 use super::container::{SceneContainer, ScenePlane};
-use super::description::{Scene, TimeStep};
+use super::description::{Scene, TimeStep, Until};
 use super::grains::{SceneGrain, SceneGrains};
 use super::materials::{PairOverride, SceneMaterial};
 use super::mesh::MeshMotion;
@@ -52,6 +52,9 @@ impl Scene {
         }
         line("time_step", time_step(self.time_step));
         line("duration", format!("{:?}", self.duration));
+        if self.until == Until::Rest {
+            line("until", "Rest".to_owned());
+        }
         line("output_interval", format!("{:?}", self.output_interval));
         if let Some(interval) = self.sample_interval {
             line("sample_interval", format!("{interval:?}"));

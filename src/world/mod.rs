@@ -115,6 +115,12 @@ impl Clock {
         self.origin_step.saturating_add(steps as u64).max(self.step)
     }
 
+    /// Whether the present step is the first at or after `time` [s].
+    pub fn has_just_come_to(&self, time: f64) -> bool {
+        let steps = ((time - self.origin_time) / self.time_step - 1e-9).ceil();
+        steps == (self.step - self.origin_step) as f64
+    }
+
     /// Changes the length of a step [s] from now on.
     pub fn set_time_step(&mut self, time_step: f64) {
         self.origin_time = self.time();

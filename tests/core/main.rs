@@ -18,6 +18,7 @@ mod paper;
 mod parameters;
 mod recorder;
 mod recording;
+mod rest;
 mod run;
 #[path = "../common/runs.rs"]
 mod runs;

@@ -4,7 +4,7 @@ use crate::parameters::Value;
 use crate::parameters::parameter_row::{InScene, InWorld, Kind, PanelSection, ParameterRow};
 use crate::parameters::value::Choice;
 use crate::physics::{Integrator, limits, units};
-use crate::scene::TimeStep;
+use crate::scene::{SceneContainer, TimeStep, Until};
 use crate::solver::advise;
 
 /// How far below the step in effect its slider goes, as a factor.
@@ -134,6 +134,45 @@ pub static DURATION: ParameterRow = ParameterRow {
         write: |scene, _, value| {
             scene.duration = value.number();
             Some(())
+        },
+    }),
+    ..super::AT_START
+};
+
+static ENDS: [Choice; 2] = [
+    Choice {
+        key: "duration",
+        name: "the duration",
+        number: 0.0,
+    },
+    Choice {
+        key: "rest",
+        name: "rest",
+        number: 1.0,
+    },
+];
+
+pub static UNTIL: ParameterRow = ParameterRow {
+    key: "until",
+    name: |_| "until",
+    kind: Kind::Choice(&ENDS),
+    expected: "`duration` or `rest`, in a scene of a column",
+    description: "What ends a run without a window: its duration, or that its column has been at rest for a quarter of the time \
+                  that it took to come to it.",
+    section: PanelSection::Nowhere,
+    in_scene: Some(InScene {
+        read: |scene, _| {
+            let is_column = matches!(scene.container, SceneContainer::Column { .. });
+            let ends = is_column.then_some(&ENDS)?;
+            ends.get(scene.until as usize).map(Value::Choice)
+        },
+        write: |scene, _, value| {
+            scene.until = match value {
+                Value::Choice(choice) if choice.key == "duration" => Until::Duration,
+                Value::Choice(choice) if choice.key == "rest" => Until::Rest,
+                _ => return None,
+            };
+            matches!(scene.container, SceneContainer::Column { .. }).then_some(())
         },
     }),
     ..super::AT_START

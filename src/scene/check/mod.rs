@@ -26,7 +26,8 @@ mod voronoi_cells;
 pub(super) use container_values::check_container;
 pub(super) use values::{fraction, within};
 
-use super::description::{Scene, TimeStep};
+use super::container::SceneContainer;
+use super::description::{Scene, TimeStep, Until};
 use super::error::Problem;
 use super::grains::SceneGrains;
 use crate::physics::limits;
@@ -63,6 +64,13 @@ impl Scene {
 
     fn check_times(&self) -> Checked {
         within(&limits::DURATION, self.duration, || "duration".to_owned())?;
+        if self.until == Until::Rest && !matches!(self.container, SceneContainer::Column { .. }) {
+            return Err(Problem::value(
+                "until",
+                "Rest",
+                "`Duration`: only in a `Column` is it known what is at rest",
+            ));
+        }
         within(&limits::DURATION, self.output_interval, || {
             "output_interval".to_owned()
         })?;

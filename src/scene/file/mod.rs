@@ -15,7 +15,7 @@ pub(crate) use grains_keys::count_of;
 
 use super::error::Problem;
 use super::syntax::FileKind;
-use super::{PairOverride, Scene, SceneMaterial, TimeStep};
+use super::{PairOverride, Scene, SceneMaterial, TimeStep, Until};
 use crate::physics::{ContactLaw, FeatureRule, Integrator};
 use container_keys::ContainerFile;
 use glam::DVec3;
@@ -58,6 +58,8 @@ pub(super) struct SceneFile {
     time_step: TimeStep,
     #[serde(default = "paper_duration")]
     duration: f64,
+    #[serde(default)]
+    until: Until,
     #[serde(default = "paper_output_interval")]
     output_interval: f64,
     #[serde(default)]
@@ -173,6 +175,7 @@ impl SceneFile {
             integrator: self.integrator,
             time_step: self.time_step,
             duration: self.duration,
+            until: self.until,
             output_interval: self.output_interval,
             sample_interval: self.sample_interval,
             seed: self.seed,
@@ -237,6 +240,7 @@ fn meaning(key: &str) -> &'static str {
         "law" => ContactLaw::FORMS,
         "integrator" => "`Explicit` or `Imex`",
         "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
+        "until" => "`Duration` or `Rest`",
         "duration" | "output_interval" | "sample_interval" => "a time in s",
         _ => "",
     }
