@@ -232,31 +232,40 @@ impl RunRecord {
     /// Compares the files that it vouches for, in `folder`, with what they were when they were
     /// written.
     pub fn check_files(&self, folder: &Path) -> VouchedFiles {
-        let mut found = VouchedFiles::default();
-        for (name, digest) in &self.files {
-            let path = folder.join(name);
-            if !is_own_name(name) {
-                found
+        check_digests(&self.files, folder)
+    }
+}
+
+/// Compares these `files` in `folder`, each with its digest, with what they were when they were
+/// written.
+pub fn check_digests<'a>(
+    files: impl IntoIterator<Item = (&'a String, &'a String)>,
+    folder: &Path,
+) -> VouchedFiles {
+    let mut found = VouchedFiles::default();
+    for (name, digest) in files {
+        let path = folder.join(name);
+        if !is_own_name(name) {
+            found
+                .altered
+                .push(format!("{name:?} is no name of a run's file"));
+        } else if !path.exists() {
+            found.missing.push(name.clone());
+        } else if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+            found.altered.push(format!("{name} is no file"));
+        } else {
+            match digest_of_file(&path) {
+                Ok(own) if own == *digest => found.same += 1,
+                Ok(_) => found
                     .altered
-                    .push(format!("{name:?} is no name of a run's file"));
-            } else if !path.exists() {
-                found.missing.push(name.clone());
-            } else if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-                found.altered.push(format!("{name} is no file"));
-            } else {
-                match digest_of_file(&path) {
-                    Ok(own) if own == *digest => found.same += 1,
-                    Ok(_) => found
-                        .altered
-                        .push(format!("{name} was changed since it was written")),
-                    Err(error) => found
-                        .altered
-                        .push(format!("{name} cannot be read: {error}")),
-                }
+                    .push(format!("{name} was changed since it was written")),
+                Err(error) => found
+                    .altered
+                    .push(format!("{name} cannot be read: {error}")),
             }
         }
-        found
     }
+    found
 }
 
 /// That the file at `path` holds no record, and what it should be.
