@@ -8,7 +8,7 @@
 use super::drive::{End, drive};
 use super::{Advance, DirectRun, RunnerError, Watch, exit};
 use crate::files::read_whole;
-use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file, is_own_name};
+use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file, is_name_below};
 use crate::run::{BedStore, RunRecord, Session, VERSION, fingerprint};
 use crate::scene::within_folders;
 use crate::solver::Fault;
@@ -25,6 +25,8 @@ const LARGEST_FILE: u64 = 256 << 20;
 const SAME_RESULT: f64 = 1e-9;
 /// Steps after its time within which a fault that is stated has to be met.
 const STEPS_TO_A_FAULT: u64 = 100;
+/// How deep below its folder a run's files lie: in it, or in a folder of it.
+const DEPTH: usize = 2;
 /// Most differences that are named.
 const MOST_NAMED: usize = 10;
 
@@ -232,23 +234,24 @@ impl RunRecord {
     /// Compares the files that it vouches for, in `folder`, with what they were when they were
     /// written.
     pub fn check_files(&self, folder: &Path) -> VouchedFiles {
-        check_digests(&self.files, folder)
+        check_digests(&self.files, folder, DEPTH)
     }
 }
 
-/// Compares these `files` in `folder`, each with its digest, with what they were when they were
-/// written.
+/// Compares these `files` below `folder`, at most so `deep` and each with its digest, with what they
+/// were when they were written.
 pub fn check_digests<'a>(
     files: impl IntoIterator<Item = (&'a String, &'a String)>,
     folder: &Path,
+    deep: usize,
 ) -> VouchedFiles {
     let mut found = VouchedFiles::default();
     for (name, digest) in files {
         let path = folder.join(name);
-        if !is_own_name(name) {
+        if !is_name_below(name, deep) {
             found
                 .altered
-                .push(format!("{name:?} is no name of a run's file"));
+                .push(format!("{name:?} is no name of a file below the folder"));
         } else if !path.exists() {
             found.missing.push(name.clone());
         } else if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {

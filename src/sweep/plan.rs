@@ -34,7 +34,7 @@ pub struct Sweep {
 }
 
 /// One case: a scene with its commands.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Its folder's name: `liquid=3_radius=2mm`.
     pub name: String,

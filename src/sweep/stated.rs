@@ -5,7 +5,7 @@
 
 use super::folder::SWEEP;
 use crate::files::read_whole;
-use crate::output::{SUMMARY, is_own_name};
+use crate::output::{SUMMARY, is_name_below};
 use crate::run::RunRecord;
 use crate::runner::{RunnerError, VouchedFiles, check_digests};
 use serde_json::Value;
@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// Largest file that is read [bytes].
 const LARGEST: u64 = 256 << 20;
+
+/// How deep below its folder a sweep's plots lie: in folders of one.
+const DEPTH: usize = 3;
 
 /// A sweep as its folder states it.
 #[derive(Clone, Debug)]
@@ -50,7 +53,7 @@ impl StatedSweep {
             return Err(refuse("states no sweep of Grainfall".into()));
         }
         let case = |case: &Value| {
-            let name = case["name"].as_str().filter(|name| is_folder_name(name))?;
+            let name = case["name"].as_str().filter(|name| is_name_below(name, 1))?;
             Some((name.to_owned(), case["state_hash"].as_str()?.to_owned()))
         };
         let listed = stated["cases"].as_array();
@@ -86,11 +89,6 @@ impl StatedSweep {
 
     /// Compares tables and plots with what they were when they were written.
     pub fn check_files(&self) -> VouchedFiles {
-        check_digests(&self.files, &self.folder)
+        check_digests(&self.files, &self.folder, DEPTH)
     }
-}
-
-/// Whether `name` is that of a folder right below another.
-fn is_folder_name(name: &str) -> bool {
-    is_own_name(name) && Path::new(name).components().count() == 1
 }
