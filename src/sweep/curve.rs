@@ -100,7 +100,13 @@ fn name_of(ensembles: &[Ensemble]) -> String {
 
 /// `name` in letters, digits and strokes.
 fn slug(name: &str) -> String {
-    let plain = |letter: char| if letter.is_alphanumeric() { letter } else { '-' };
+    let plain = |letter: char| {
+        if letter.is_alphanumeric() {
+            letter
+        } else {
+            '-'
+        }
+    };
     let plain: String = name.chars().map(plain).collect();
     let parts: Vec<&str> = plain.split('-').filter(|part| !part.is_empty()).collect();
     parts.join("-")
@@ -181,7 +187,9 @@ mod tests {
             name: scene.into(),
             scene: Scene::open(scene).unwrap(),
             settings: Vec::new(),
-            variations: variations.map(|text| Variation::parse(text).unwrap()).collect(),
+            variations: variations
+                .map(|text| Variation::parse(text).unwrap())
+                .collect(),
             out: "nowhere".into(),
             jobs: 1,
             beds: BedStore::none(),
@@ -190,7 +198,10 @@ mod tests {
     }
 
     /// The cases of `sweep`, each with these results [SI unit].
-    fn outcomes(sweep: &Sweep, results: &dyn Fn(usize) -> Vec<(ResultKey, MeasuredValue)>) -> Vec<CaseResult> {
+    fn outcomes(
+        sweep: &Sweep,
+        results: &dyn Fn(usize) -> Vec<(ResultKey, MeasuredValue)>,
+    ) -> Vec<CaseResult> {
         let cases = cases(sweep).unwrap().into_iter().enumerate();
         let outcome = |(index, case): (usize, Case)| {
             let entry = |(key, value): (ResultKey, MeasuredValue)| SummaryEntry {
@@ -213,14 +224,17 @@ mod tests {
     fn a_curve_has_a_point_for_each_value_with_the_error_over_its_seeds() {
         let sweep = sweep("small-drum", &["drum-speed=3rpm,6rpm", "seed=1,2"]);
         let drop = ResultKey::OfRun(RunQuantity::Drop);
-        let degrees = [4.0, 6.0, 1.0, 2.0];
+        let degrees: [f64; 4] = [4.0, 6.0, 1.0, 2.0];
         let all = outcomes(&sweep, &|index| {
             vec![(drop, MeasuredValue::Number(degrees[index].to_radians()))]
         });
         assert_eq!(numbers(&all), [drop]);
         let plot = curve(&sweep, &all, drop).unwrap();
         let line = &plot.lines[0];
-        assert_eq!((plot.lines.len(), line.name.as_str()), (1, "means over 2 seeds"));
+        assert_eq!(
+            (plot.lines.len(), line.name.as_str()),
+            (1, "means over 2 seeds")
+        );
         assert_eq!(plot.x.label(), "drum-speed [rpm]");
         for ((x, y), expected) in line.points.iter().zip([(3.0, 5.0), (6.0, 1.5)]) {
             assert!((x - expected.0).abs() < 1e-12 && (y - expected.1).abs() < 1e-12);
@@ -230,7 +244,10 @@ mod tests {
         for (error, expected) in errors.zip([1.0, 0.5]) {
             assert!((error - expected).abs() < 1e-12, "{error}");
         }
-        let numbers: Vec<Option<f64>> = all.iter().map(|own| varied_number(&sweep, &own.case)).collect();
+        let numbers: Vec<Option<f64>> = all
+            .iter()
+            .map(|own| varied_number(&sweep, &own.case))
+            .collect();
         assert_eq!(numbers[0], numbers[1]);
         assert!((numbers[2].unwrap() - 6.0).abs() < 1e-12);
     }
@@ -271,11 +288,17 @@ mod tests {
         let [_, law] = &lines("water-drum")[..] else {
             panic!("a law is drawn");
         };
-        let radius = at_start(&cases(&sweep("water-drum", &["seed=1"])).unwrap()[0]).grains.radius[0];
+        let radius = at_start(&cases(&sweep("water-drum", &["seed=1"])).unwrap()[0])
+            .grains
+            .radius[0];
         let dry = dry_drum(radius).unwrap().drop.mean.to_degrees();
         // At 295 mPa s Eq. 23 is 0.4 + 0.47/e.
         let expected = dry * (0.4 + 0.47 / std::f64::consts::E);
-        assert!((law.points[1].1 / expected - 1.0).abs() < 1e-9, "{:?}", law.points);
+        assert!(
+            (law.points[1].1 / expected - 1.0).abs() < 1e-9,
+            "{:?}",
+            law.points
+        );
         assert_eq!(lines("small-drum").len(), 1, "its drum is another one");
     }
 
@@ -296,7 +319,10 @@ mod tests {
             let plot = curve(&sweep, &all, quantity.into()).unwrap();
             plot.lines[1].points.clone()
         };
-        let run_out: Vec<f64> = law(RunQuantity::RunOut).iter().map(|point| point.1).collect();
+        let run_out: Vec<f64> = law(RunQuantity::RunOut)
+            .iter()
+            .map(|point| point.1)
+            .collect();
         assert_eq!(run_out, alpha.map(run_out_law));
         let rest = law(RunQuantity::DimensionlessRestTime);
         assert_eq!(rest.len(), 1, "between 3.5 and 13 the paper says nothing");

@@ -146,11 +146,7 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
     let mut dry_or_wet = scene.clone();
     apply_settings(&mut dry_or_wet, &of_all)?;
     let stays_dry = dry_or_wet.liquid.is_none() && !of_wet.iter().any(|setting| pours(setting));
-    let skipped = if stays_dry {
-        of_wet
-    } else {
-        Vec::new()
-    };
+    let skipped = if stays_dry { of_wet } else { Vec::new() };
     let settings: Vec<&String> = settings
         .into_iter()
         .filter(|setting| !skipped.contains(setting))

@@ -53,7 +53,9 @@ impl StatedSweep {
             return Err(refuse("states no sweep of Grainfall".into()));
         }
         let case = |case: &Value| {
-            let name = case["name"].as_str().filter(|name| is_name_below(name, 1))?;
+            let name = case["name"]
+                .as_str()
+                .filter(|name| is_name_below(name, 1))?;
             Some((name.to_owned(), case["state_hash"].as_str()?.to_owned()))
         };
         let listed = stated["cases"].as_array();
@@ -68,7 +70,9 @@ impl StatedSweep {
         Ok(Self {
             folder: file.parent().unwrap_or(Path::new("")).to_owned(),
             cases,
-            files: files.map(|(name, own)| (name.clone(), digest(own))).collect(),
+            files: files
+                .map(|(name, own)| (name.clone(), digest(own)))
+                .collect(),
         })
     }
 
@@ -83,7 +87,9 @@ impl StatedSweep {
         let (_, stated) = self.cases.iter().find(|(own, _)| own == name)?;
         let own = record.state_hash.as_deref().unwrap_or("none");
         (own != stated).then(|| {
-            format!("{name}: its summary states state {own}, the sweep's table was made of {stated}")
+            format!(
+                "{name}: its summary states state {own}, the sweep's table was made of {stated}"
+            )
         })
     }
 

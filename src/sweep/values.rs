@@ -84,10 +84,17 @@ fn even_ends(present: f64, range: std::ops::RangeInclusive<f64>, least: f64) -> 
     let (low, high) = range.into_inner();
     let steps = (PROPOSED - 1) as f64;
     let room = (high - low) / steps;
-    let wanted = if present == 0.0 { room } else { STEP * present.abs() };
+    let wanted = if present == 0.0 {
+        room
+    } else {
+        STEP * present.abs()
+    };
     let step = round_down(wanted.min(room)).max(least);
     let from = (present - PRESENT * step).min(high - steps * step).max(low);
-    (rounded(from, DIGITS), rounded((from + steps * step).min(high), DIGITS))
+    (
+        rounded(from, DIGITS),
+        rounded((from + steps * step).min(high), DIGITS),
+    )
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is at most `value`; 1 of what is none.
@@ -134,7 +141,8 @@ fn text(parameter: &Parameter, value: f64, ends: [f64; 2]) -> String {
     };
     let few = format!("{}{name}", rounded(value * factor, DIGITS));
     let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-    let is_within = |read: f64| (low..=high).contains(&read) || (read - value).abs() < 1e-12 * high.abs();
+    let is_within =
+        |read: f64| (low..=high).contains(&read) || (read - value).abs() < 1e-12 * high.abs();
     match row.parse(&few) {
         Some(read) if is_within(read.number()) => few,
         _ => row.value(value).to_string(),
@@ -167,7 +175,10 @@ mod tests {
     #[test]
     fn values_lie_evenly_or_by_powers_of_ten_in_the_unit_that_people_read() {
         let even = values(range(0.1, 0.8, 8, false), &friction());
-        assert_eq!(even, ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8"]);
+        assert_eq!(
+            even,
+            ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8"]
+        );
         let powers = values(range(1e-3, 1.0, 4, true), &Parameter::Viscosity);
         assert_eq!(powers, ["0.001", "0.01", "0.1", "1"]);
         let rpm = std::f64::consts::TAU / 60.0;
@@ -185,7 +196,11 @@ mod tests {
 
     #[test]
     fn every_value_reads_back_within_the_ends() {
-        for (from, to) in [(0.123_456_7, 0.987_654_3), (1.0 / 3.0, 2.0 / 3.0), (0.0, 1e-7)] {
+        for (from, to) in [
+            (0.123_456_7, 0.987_654_3),
+            (1.0 / 3.0, 2.0 / 3.0),
+            (0.0, 1e-7),
+        ] {
             for text in values(range(from, to, 7, false), &friction()) {
                 let Some(Value::Number(read)) = friction().row().parse(&text) else {
                     panic!("{text} is no number");
@@ -209,7 +224,10 @@ mod tests {
             (own.from, own.to)
         };
         let close = |own: (f64, f64), from: f64, to: f64| {
-            assert!((own.0 - from).abs() < 1e-12 && (own.1 - to).abs() < 1e-12, "{own:?}");
+            assert!(
+                (own.0 - from).abs() < 1e-12 && (own.1 - to).abs() < 1e-12,
+                "{own:?}"
+            );
         };
         close(ends(0.4, 0.0, 1.0), 0.1, 0.8);
         close(ends(0.95, 0.0, 1.0), 0.3, 1.0);

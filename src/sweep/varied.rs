@@ -31,7 +31,11 @@ pub fn shown(key: &str, text: &str) -> Option<f64> {
 pub fn only_number(variations: &[Variation]) -> Option<&Variation> {
     let mut others = variations.iter().filter(|own| own.key != SEED);
     let only = others.next()?;
-    let is_number = |own: &Variation| own.values.iter().all(|text| shown(&own.key, text).is_some());
+    let is_number = |own: &Variation| {
+        own.values
+            .iter()
+            .all(|text| shown(&own.key, text).is_some())
+    };
     (others.next().is_none() && is_number(only)).then_some(only)
 }
 
@@ -77,7 +81,10 @@ mod tests {
     fn an_axis_goes_by_powers_of_ten_where_values_are_far_apart() {
         let axis = |text: &str| axis(&variation(text));
         let (near, far) = (axis("viscosity=0.1,0.5"), axis("viscosity=0.001,1"));
-        assert_eq!((near.label(), near.is_logarithmic()), ("viscosity [mPa s]", false));
+        assert_eq!(
+            (near.label(), near.is_logarithmic()),
+            ("viscosity [mPa s]", false)
+        );
         assert!(far.is_logarithmic());
         assert!(!axis("drum-speed=0,5rpm").is_logarithmic());
     }
@@ -88,7 +95,10 @@ mod tests {
             let list: Vec<Variation> = texts.iter().map(|text| variation(text)).collect();
             only_number(&list).map(|own| own.key.clone())
         };
-        assert_eq!(only(&["viscosity=0.1,1", "seed=1..3"]).unwrap(), "viscosity");
+        assert_eq!(
+            only(&["viscosity=0.1,1", "seed=1..3"]).unwrap(),
+            "viscosity"
+        );
         assert_eq!(only(&["seed=1..3"]), None);
         assert_eq!(only(&["viscosity=0.1,1", "gravity=1,2"]), None);
         assert_eq!(only(&["bridge-law=as-coded,as-printed"]), None);

@@ -100,7 +100,11 @@ fn a_sweep_is_asked_for_beside_a_parameter_and_answers_as_it_does_without_a_wind
     let mut harness = Window::of(simulation);
     press(&mut harness, "Run over values of friction glass – glass…");
     assert_eq!(asked(&mut harness), [Request::AskSweep(Some(friction()))]);
-    harness.state_mut().dock.sweeps.settle_in(folder.path().into());
+    harness
+        .state_mut()
+        .dock
+        .sweeps
+        .settle_in(folder.path().into());
     open_panel(&mut harness, &friction());
     type_number(&mut harness, "first value", "0.1");
     type_number(&mut harness, "last value", "0.3");
@@ -126,11 +130,16 @@ fn a_sweep_is_asked_for_beside_a_parameter_and_answers_as_it_does_without_a_wind
     harness.get_by_label("Every run is done.");
     let key = ResultKey::named("mean speed").unwrap();
     let curve = sweep::curve(&seen.sweep, outcomes, key).unwrap();
-    let column = expected[0].iter().position(|head| head.starts_with("mean speed ["));
+    let column = expected[0]
+        .iter()
+        .position(|head| head.starts_with("mean speed ["));
     let factor = key.quantity().unit.shown.factor;
     for ((x, y), row) in curve.lines[0].points.iter().zip(&expected[1..]) {
         let stated: f64 = row[column.unwrap()].parse().unwrap();
-        assert_eq!((row[0].as_str(), y.to_bits()), (x.to_string().as_str(), (stated * factor).to_bits()));
+        assert_eq!(
+            (row[0].as_str(), y.to_bits()),
+            (x.to_string().as_str(), (stated * factor).to_bits())
+        );
     }
     harness.get_by_label_contains(&format!("{}: ", curve.title));
 }
@@ -176,7 +185,10 @@ fn a_sweep_that_was_stopped_goes_on_to_the_same_bits() {
     whole.settle_in(folder.path().join("whole"));
     whole.start(longer(), BedStore::none());
     let whole = ended(&whole);
-    assert_eq!(bits(&parts.standing.outcomes), bits(&whole.standing.outcomes));
+    assert_eq!(
+        bits(&parts.standing.outcomes),
+        bits(&whole.standing.outcomes)
+    );
 }
 
 #[test]
@@ -191,7 +203,9 @@ fn why_a_sweep_cannot_be_is_said_in_the_panel() {
     let folder = tempfile::tempdir().unwrap();
     let desk = harness.state().dock.sweeps.clone();
     desk.settle_in(folder.path().into());
-    let sweep = question().sweep(folder.path(), 1, BedStore::none()).unwrap();
+    let sweep = question()
+        .sweep(folder.path(), 1, BedStore::none())
+        .unwrap();
     std::fs::create_dir(&sweep.out).unwrap();
     std::fs::write(sweep.out.join("mine.txt"), "mine").unwrap();
     desk.start(question(), BedStore::none());
@@ -257,8 +271,12 @@ fn a_sweep_outlives_its_scene_and_each_of_its_runs_opens() {
     update_until(&mut app, |app| {
         let simulation = app.world().resource::<Simulation>();
         *simulation.scene() == case.scene
-            && simulation.value(&friction()).is_some_and(|own| own == friction_there)
-            && simulation.value(&Parameter::Gravity).is_some_and(|own| own == 5.0)
+            && simulation
+                .value(&friction())
+                .is_some_and(|own| own == friction_there)
+            && simulation
+                .value(&Parameter::Gravity)
+                .is_some_and(|own| own == 5.0)
     });
 }
 
@@ -273,7 +291,9 @@ fn leaving_while_a_sweep_runs_is_asked_about_and_keeps_its_checkpoints() {
     };
     ask(&mut app, Request::StartSweep(Box::new(long)));
     update_until(&mut app, |app| {
-        desk(app).seen().is_some_and(|seen| !seen.standing.parts.is_empty())
+        desk(app)
+            .seen()
+            .is_some_and(|seen| !seen.standing.parts.is_empty())
     });
     ask(&mut app, Request::Quit);
     assert!(app.should_exit().is_none(), "it is asked first");
@@ -282,7 +302,9 @@ fn leaving_while_a_sweep_runs_is_asked_about_and_keeps_its_checkpoints() {
     assert!(app.should_exit().is_some());
     let seen = desk(&app).seen().unwrap();
     assert_eq!(seen.standing.ending, Some(Ok(SweepEnding::Interrupted)));
-    let cases = std::fs::read_dir(&seen.sweep.out).unwrap().map(Result::unwrap);
+    let cases = std::fs::read_dir(&seen.sweep.out)
+        .unwrap()
+        .map(Result::unwrap);
     let checkpoints = cases.filter(|entry| entry.path().join(CHECKPOINT).is_file());
     assert!(checkpoints.count() > 0, "one has begun");
 }

@@ -10,10 +10,10 @@ mod headless;
 #[cfg(unix)]
 mod outputs;
 mod reliability;
-mod sweeps;
 #[allow(dead_code, reason = "tests of the library use more of it")]
 #[path = "../../../tests/common/runs.rs"]
 mod runs;
+mod sweeps;
 #[allow(dead_code, reason = "tests of the library use more of it")]
 #[path = "../../../tests/common/vtk_file.rs"]
 mod vtk_file;

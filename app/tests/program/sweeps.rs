@@ -64,7 +64,8 @@ fn verify_reads_no_case_outside_a_sweeps_folder() {
     let place = Place::new();
     let out = place.path("out");
     fs::create_dir(&out).unwrap();
-    let record = |cases: &str| format!(r#"{{"program": "grainfall", "cases": [{cases}], "files": {{}}}}"#);
+    let record =
+        |cases: &str| format!(r#"{{"program": "grainfall", "cases": [{cases}], "files": {{}}}}"#);
     let verify = |cases: &str| {
         fs::write(Path::new(&out).join("sweep.json"), record(cases)).unwrap();
         let output = place.run(&["verify", "out"]);

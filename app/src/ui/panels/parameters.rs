@@ -11,7 +11,7 @@ use crate::ui::widgets::touch;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::{number, symbol};
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, RichText};
 use grainfall::lab::Half;
 use grainfall::lesson::Touch;
 use grainfall::parameters::{Choice, Kind, PanelSection, Parameter, ParameterInfo, Value, Values};

@@ -45,12 +45,7 @@ impl StartValues {
     }
 
     /// Draws a row for each.
-    pub fn rows_ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        simulation: &Simulation,
-        out: &mut Vec<Request>,
-    ) {
+    pub fn rows_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let scene = simulation.scene();
         ui.add_space(6.0);
         ui.label(RichText::new("From the next start on").strong());
@@ -144,15 +139,9 @@ fn row_ui(
     };
     let extent = row.extent();
     row.caption = Some(format!("{extent} · acts at the next start"));
-    value_ui(
-        ui,
-        &row,
-        value,
-        beside,
-        |ui| {
-            ui.label(own.description);
-            ui.weak(&extent);
-            ui.weak("It acts when the run is started with it.");
-        },
-    )
+    value_ui(ui, &row, value, beside, |ui| {
+        ui.label(own.description);
+        ui.weak(&extent);
+        ui.weak("It acts when the run is started with it.");
+    })
 }

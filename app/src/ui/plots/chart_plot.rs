@@ -80,16 +80,25 @@ impl Drawn<'_> {
         let bars = lines.flat_map(|line| &line.bars);
         let ends = bars.flat_map(|(x, low, high)| [(*x, *low), (*x, *high)]);
         let own = present.map(|own| (own.x, own.y.unwrap_or(f64::NAN)));
-        let all: Vec<[f64; 2]> = points.chain(ends).chain(own).map(|at| self.place(at)).collect();
+        let all: Vec<[f64; 2]> = points
+            .chain(ends)
+            .chain(own)
+            .map(|at| self.place(at))
+            .collect();
         [0, 1].map(|axis| {
             let numbers = all.iter().map(|at| at[axis]).filter(|at| at.is_finite());
-            let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
-                (low.min(at), high.max(at))
-            });
+            let (low, high) = numbers
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
+                    (low.min(at), high.max(at))
+                });
             if low > high {
                 return (0.0, 1.0);
             }
-            let span = if high > low { high - low } else { 0.2 * high.abs().max(1e-12) };
+            let span = if high > low {
+                high - low
+            } else {
+                0.2 * high.abs().max(1e-12)
+            };
             (low - ROOM * span, high + ROOM * span)
         })
     }
@@ -101,13 +110,19 @@ impl Drawn<'_> {
 
     fn places(&self, line: &chart::Line) -> Vec<[f64; 2]> {
         let places = line.points.iter().map(|at| self.place(*at));
-        places.filter(|at| at.iter().all(|own| own.is_finite())).collect()
+        places
+            .filter(|at| at.iter().all(|own| own.is_finite()))
+            .collect()
     }
 
     /// The lines that are results, or those that are laws, each with its colour.
     fn lines(&self, are_laws: bool) -> impl Iterator<Item = (&chart::Line, Color32)> {
         let colours = self.palette.stages;
-        let wanted = self.shown.lines.iter().filter(move |line| line.is_law == are_laws);
+        let wanted = self
+            .shown
+            .lines
+            .iter()
+            .filter(move |line| line.is_law == are_laws);
         wanted.enumerate().map(move |(index, line)| {
             let colour = if are_laws {
                 self.palette.threshold
@@ -121,7 +136,9 @@ impl Drawn<'_> {
     fn laws_ui<'b>(&'b self, plot: &mut PlotUi<'b>) {
         for (line, colour) in self.lines(true) {
             let places = self.places(line);
-            let marks = Points::new(&line.name, places.clone()).radius(2.0).color(colour);
+            let marks = Points::new(&line.name, places.clone())
+                .radius(2.0)
+                .color(colour);
             if places.len() == 1 {
                 plot.points(marks);
             }
@@ -134,7 +151,11 @@ impl Drawn<'_> {
             for (x, low, high) in &line.bars {
                 let ([x, low], [_, high]) = (self.place((*x, *low)), self.place((*x, *high)));
                 // One that goes down to zero has no lower end on an axis of powers of ten.
-                let low = if low.is_finite() { low } else { plot.plot_bounds().min()[1] };
+                let low = if low.is_finite() {
+                    low
+                } else {
+                    plot.plot_bounds().min()[1]
+                };
                 let strokes = [
                     [[x, low], [x, high]],
                     [[x - end, low], [x + end, low]],
@@ -170,8 +191,12 @@ impl Drawn<'_> {
 
     /// What is what, below the plot.
     fn legend_ui(&self, ui: &mut egui::Ui, has_present: bool) {
-        let results = self.lines(false).map(|(line, colour)| ("●", line.name.as_str(), colour));
-        let laws = self.lines(true).map(|(line, colour)| ("—", line.name.as_str(), colour));
+        let results = self
+            .lines(false)
+            .map(|(line, colour)| ("●", line.name.as_str(), colour));
+        let laws = self
+            .lines(true)
+            .map(|(line, colour)| ("—", line.name.as_str(), colour));
         let own = has_present.then_some(("◇", PRESENT, self.palette.maximum));
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;

@@ -103,9 +103,7 @@ impl Answer {
         let shown = self.chosen.clone().filter(is_there).or_else(first);
         let plot = match &shown {
             Some(Shown::Result(key)) => curve(sweep, outcomes, *key),
-            Some(Shown::Figure(file)) => {
-                figures.iter().find(|plot| plot.file == *file).cloned()
-            }
+            Some(Shown::Figure(file)) => figures.iter().find(|plot| plot.file == *file).cloned(),
             None => None,
         };
         self.chosen.clone_from(&shown);
@@ -126,7 +124,11 @@ impl Answer {
         };
         let chosen: Vec<&CaseResult> = outcomes.filter(of_value).collect();
         if chosen.is_empty() {
-            ui.label(RichText::new("A click on a point leads to its run.").small().weak());
+            ui.label(
+                RichText::new("A click on a point leads to its run.")
+                    .small()
+                    .weak(),
+            );
         }
         for outcome in chosen {
             let name = outcome.case.name.replace('_', ", ");

@@ -14,9 +14,7 @@ use crate::ui::widgets::field::{self, Field};
 use crate::ui::words::number;
 use bevy_egui::egui::{self, RichText};
 use grainfall::lab::RunView;
-use grainfall::parameters::{
-    Kind, Parameter, ParameterInfo, Value, Values, start_parameters,
-};
+use grainfall::parameters::{Kind, Parameter, ParameterInfo, Value, Values, start_parameters};
 use grainfall::run::{BedStore, Estimate};
 use grainfall::runner::spare_threads;
 use grainfall::sweep::{self, Question, ValueRange};
@@ -136,7 +134,12 @@ impl Form {
             return;
         };
         let scene = std::ptr::from_ref(simulation.scene()).addr();
-        let of = (scene, simulation.changed_values(), chosen.clone(), desk.home());
+        let of = (
+            scene,
+            simulation.changed_values(),
+            chosen.clone(),
+            desk.home(),
+        );
         if self.outlook.as_ref().is_some_and(|known| known.of == of) {
             return;
         }
@@ -261,26 +264,52 @@ fn values_ui(ui: &mut egui::Ui, info: &ParameterInfo, values: &mut ValueRange) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Values");
         let mut count = values.count as f64;
-        number_ui(ui, "number of values", 2.0..=MOST_VALUES, "", true, &mut count);
+        number_ui(
+            ui,
+            "number of values",
+            2.0..=MOST_VALUES,
+            "",
+            true,
+            &mut count,
+        );
         values.count = count as usize;
         let can = values.from > 0.0 && values.to > 0.0;
         values.by_powers &= can;
-        ui.add_enabled(can, egui::Checkbox::new(&mut values.by_powers, "by factors"))
-            .on_hover_text("Each value is the one before times a factor, instead of plus a distance")
-            .on_disabled_hover_text("Only where both ends are above zero");
+        ui.add_enabled(
+            can,
+            egui::Checkbox::new(&mut values.by_powers, "by factors"),
+        )
+        .on_hover_text("Each value is the one before times a factor, instead of plus a distance")
+        .on_disabled_hover_text("Only where both ends are above zero");
     });
 }
 
 fn repeats_ui(ui: &mut egui::Ui, chosen: &mut Chosen) {
     ui.horizontal_wrapped(|ui| {
         let seeds = ui.label("Seeds");
-        seeds.on_hover_text("Each value is run from so many seeds; error bars are then those of the mean over them");
+        seeds.on_hover_text(
+            "Each value is run from so many seeds; error bars are then those of the mean over them",
+        );
         let mut seeds = f64::from(chosen.seeds);
-        number_ui(ui, "seeds of each value", 1.0..=MOST_SEEDS, "", true, &mut seeds);
+        number_ui(
+            ui,
+            "seeds of each value",
+            1.0..=MOST_SEEDS,
+            "",
+            true,
+            &mut seeds,
+        );
         chosen.seeds = seeds as u16;
         ui.label("each for");
         let lasting = f64::MIN_POSITIVE..=f64::INFINITY;
-        number_ui(ui, "duration of each run", lasting, "s", false, &mut chosen.duration);
+        number_ui(
+            ui,
+            "duration of each run",
+            lasting,
+            "s",
+            false,
+            &mut chosen.duration,
+        );
     });
 }
 
@@ -294,7 +323,11 @@ fn number_ui(
     shown: &mut f64,
 ) {
     let width = range.end() - range.start();
-    let speed = if width.is_finite() { width / 400.0 } else { 0.01 * shown.abs() };
+    let speed = if width.is_finite() {
+        width / 400.0
+    } else {
+        0.01 * shown.abs()
+    };
     let drawn = Field {
         label,
         range,

@@ -72,7 +72,8 @@ impl Panel for ParameterSweep {
         }
         if is_running {
             // It goes on whether or not anything else moves.
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_millis(100));
         }
     }
 }

@@ -33,7 +33,9 @@ pub fn progress_ui(ui: &mut egui::Ui, seen: &SweepSeen, out: &mut Vec<Request>) 
         }
         Some(Ok(SweepEnding::Interrupted)) => {
             let (done, all) = (standing.outcomes.len(), standing.parts.len());
-            let text = format!("Stopped: {done} of {all} runs are done, the others go on from where they are.");
+            let text = format!(
+                "Stopped: {done} of {all} runs are done, the others go on from where they are."
+            );
             ui.label(text);
             go_on_ui(ui, seen, out);
         }
@@ -55,7 +57,8 @@ fn running_ui(ui: &mut egui::Ui, seen: &SweepSeen, out: &mut Vec<Request>) {
     parts_ui(ui, &standing.parts);
     ui.horizontal(|ui| {
         let button = ui.add_enabled(!seen.is_stopping, egui::Button::new("Stop the sweep"));
-        let button = button.on_hover_text("What is done is kept; the same question goes on from there");
+        let button =
+            button.on_hover_text("What is done is kept; the same question goes on from there");
         if button.clicked() {
             out.push(Request::StopSweep);
         }
@@ -81,7 +84,8 @@ fn parts_ui(ui: &mut egui::Ui, parts: &[Part]) {
             egui::pos2(left, room.top()),
             egui::vec2(width - gap, room.height()),
         );
-        ui.painter().rect_filled(own, 2.0, ui.visuals().extreme_bg_color);
+        ui.painter()
+            .rect_filled(own, 2.0, ui.visuals().extreme_bg_color);
         let (share, colour) = match part {
             Part::Waiting => (0.0, palette.stages[0]),
             Part::Preparing => (1.0, palette.grid),
@@ -124,7 +128,11 @@ pub fn report_ui(ui: &mut egui::Ui, seen: &SweepSeen) {
     }
     let folder = seen.sweep.out.display();
     ui.add_space(2.0);
-    ui.label(RichText::new("Report: tables, plots, and a summary of every run").small().weak());
+    ui.label(
+        RichText::new("Report: tables, plots, and a summary of every run")
+            .small()
+            .weak(),
+    );
     let path = RichText::new(folder.to_string()).small();
     ui.add(egui::Label::new(path).selectable(true).wrap());
     ui.horizontal_wrapped(|ui| {
