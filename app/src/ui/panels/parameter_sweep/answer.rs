@@ -196,9 +196,14 @@ fn present(
     let value = value.or_else(|| parameter.in_effect(simulation.scene()))?;
     let time = simulation.series().time().last().copied().unwrap_or(0.0);
     let own = averages.over(simulation, LEFT_OUT * time.floor());
+    // A mean of a few samples is no result yet.
+    let is_settled = own.estimate(key).is_none_or(|mean| mean.error.is_some());
     let factor = key.quantity().unit.shown.factor;
     Some(PresentRun {
         x: value.number() * parameter.row().kind.unit().shown.factor,
-        y: own.value(key).map(|own| own * factor),
+        y: own
+            .value(key)
+            .filter(|_| is_settled)
+            .map(|own| own * factor),
     })
 }

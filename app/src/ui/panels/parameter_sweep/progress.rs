@@ -134,7 +134,8 @@ pub fn report_ui(ui: &mut egui::Ui, seen: &SweepSeen) {
             .weak(),
     );
     let path = RichText::new(folder.to_string()).small();
-    ui.add(egui::Label::new(path).selectable(true).wrap());
+    // A long path would widen the panel; the pointer over it shows all of it.
+    ui.add(egui::Label::new(path).truncate());
     ui.horizontal_wrapped(|ui| {
         if ui.small_button("Copy the path").clicked() {
             ui.ctx().copy_text(folder.to_string());
