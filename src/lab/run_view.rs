@@ -194,6 +194,15 @@ impl RunView {
         asked.or_else(|| parameter.read(self.world()?))
     }
 
+    /// Its live parameters whose present values are others than the scene's, with these.
+    pub fn changed_values(&self) -> Vec<(Parameter, Value)> {
+        let away = self.parameters().iter().filter_map(|info| {
+            let value = self.value(&info.parameter)?;
+            (value != info.default).then(|| (info.parameter.clone(), value))
+        });
+        away.collect()
+    }
+
     /// What stopped it, if something did.
     pub fn fault(&self) -> Option<&Fault> {
         self.news.as_ref()?.fault.as_ref()

@@ -288,10 +288,15 @@ pub fn write_file(
 
 /// Whether `name` is that of a file in a folder or in a folder of it, and of nothing above.
 pub fn is_own_name(name: &str) -> bool {
+    is_name_below(name, 2)
+}
+
+/// Whether `name` is that of something below a folder, at most so `deep`, and of nothing above.
+pub fn is_name_below(name: &str, deep: usize) -> bool {
     let path = Path::new(name);
     let mut parts = path.components();
     parts.all(|part| matches!(part, Component::Normal(_)))
-        && (1..=2).contains(&path.components().count())
+        && (1..=deep).contains(&path.components().count())
 }
 
 /// Whether frames of this `kind` have such a `name`; earlier programs wrote polyhedra as `.vtu`.

@@ -46,7 +46,8 @@ pub use digest::{digest_of, digest_of_file};
 pub use ending::Ending;
 pub use error::OutputError;
 pub use folder::{
-    CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_own_name, write_file,
+    CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_name_below, is_own_name,
+    write_file,
 };
 pub use frames::{Frame, LISTS};
 pub use grains_file::write_grains;

@@ -110,6 +110,26 @@ pub enum BeyondMachine {
     },
 }
 
+impl BeyondMachine {
+    /// The same for a person in a window, where there are no options.
+    pub fn in_a_window(&self) -> String {
+        match self {
+            Self::Memory { asked, free } => format!(
+                "These runs ask for {} of memory at the same time, and {} are free: take fewer grains or shorter runs.",
+                bytes(asked.memory),
+                bytes(*free)
+            ),
+            Self::Disk { asked, out, free } => format!(
+                "Their files will take {} or so, and the disk of {} has room for {}: take fewer or shorter runs, or \
+                 another folder.",
+                bytes(asked.files),
+                out.display(),
+                bytes(*free)
+            ),
+        }
+    }
+}
+
 impl Estimate {
     /// What a run of `scene` takes.
     pub fn of(scene: &Scene) -> Self {

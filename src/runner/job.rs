@@ -87,3 +87,8 @@ fn check_script(scene: &Scene, script: &[ScriptedCommand]) -> Result<(), String>
 pub fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
+
+/// Threads that the machine has beside the one that draws a window, one at least.
+pub fn spare_threads() -> usize {
+    available_threads().saturating_sub(1).max(1)
+}

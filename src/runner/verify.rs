@@ -9,7 +9,7 @@ use super::drive::{End, drive};
 use super::rest::RestWatch;
 use super::{Advance, DirectRun, RunnerError, Watch, exit};
 use crate::files::read_whole;
-use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file, is_own_name};
+use crate::output::{Ending, IMPORTED, RunSoFar, digest_of_file, is_name_below};
 use crate::run::{BedStore, RunRecord, Session, VERSION, fingerprint};
 use crate::scene::within_folders;
 use crate::solver::Fault;
@@ -26,6 +26,8 @@ const LARGEST_FILE: u64 = 256 << 20;
 const SAME_RESULT: f64 = 1e-9;
 /// Steps after its time within which a fault that is stated has to be met.
 const STEPS_TO_A_FAULT: u64 = 100;
+/// How deep below its folder a run's files lie: in it, or in a folder of it.
+const DEPTH: usize = 2;
 /// Most differences that are named.
 const MOST_NAMED: usize = 10;
 
@@ -235,31 +237,41 @@ impl RunRecord {
     /// Compares the files that it vouches for, in `folder`, with what they were when they were
     /// written.
     pub fn check_files(&self, folder: &Path) -> VouchedFiles {
-        let mut found = VouchedFiles::default();
-        for (name, digest) in &self.files {
-            let path = folder.join(name);
-            if !is_own_name(name) {
-                found
+        check_digests(&self.files, folder, DEPTH)
+    }
+}
+
+/// Compares these `files` below `folder`, at most so `deep` and each with its digest, with what they
+/// were when they were written.
+pub fn check_digests<'a>(
+    files: impl IntoIterator<Item = (&'a String, &'a String)>,
+    folder: &Path,
+    deep: usize,
+) -> VouchedFiles {
+    let mut found = VouchedFiles::default();
+    for (name, digest) in files {
+        let path = folder.join(name);
+        if !is_name_below(name, deep) {
+            found
+                .altered
+                .push(format!("{name:?} is no name of a file below the folder"));
+        } else if !path.exists() {
+            found.missing.push(name.clone());
+        } else if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+            found.altered.push(format!("{name} is no file"));
+        } else {
+            match digest_of_file(&path) {
+                Ok(own) if own == *digest => found.same += 1,
+                Ok(_) => found
                     .altered
-                    .push(format!("{name:?} is no name of a run's file"));
-            } else if !path.exists() {
-                found.missing.push(name.clone());
-            } else if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
-                found.altered.push(format!("{name} is no file"));
-            } else {
-                match digest_of_file(&path) {
-                    Ok(own) if own == *digest => found.same += 1,
-                    Ok(_) => found
-                        .altered
-                        .push(format!("{name} was changed since it was written")),
-                    Err(error) => found
-                        .altered
-                        .push(format!("{name} cannot be read: {error}")),
-                }
+                    .push(format!("{name} was changed since it was written")),
+                Err(error) => found
+                    .altered
+                    .push(format!("{name} cannot be read: {error}")),
             }
         }
-        found
     }
+    found
 }
 
 /// That the file at `path` holds no record, and what it should be.

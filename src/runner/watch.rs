@@ -7,6 +7,22 @@ pub trait Watch {
 
     /// After time zero: `share` (0 … 1) of the run is done; `what` says more, to those who ask.
     fn running(&mut self, share: f64, what: &dyn Fn() -> String);
+
+    /// Of work in several parts: how each of them stands.
+    fn parts(&mut self, _parts: &[Part]) {}
+}
+
+/// How a part of some work stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// Nothing of it is done.
+    Waiting,
+    /// It has not come to time zero yet.
+    Preparing,
+    /// So much of it is done, 0 … 1.
+    Running(f64),
+    /// It is over, well or not.
+    Over,
 }
 
 impl Watch for () {

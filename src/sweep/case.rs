@@ -5,7 +5,7 @@ use crate::files::read_whole;
 use crate::measure::{Estimate, ResultKey, RunQuantity, Series, Summary, VelocityMap};
 use crate::output::{Ending, OutputError, RunSoFar, SUMMARY};
 use crate::run::method;
-use crate::runner::{self, Advance, Job, RunnerError, Watch};
+use crate::runner::{self, Advance, Job, Part, RunnerError, Watch};
 use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -30,6 +30,16 @@ impl CaseProgress {
     /// Whether its bed is being settled now, or its grains are being cut.
     pub fn is_preparing(&self) -> bool {
         self.is_preparing.load(Ordering::Relaxed)
+    }
+
+    /// How it stands.
+    pub fn part(&self) -> Part {
+        match self.get() {
+            share if share >= 1.0 => Part::Over,
+            _ if self.is_preparing() => Part::Preparing,
+            share if share > 0.0 => Part::Running(share),
+            _ => Part::Waiting,
+        }
     }
 
     /// Says that it has come so far.
@@ -86,6 +96,21 @@ impl CaseResult {
     /// one stood that was stopped before it began.
     pub fn is_sound(&self) -> bool {
         self.ending.fault().is_none() && self.results.to > 0.0
+    }
+
+    /// The same without its samples and what is taken of them: its results alone.
+    #[must_use]
+    pub fn without_course(&self) -> Self {
+        Self {
+            series: Series::default(),
+            flow: Vec::new(),
+            fastest: None,
+            case: self.case.clone(),
+            ending: self.ending.clone(),
+            results: self.results.clone(),
+            hash: self.hash.clone(),
+            method: self.method.clone(),
+        }
     }
 
     /// Whether its samples are there, and with them its flowing layer and its fastest moment.

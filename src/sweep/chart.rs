@@ -17,7 +17,7 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 type DrawingResult = Result<(), Box<dyn std::error::Error>>;
 
 /// A set of points or a curve with its name.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Line {
     /// Name in the legend.
     pub name: String,
@@ -31,6 +31,7 @@ pub struct Line {
 }
 
 /// A plot: what it shows over what.
+#[derive(Clone, Debug)]
 pub struct Plot {
     /// Its file below the folder of plots.
     pub file: String,
@@ -45,7 +46,7 @@ pub struct Plot {
 }
 
 /// An axis of a plot.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct ChartAxis {
     label: String,
     logarithmic: bool,
@@ -68,8 +69,18 @@ impl ChartAxis {
         }
     }
 
+    /// What stands beside it.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// Whether values stand at the places of their powers of ten.
+    pub fn is_logarithmic(&self) -> bool {
+        self.logarithmic
+    }
+
     /// Where a value lies on it.
-    fn place(&self, value: f64) -> f64 {
+    pub fn place(&self, value: f64) -> f64 {
         if self.logarithmic {
             value.log10()
         } else {

@@ -7,6 +7,8 @@ use super::Sweep;
 use super::case::CaseResult;
 use super::chart::{ChartAxis, Line, Plot};
 use super::ensemble::{Ensemble, ensembles};
+use super::variation::Variation;
+use super::varied::{axis, shown};
 use crate::measure::{
     Estimate, Measure, NON_RIGID_TEMPERATURE, ResultKey, RunQuantity, drop_ratio_law,
 };
@@ -75,30 +77,36 @@ const RESULTS: [ResultPlot; 7] = [
 
 /// What results are plotted over.
 struct Over<'a> {
-    /// The varied key, where it is not that of the liquid.
-    key: &'a str,
+    /// What is varied, where it is not the liquid.
+    varied: Option<&'a Variation>,
     axis: ChartAxis,
-    value: fn(&CaseResult) -> Option<f64>,
 }
 
 impl<'a> Over<'a> {
     fn of(sweep: &'a Sweep, outcomes: &[CaseResult]) -> Self {
-        if outcomes.iter().any(|outcome| viscosity(outcome).is_some()) {
+        let varied = sweep.variations.first();
+        if outcomes.iter().any(|outcome| viscosity(outcome).is_some()) || varied.is_none() {
             return Self {
-                key: "",
+                varied: None,
                 axis: ChartAxis::logarithmic("viscosity η [mPa s] (dry at the left edge)"),
-                value: |outcome| Some(viscosity(outcome).unwrap_or(DRY)),
             };
         }
-        let key = sweep
-            .variations
-            .first()
-            .map_or("", |variation| &variation.key);
         Self {
-            key,
-            axis: ChartAxis::linear(key),
-            value: |outcome| leading_number(outcome.case.values.first()?),
+            varied,
+            axis: varied.map_or(ChartAxis::linear(""), axis),
         }
+    }
+
+    fn value(&self, outcome: &CaseResult) -> Option<f64> {
+        match self.varied {
+            Some(varied) => shown(&varied.key, outcome.case.values.first()?),
+            None => Some(viscosity(outcome).unwrap_or(DRY)),
+        }
+    }
+
+    /// The varied key, where it is not that of the liquid.
+    fn key(&self) -> &str {
+        self.varied.map_or("", |varied| &varied.key)
     }
 
     fn plot(&self, result: &ResultPlot, ensembles: &[Ensemble]) -> Plot {
@@ -112,8 +120,8 @@ impl<'a> Over<'a> {
                 ChartAxis::linear(&label)
             },
             title: label,
-            lines: by_radius(ensembles, self.key, |ensemble| {
-                let across = (self.value)(ensemble.first())?;
+            lines: by_radius(ensembles, self.key(), |ensemble| {
+                let across = self.value(ensemble.first())?;
                 Some((across, in_shown_unit(ensemble, result.key)?))
             }),
         }
@@ -144,11 +152,6 @@ fn radius(outcome: &CaseResult) -> f64 {
         SceneGrains::Voronoi(cells) => 0.5e3 * cells.cell,
         SceneGrains::List(list) => list.first().map_or(0.0, |grain| 1e3 * grain.radius),
     }
-}
-
-fn leading_number(text: &str) -> Option<f64> {
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
-    text[..end.unwrap_or(text.len())].parse().ok()
 }
 
 /// A line for each radius, and for each value of what else is varied but `across`, through the

@@ -12,10 +12,12 @@
 //! before it writes the tables. A batch system runs the cases one by one ([`run_case`]) and sets
 //! what they came to beside each other in the end ([`merge`]).
 
+mod background;
 mod case;
 pub mod chart;
 mod column_laws;
 mod column_plots;
+mod curve;
 mod drum_plots;
 mod drums;
 mod ensemble;
@@ -27,14 +29,21 @@ mod kasper_statements;
 mod man_statements;
 mod plan;
 mod plot_files;
+mod question;
 mod results_csv;
 mod results_table;
+mod stated;
 mod statements;
 mod statements_file;
+mod values;
 mod variation;
+mod varied;
 mod velocity_plot;
 
-pub(crate) use case::{CaseResult, job};
+pub use background::{BackgroundSweep, SweepStanding};
+pub use case::CaseResult;
+pub(crate) use case::job;
+pub use curve::{curve, figures, numbers, varied_number};
 pub(crate) use drums::{Drum, Drums};
 pub(crate) use ensemble::{Ensemble, ensembles};
 pub use folder::SWEEP;
@@ -45,8 +54,11 @@ pub(crate) use man_statements::column_statements;
 pub use plan::cases;
 pub use plan::{Case, Sweep, count};
 pub(crate) use plot_files::lacking;
+pub use question::Question;
 pub(crate) use results_table::TableColumn;
+pub use stated::StatedSweep;
 pub(crate) use statements::table as statements_table;
+pub use values::ValueRange;
 pub use variation::Variation;
 
 use crate::output::{Ending, OutputError};
@@ -105,6 +117,23 @@ pub struct Swept {
     pub table: String,
     /// The cases that are not among them, each with how it stands.
     pub missing: Vec<String>,
+    /// The cases that met a fault, each with what it was.
+    pub faults: Vec<String>,
+}
+
+impl Swept {
+    fn of(sweep: &Sweep, outcomes: &[CaseResult], cases: usize, missing: Vec<String>) -> Self {
+        let fault = |outcome: &CaseResult| {
+            let fault = outcome.ending.fault()?;
+            Some(format!("{}: {fault}", outcome.case.name))
+        };
+        Self {
+            ending: SweepEnding::of(outcomes, cases),
+            table: table(sweep, outcomes),
+            missing,
+            faults: outcomes.iter().filter_map(fault).collect(),
+        }
+    }
 }
 
 /// Runs `sweep` until every case is done or `interrupted` becomes true; `watch` hears how far it
@@ -117,22 +146,33 @@ pub fn run(
     interrupted: &AtomicBool,
     watch: &mut dyn Watch,
 ) -> Result<Swept, RunnerError> {
+    run_seen(sweep, interrupted, watch, &|_| ())
+}
+
+/// Does the same; each case that is done is shown to `see` when it is.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_seen(
+    sweep: &Sweep,
+    interrupted: &AtomicBool,
+    watch: &mut dyn Watch,
+    see: &(dyn Fn(&CaseResult) + Sync),
+) -> Result<Swept, RunnerError> {
     let cases = plan::cases(sweep)?;
     case::check_method(sweep, &cases)?;
     let folder = SweepFolder::open(sweep, &cases)?;
     // The costliest first, so that no core idles at the end.
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by(|&a, &b| cases[b].cost().total_cmp(&cases[a].cost()));
-    let nothing = |_: &CaseResult| Ok(());
-    let outcomes = run_cases(sweep, &cases, order, interrupted, watch, &nothing)?;
-    let ending = SweepEnding::of(&outcomes, cases.len());
+    let keep = |outcome: &CaseResult| {
+        see(outcome);
+        Ok(())
+    };
+    let outcomes = run_cases(sweep, &cases, order, interrupted, watch, &keep)?;
     let files = set_beside(sweep, &outcomes)?;
     folder.close(sweep, &outcomes, files)?;
-    Ok(Swept {
-        ending,
-        table: table(sweep, &outcomes),
-        missing: Vec::new(),
-    })
+    Ok(Swept::of(sweep, &outcomes, cases.len(), Vec::new()))
 }
 
 /// Runs these `cases` of `sweep` one after the other, as they stand, and sets nothing beside each
@@ -198,14 +238,9 @@ pub fn merge(sweep: &Sweep) -> Result<Swept, RunnerError> {
     }
     let folder = SweepFolder::open(sweep, &cases)?;
     let (outcomes, missing) = gather(sweep, &cases, &[])?;
-    let ending = SweepEnding::of(&outcomes, cases.len());
     let files = set_beside(sweep, &outcomes)?;
     folder.close(sweep, &outcomes, files)?;
-    Ok(Swept {
-        ending,
-        table: table(sweep, &outcomes),
-        missing,
-    })
+    Ok(Swept::of(sweep, &outcomes, cases.len(), missing))
 }
 
 /// Writes tables and plots of these `outcomes`; returns the files' names.
@@ -222,7 +257,8 @@ pub(crate) fn set_beside(
         files.push(ensemble_table::write_markdown(sweep, means)?);
     }
     files.extend(statements_file::write_statements(sweep, &ensembles)?);
-    files.extend(plot_files::write_plots(sweep, outcomes)?);
+    let plots = plot_files::plots(sweep, outcomes).chain(curve::curves(sweep, &sound));
+    files.extend(plot_files::write_plots(sweep, plots)?);
     files.extend(velocity_plot::write_velocity_plots(sweep, outcomes)?);
     Ok(files)
 }
@@ -337,6 +373,7 @@ fn follow(
         let left = elapsed * (1.0 - share) / (share - before);
         let finished = shares.iter().filter(|share| share.get() >= 1.0).count();
         let preparing = shares.iter().filter(|share| share.is_preparing()).count();
+        watch.parts(&shares.iter().map(CaseProgress::part).collect::<Vec<_>>());
         watch.running(share, &|| {
             let beds = match preparing {
                 0 => String::new(),

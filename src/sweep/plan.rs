@@ -34,7 +34,7 @@ pub struct Sweep {
 }
 
 /// One case: a scene with its commands.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Its folder's name: `liquid=3_radius=2mm`.
     pub name: String,
@@ -145,11 +145,8 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
         .partition(|setting| is_for_wet_cases(setting));
     let mut dry_or_wet = scene.clone();
     apply_settings(&mut dry_or_wet, &of_all)?;
-    let skipped = if dry_or_wet.liquid.is_none() {
-        of_wet
-    } else {
-        Vec::new()
-    };
+    let stays_dry = dry_or_wet.liquid.is_none() && !of_wet.iter().any(|setting| pours(setting));
+    let skipped = if stays_dry { of_wet } else { Vec::new() };
     let settings: Vec<&String> = settings
         .into_iter()
         .filter(|setting| !skipped.contains(setting))
@@ -169,4 +166,12 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
 fn is_for_wet_cases(setting: &str) -> bool {
     let mut known = Parameter::of_key(key_of(setting)).into_iter();
     known.any(|parameter| parameter.row().is_of_liquid)
+}
+
+/// Whether a setting pours liquid into a bed, at the first step.
+fn pours(setting: &str) -> bool {
+    let row = Parameter::LiquidVolume.row();
+    let stated = setting.split_once('=').filter(|(key, _)| *key == row.key);
+    let volume = stated.and_then(|(_, text)| row.parse(text));
+    volume.is_some_and(|volume| volume.number() > 0.0)
 }

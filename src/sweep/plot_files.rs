@@ -11,13 +11,16 @@ use crate::output::write_file;
 use crate::run::Provenance;
 use crate::runner::RunnerError;
 
-/// Writes every plot that the outcomes have points for; returns the files' names.
+/// Writes those of the `plots` of `sweep` that have points; returns the files' names.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Result<Vec<String>, RunnerError> {
+pub fn write_plots(
+    sweep: &Sweep,
+    plots: impl IntoIterator<Item = Plot>,
+) -> Result<Vec<String>, RunnerError> {
     let mut names = Vec::new();
-    for plot in plots(sweep, outcomes).filter(Plot::has_points) {
+    for plot in plots.into_iter().filter(Plot::has_points) {
         let text = plot.draw().map_err(|reason| {
             RunnerError::Input(format!("the plot {} cannot be drawn: {reason}", plot.file))
         })?;

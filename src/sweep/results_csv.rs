@@ -10,10 +10,11 @@
 use super::case::CaseResult;
 use super::ensemble::Ensemble;
 use super::variation::SEED;
+use super::varied::{parameter, value};
 use super::{Sweep, Variation};
 use crate::measure::{Format, MeasuredValue, ResultKey, Summary};
 use crate::output::{OutputError, write_file};
-use crate::parameters::{Kind, Parameter, Value};
+use crate::parameters::{Kind, Value};
 use crate::run::{Cells, Column, Provenance, TABLES_METADATA, Table, write_metadata};
 
 /// The tables' names.
@@ -175,15 +176,6 @@ fn varied_column(variation: &Variation) -> Column {
         Some(Kind::NumberOr(..) | Kind::Choice(_)) | None => Cells::Words,
     };
     Column::new(&variation.key, cells).described("varied")
-}
-
-fn parameter(key: &str) -> Option<Parameter> {
-    Parameter::of_key(key).into_iter().next()
-}
-
-/// What `text` says of the parameter `key`, in the SI unit.
-fn value(key: &str, text: &str) -> Option<Value> {
-    parameter(key)?.row().parse(text)
 }
 
 /// What `text` says of what is varied, in the SI unit.

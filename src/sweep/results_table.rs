@@ -58,6 +58,11 @@ impl TableColumn {
         }
     }
 
+    /// The result that it shows.
+    pub(super) fn key(&self) -> ResultKey {
+        self.key
+    }
+
     /// Its head with the unit.
     pub fn head(&self) -> String {
         self.unit.beside(self.head)

@@ -155,7 +155,8 @@ pub enum Task {
     Paper(PaperTask),
     /// Compute a run again and confirm that it comes to the same state, to the bit
     Verify {
-        /// A run's summary.json, or a session or a list of changes saved in the window
+        /// A run's summary.json, a session or a list of changes saved in the window, or the folder of
+        /// a sweep
         file: PathBuf,
         /// Threads the solver works on [default: all cores]
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]

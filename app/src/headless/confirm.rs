@@ -1,9 +1,11 @@
-//! `grainfall verify FILE`: computes again what a file states, and says what came out.
+//! `grainfall verify FILE`: computes again what a file states, and says what came out; of a sweep
+//! every case, and whether its tables and plots are as they were written.
 
 use super::terminal::{say, tell};
 use super::{Allowed, Progress};
 use grainfall::run::{BedStore, Estimate, RunRecord, VERSION};
 use grainfall::runner::{RunnerError, Verdict, VouchedFiles, exit};
+use grainfall::sweep::StatedSweep;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -19,7 +21,53 @@ pub fn confirm(
     allowed: &Allowed,
     interrupted: &AtomicBool,
 ) -> Result<u8, RunnerError> {
-    let record = RunRecord::read(file)?;
+    match StatedSweep::at(file) {
+        Some(sweep) => confirm_sweep(&sweep, threads, allowed, interrupted),
+        None => confirm_run(file, &RunRecord::read(file)?, threads, allowed, interrupted),
+    }
+}
+
+/// Does so with every case of the sweep that `file` states, and looks at its tables and plots.
+fn confirm_sweep(
+    file: &Path,
+    threads: usize,
+    allowed: &Allowed,
+    interrupted: &AtomicBool,
+) -> Result<u8, RunnerError> {
+    let sweep = StatedSweep::read(file)?;
+    let mut code = exit::DONE;
+    for (name, _) in &sweep.cases {
+        let summary = sweep.summary(name);
+        let record = RunRecord::read(&summary)?;
+        if let Some(difference) = sweep.difference(name, &record) {
+            tell(&format!("error: {difference}"));
+            code = exit::OTHER_STATE;
+        }
+        let own = confirm_run(&summary, &record, threads, allowed, interrupted)?;
+        if own == exit::INTERRUPTED {
+            return Ok(own);
+        }
+        code = code.max(own);
+    }
+    let files = sweep.check_files();
+    report_files(&files);
+    if !files.altered.is_empty() {
+        code = exit::OTHER_STATE;
+    }
+    if code == exit::DONE {
+        say(&format!("all {} cases are the same", sweep.cases.len()));
+    }
+    Ok(code)
+}
+
+/// Does so with the run of `record`, which stands in `file`.
+fn confirm_run(
+    file: &Path,
+    record: &RunRecord,
+    threads: usize,
+    allowed: &Allowed,
+    interrupted: &AtomicBool,
+) -> Result<u8, RunnerError> {
     let mut asked = record.scene.clone();
     asked.duration = record.time;
     allowed.memory(&Estimate::of(&asked))?;

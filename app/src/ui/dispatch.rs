@@ -12,6 +12,7 @@ use crate::ui::playback::first_speed;
 use crate::ui::request::{LessonAct, Request, Requests};
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
 use crate::ui::session_look::SessionLook;
+use crate::ui::sweep_desk::SweepDesk;
 use crate::view::{CameraRequest, OrbitCamera, ViewSettings};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -23,6 +24,7 @@ use grainfall::lesson::Lesson;
 use grainfall::parameters::{Parameter, Value};
 use grainfall::run::{Command, CommandError, Estimate, RunRecord, ScriptedCommand};
 use grainfall::scene::Scene;
+use grainfall::sweep::Case;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -98,7 +100,7 @@ fn fulfil(
     }
     let request = match request {
         Request::Anyway(request) => *request,
-        request => match doubt(&request) {
+        request => match doubt(&request, &dock.sweeps) {
             Some(reason) => return dock.doubt(reason, request),
             None => request,
         },
@@ -143,6 +145,14 @@ fn fulfil(
             opener.view.camera_request = Some(request);
         }
         (Request::Compare(parameter), _) => dock.compare(parameter.as_ref()),
+        (Request::AskSweep(parameter), _) => dock.ask_sweep(parameter.as_ref()),
+        (Request::StartSweep(question), _) => {
+            dock.sweeps.start(*question, opener.options.0.beds.clone());
+        }
+        (Request::StopSweep, _) => dock.sweeps.stop(),
+        (Request::ChooseSweepFolder, _) => dock.path_dialog.ask(Purpose::SweepFolder),
+        (Request::SweepFolder(folder), _) => dock.sweeps.settle_in(folder),
+        (Request::OpenCase(case), _) => opener.open_case(*case, dock),
         (Request::ShowScenes, _) => dock.show_scenes(),
         (Request::Show(sheet), _) => dock.show_sheet(sheet),
         (Request::Open(name), _) => opener.open(name, dock),
@@ -164,6 +174,7 @@ fn fulfil(
         (Request::SavePlot(path), _) => save_plot(&path, dock),
         (Request::Screenshot(order), _) => opener.screenshots.asked.push(order),
         (Request::Quit, _) => {
+            dock.sweeps.leave();
             exit.write(AppExit::Success);
         }
         // Without a run there is nothing to change; what leaves a session was taken apart before.
@@ -251,7 +262,13 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
             dock.show_open_error(error);
             None
         }
-        Request::Open(_) | Request::OpenLeft(_) | Request::Start(_) | Request::Quit if unsaved => {
+        Request::Open(_)
+        | Request::OpenLeft(_)
+        | Request::Start(_)
+        | Request::OpenCase(_)
+        | Request::Quit
+            if unsaved =>
+        {
             dock.ask_to_save(request);
             None
         }
@@ -264,16 +281,24 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
     }
 }
 
-/// What speaks against opening the scene that `request` asks for: memory or time that this machine
-/// has not.
-fn doubt(request: &Request) -> Option<String> {
+/// What speaks against what `request` asks for: memory or time that this machine has not for a
+/// scene, or a sweep that is running.
+fn doubt(request: &Request, sweeps: &SweepDesk) -> Option<String> {
     match request {
+        Request::Quit => sweeps.progress().map(|progress| leaving(&progress)),
         Request::Open(name) if !Kept::is_at(name) => {
             Estimate::of_start(&Scene::open(name).ok()?).question()
         }
         Request::Start(scene) => Estimate::of_start(scene).question(),
         _ => None,
     }
+}
+
+/// What is asked before a window is left in which a sweep has come to this `progress`.
+fn leaving(progress: &str) -> String {
+    format!(
+        "A parameter sweep is running: {progress}. What is done is kept, and the same question goes on from there the next time."
+    )
 }
 
 /// The error of opening the scene called `name`; none where it opens or is no scene but a session or
@@ -291,17 +316,13 @@ fn no_scene(name: &str) -> Option<String> {
 
 /// The script that gives a new run the present values of the live parameters at its start.
 fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
-    let away = simulation.parameters().iter().filter_map(|info| {
-        let value = simulation.value(&info.parameter)?;
-        let parameter = info.parameter.clone();
-        (value != info.default).then_some(Command::Set { parameter, value })
-    });
-    let at_the_start = |command| ScriptedCommand {
+    let at_the_start = |(parameter, value)| ScriptedCommand {
         step: Some(0),
         time: None,
-        command,
+        command: Command::Set { parameter, value },
     };
-    away.map(at_the_start).collect()
+    let changed = simulation.changed_values().into_iter();
+    changed.map(at_the_start).collect()
 }
 
 /// Reports whether the session was saved; returns the request that waited for it, where it was.
@@ -434,6 +455,13 @@ impl Opener<'_, '_> {
         let original = simulation.map(|simulation| simulation.original().clone());
         let speed = simulation.map_or(1.0, |simulation| simulation.speed());
         self.start(scene, script, original, speed);
+        dock.scene_changed();
+    }
+
+    /// Starts the run of a `case` of a sweep.
+    fn open_case(&mut self, case: Case, dock: &mut Dock) {
+        let speed = first_speed(case.scene.duration);
+        self.start(case.scene, case.script, None, speed);
         dock.scene_changed();
     }
 

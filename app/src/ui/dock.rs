@@ -26,6 +26,7 @@ use crate::ui::panels::flow_over_depth::FlowOverDepth;
 use crate::ui::panels::lesson::LessonDesk;
 use crate::ui::panels::mean_velocities::MeanVelocities;
 use crate::ui::panels::microscope::Microscope;
+use crate::ui::panels::parameter_sweep::ParameterSweep;
 use crate::ui::panels::parameters::Parameters;
 use crate::ui::panels::picture_settings::PictureSettings;
 use crate::ui::panels::results::Results;
@@ -33,6 +34,7 @@ use crate::ui::panels::solver_profile::SolverProfile;
 use crate::ui::plot_export::Export;
 use crate::ui::request::{Request, Sheet};
 use crate::ui::sections::{Section, section, sections_ui};
+use crate::ui::sweep_desk::SweepDesk;
 use crate::ui::theme::Palette;
 use crate::ui::user_memory::{Look, UserMemory};
 use crate::ui::widgets::focus::focus_ui;
@@ -59,6 +61,8 @@ const NOTICE_TIME: Duration = Duration::from_secs(6);
 pub struct Dock {
     left: Vec<Section>,
     right: Vec<Section>,
+    /// The parameter sweep that runs in the background.
+    pub sweeps: SweepDesk,
     /// The lesson that is followed.
     pub lesson: LessonDesk,
     transport: Transport,
@@ -103,11 +107,12 @@ pub struct Dock {
 }
 
 /// The register of panels on the left, from top to bottom, and whether each is open at first.
-fn left() -> Vec<Section> {
+fn left(sweeps: &SweepDesk) -> Vec<Section> {
     vec![
         section(AboutScene, true),
         section(Parameters::default(), true),
         section(Compare::default(), false),
+        section(ParameterSweep::of(sweeps), false),
         section(ChangeList::default(), true),
         section(PictureSettings, false),
         section(SolverProfile, false),
@@ -132,9 +137,11 @@ fn right() -> Vec<Section> {
 
 impl Default for Dock {
     fn default() -> Self {
+        let sweeps = SweepDesk::default();
         Self {
-            left: left(),
+            left: left(&sweeps),
             right: right(),
+            sweeps,
             lesson: LessonDesk::default(),
             transport: Transport::default(),
             badge: Badge::default(),
@@ -257,11 +264,21 @@ impl Dock {
 
     /// Opens the panel where two values are compared: of `parameter`, where one is given.
     pub fn compare(&mut self, parameter: Option<&Parameter>) {
-        self.show_panel(Compare::TITLE);
-        if let Some(parameter) = parameter {
-            for section in self.left.iter_mut().chain(&mut self.right) {
-                section.panel.take_up(parameter);
-            }
+        self.take_up(Compare::TITLE, parameter);
+    }
+
+    /// Opens the panel of parameter sweeps: about `parameter`, where one is given.
+    pub fn ask_sweep(&mut self, parameter: Option<&Parameter>) {
+        self.take_up(ParameterSweep::TITLE, parameter);
+    }
+
+    /// Opens the panel called `title`: about `parameter`, where one is given.
+    fn take_up(&mut self, title: &str, parameter: Option<&Parameter>) {
+        self.show_panel(title);
+        let mut sections = self.left.iter_mut().chain(&mut self.right);
+        let wanted = sections.find(|section| section.panel.title() == title);
+        if let Some((section, parameter)) = wanted.zip(parameter) {
+            section.panel.take_up(parameter);
         }
     }
 
@@ -391,7 +408,7 @@ impl Dock {
             .find(|known| *known == name);
         self.session = None;
         self.lesson = LessonDesk::default();
-        (self.left, self.right) = (left(), right());
+        (self.left, self.right) = (left(&self.sweeps), right());
         self.transport = Transport::default();
     }
 
@@ -406,7 +423,7 @@ impl Dock {
     pub fn scene_changed(&mut self) {
         self.session = None;
         self.scene = None;
-        (self.left, self.right) = (left(), right());
+        (self.left, self.right) = (left(&self.sweeps), right());
         self.transport = Transport::default();
     }
 

@@ -20,6 +20,7 @@
 //! | `user_memory` | what is remembered from start to start |
 //! | `panels` | the panels on both sides, one in each file |
 //! | `panel` | what a panel is |
+//! | `sweep_desk` | the parameter sweep that runs in the background |
 //! | `plots` | curves of samples: axes, the part of the run in view, all runs on one plot |
 //! | `playback` | what can be asked of the run now: play, steps, leaps, the next avalanche |
 //! | `request`, `screenshot_orders` | what panels ask for; pictures and films that are asked for |
@@ -47,6 +48,7 @@ mod screenshot_orders;
 mod sections;
 mod session_look;
 mod shortcuts;
+mod sweep_desk;
 pub mod theme;
 mod user_memory;
 mod widgets;
@@ -72,6 +74,7 @@ pub use panels::lesson::LessonDesk;
 pub(crate) use panels::lesson::show_look;
 pub use panels::mean_velocities::MeanVelocities;
 pub use panels::microscope::Microscope;
+pub use panels::parameter_sweep::ParameterSweep;
 pub use panels::parameters::{Parameters, parameter_ui};
 pub use panels::picture_settings::PictureSettings;
 pub use panels::results::Results;
@@ -84,5 +87,6 @@ pub use request::{LessonAct, Request, Requests, Sheet};
 pub use rescue::RescuePlugin;
 pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
 pub use session_look::SessionLook;
+pub use sweep_desk::{SweepDesk, SweepSeen};
 pub use user_memory::{Look, UserMemory};
 pub(crate) use words::run_names::title_in_words;

@@ -10,6 +10,7 @@ use grainfall::lesson::Prediction;
 use grainfall::parameters::{Parameter, Value};
 use grainfall::run::Command;
 use grainfall::scene::Scene;
+use grainfall::sweep::{Case, Question};
 use std::path::PathBuf;
 
 /// Something a person asked for.
@@ -19,6 +20,18 @@ pub enum Request {
     Command(Command),
     /// Show the panel where two values are compared: of this parameter, where one is given.
     Compare(Option<Parameter>),
+    /// Show the panel of parameter sweeps: of this parameter, where one is given.
+    AskSweep(Option<Parameter>),
+    /// Run the sweep that answers this, or go on with it, in the background.
+    StartSweep(Box<Question>),
+    /// Stop the sweep; what is done is kept.
+    StopSweep,
+    /// Let the person choose the folder of sweeps.
+    ChooseSweepFolder,
+    /// Put the sweeps that follow into this folder.
+    SweepFolder(PathBuf),
+    /// Start afresh with this case of a sweep in place of the present run.
+    OpenCase(Box<Case>),
     /// Begin a run beside the present one, with another value of a parameter.
     StartComparison(Parameter, Value),
     /// Another value of a parameter in one of two runs.

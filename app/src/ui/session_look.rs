@@ -150,8 +150,12 @@ impl SessionLook {
         {
             view.camera_request = None;
         }
-        for (section, look) in dock.sections().zip(self.panels) {
-            if section.panel.title() == look.title {
+        let mut looks = self.panels;
+        for section in dock.sections() {
+            // Of two panels with one title the first is the first. Other builds have other panels.
+            let title = section.panel.title();
+            if let Some(index) = looks.iter().position(|look| look.title == title) {
+                let look = looks.remove(index);
                 section.is_to_be_open = Some(look.is_open);
                 section.panel.take_choices(&look.choices);
             }

@@ -15,6 +15,7 @@ mod polyhedra;
 mod recording;
 mod rescue;
 mod session;
+mod sweep;
 mod timeline;
 mod turning;
 mod view;

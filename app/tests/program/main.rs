@@ -13,6 +13,7 @@ mod reliability;
 #[allow(dead_code, reason = "tests of the library use more of it")]
 #[path = "../../../tests/common/runs.rs"]
 mod runs;
+mod sweeps;
 #[allow(dead_code, reason = "tests of the library use more of it")]
 #[path = "../../../tests/common/vtk_file.rs"]
 mod vtk_file;

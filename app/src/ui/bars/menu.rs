@@ -96,6 +96,8 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
     let why_not = simulation.is_none().then_some("There is no run to compare");
     let compare = Request::Compare(None);
     item_unless_ui(ui, "Compare two values…", compare, why_not, out);
+    let sweep = Request::AskSweep(None);
+    item_unless_ui(ui, "Run over values…", sweep, why_not, out);
     let why_not = comparison.is_none().then_some("There is one run only");
     for half in Half::ALL {
         let name = format!("End the comparison, keep the {} run", half.label());

@@ -41,6 +41,8 @@ pub enum Purpose {
     Plot,
     /// Where a film goes.
     Film,
+    /// The folder of parameter sweeps.
+    SweepFolder,
 }
 
 impl Purpose {
@@ -53,6 +55,7 @@ impl Purpose {
             Self::Changes => "json",
             Self::Plot => "svg",
             Self::Film => "gif",
+            Self::SweepFolder => "",
         }
     }
 }
@@ -94,6 +97,7 @@ impl Purpose {
             Self::Changes => "Save the list of changes",
             Self::Plot => "Export the plot",
             Self::Film => "Record a film of the picture",
+            Self::SweepFolder => "Choose a folder for parameter sweeps",
         }
     }
 
@@ -109,6 +113,7 @@ impl Purpose {
             Self::Film => {
                 "Path; it ends in .gif, or in .mp4 where ffmpeg is installed; without an ending, a folder of PNG pictures"
             }
+            Self::SweepFolder => "Path of a folder, in which each sweep has one of its own",
         }
     }
 
@@ -120,6 +125,7 @@ impl Purpose {
             Self::Changes => free_name("changes", self.extension()),
             Self::Plot => free_name("plot", self.extension()),
             Self::Film => free_name("film", self.extension()),
+            Self::SweepFolder => String::new(),
         }
     }
 
@@ -128,7 +134,7 @@ impl Purpose {
     fn file(self, path: &Path) -> PathBuf {
         let ended = || path.with_extension(self.extension());
         match self {
-            Self::Open | Self::Film => path.to_owned(),
+            Self::Open | Self::Film | Self::SweepFolder => path.to_owned(),
             Self::Plot if path.extension().is_some() => path.to_owned(),
             Self::Session | Self::Picture | Self::Changes | Self::Plot => ended(),
         }
@@ -143,6 +149,7 @@ impl Purpose {
             Self::Changes => Request::SaveChanges(file),
             Self::Plot => Request::SavePlot(file),
             Self::Film => Request::Screenshot(ScreenshotOrder::Film(file)),
+            Self::SweepFolder => Request::SweepFolder(file),
         }
     }
 
@@ -153,6 +160,8 @@ impl Purpose {
         let shown = whole.display();
         if self == Self::Open || path.as_os_str().is_empty() {
             Ok(String::new())
+        } else if self == Self::SweepFolder && whole.is_dir() {
+            Ok(format!("Each sweep has a folder of its own in {shown}"))
         } else if whole.is_dir() {
             Err(format!(
                 "There is a folder {shown} already: choose another name."
@@ -162,6 +171,8 @@ impl Purpose {
             Err(format!(
                 "There is no folder {folder}: make it first, or choose another."
             ))
+        } else if self == Self::SweepFolder && whole.exists() {
+            Err(format!("{shown} is no folder: choose another."))
         } else if whole.exists() {
             Ok(format!("Replaces {shown}"))
         } else {
@@ -279,6 +290,7 @@ async fn ask_system(purpose: Purpose) -> DialogAnswer {
             let dialog = dialog.add_filter("Films", &["gif", "mp4"]);
             dialog.set_file_name("film.gif").save_file().await
         }
+        Purpose::SweepFolder => dialog.pick_folder().await,
         Purpose::Changes => {
             let dialog = dialog.add_filter("Lists of changes", &["json"]);
             dialog.set_file_name("changes.json").save_file().await
@@ -330,6 +342,7 @@ fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath) -> Option<FieldAnswer> {
                 Purpose::Open => "Open",
                 Purpose::Session | Purpose::Picture | Purpose::Changes | Purpose::Plot => "Save",
                 Purpose::Film => "Record",
+                Purpose::SweepFolder => "Choose",
             };
             let possible = why_not.is_none();
             let button = egui::Button::new(verb);

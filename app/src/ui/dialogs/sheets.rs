@@ -58,8 +58,12 @@ pub fn doubt_ui(
     out: &mut Vec<Request>,
 ) -> bool {
     let anyway = Request::Anyway(Box::new(request.clone()));
-    let answers = [("Open it", Some(anyway)), ("Cancel", None)];
-    question_ui(ctx, "This is a large scene", reason, answers, out)
+    let (question, yes) = match request {
+        Request::Quit => ("Leave while a sweep is running?", "Stop it and leave"),
+        _ => ("This is a large scene", "Open it"),
+    };
+    let answers = [(yes, Some(anyway)), ("Cancel", None)];
+    question_ui(ctx, question, reason, answers, out)
 }
 
 /// Offers the session that an earlier window left at `path`; false once that is answered.

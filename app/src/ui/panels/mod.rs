@@ -16,6 +16,7 @@ pub mod flow_over_depth;
 pub mod lesson;
 pub mod mean_velocities;
 pub mod microscope;
+pub mod parameter_sweep;
 pub mod parameters;
 pub mod picture_settings;
 pub mod results;

@@ -6,11 +6,12 @@ use crate::ui::detail::{Detail, is_basic};
 use crate::ui::panel::Panel;
 use crate::ui::panels::start_values::StartValues;
 use crate::ui::request::Request;
+use crate::ui::widgets::row_button::{row_button_ui, sweep_button_ui};
 use crate::ui::widgets::touch;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::{number, symbol};
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, RichText};
 use grainfall::lab::Half;
 use grainfall::lesson::Touch;
 use grainfall::parameters::{Choice, Kind, PanelSection, Parameter, ParameterInfo, Value, Values};
@@ -138,7 +139,7 @@ impl Parameters {
             self.start.reset(simulation);
         }
         if detail == Detail::Lab {
-            self.start.rows_ui(ui, simulation);
+            self.start.rows_ui(ui, simulation, out);
         } else {
             let live = away().filter(|info| is_unseen(info, simulation));
             unseen_ui(ui, live.count() + of_start);
@@ -192,12 +193,14 @@ fn group_ui(
         let is_compared = (simulation.comparison())
             .is_some_and(|comparison| *comparison.parameter == info.parameter);
         if !is_compared {
-            let mut compared = false;
+            let (mut compared, mut swept) = (false, false);
             let Some(value) = simulation.value(&info.parameter) else {
                 continue;
             };
             let row = ui.scope(|ui| {
                 parameter_ui(ui, info, value, detail, scene, |ui| {
+                    let is_number = matches!(info.values, Values::Range(_));
+                    swept = is_number && sweep_button_ui(ui, &info.label);
                     compared = compare_ui(ui, info, simulation);
                 })
             });
@@ -207,7 +210,9 @@ fn group_ui(
                 row.response.rect,
             );
             out.extend(row.inner.map(|value| Request::Command(set(info, value))));
-            out.extend(compared.then(|| Request::Compare(Some(info.parameter.clone()))));
+            let about = || Some(info.parameter.clone());
+            out.extend(compared.then(|| Request::Compare(about())));
+            out.extend(swept.then(|| Request::AskSweep(about())));
             continue;
         }
         for half in Half::ALL {
@@ -247,14 +252,11 @@ fn in_order<'a>(
 
 /// The button that leads to two values of a parameter side by side; whether it was pressed.
 fn compare_ui(ui: &mut egui::Ui, info: &ParameterInfo, simulation: &Simulation) -> bool {
-    let enabled = simulation.comparison().is_none();
-    let button = ui
-        .add_enabled(enabled, egui::Button::new("⇄").frame(false))
-        .on_hover_text("Compare two values of it side by side…")
-        .on_disabled_hover_text("Two values are compared already: end that comparison first");
+    let other = "Two values are compared already: end that comparison first";
+    let why_not = simulation.comparison().is_some().then_some(other);
     let name = format!("Compare {}…", info.label);
-    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, enabled, &name));
-    button.clicked()
+    let hint = "Compare two values of it side by side…";
+    row_button_ui(ui, "⇄", &name, hint, why_not)
 }
 
 /// The row of one parameter of `scene`, with what is drawn `beside` its field: what is wanted

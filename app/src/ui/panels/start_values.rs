@@ -7,10 +7,11 @@
 use crate::simulation::Simulation;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
+use crate::ui::widgets::row_button::sweep_button_ui;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::number;
 use bevy_egui::egui::{self, RichText};
-use grainfall::parameters::{Kind, ParameterInfo, start_parameters};
+use grainfall::parameters::{Kind, Parameter, ParameterInfo, start_parameters};
 use grainfall::scene::Scene;
 
 /// What acts from the next start on.
@@ -44,7 +45,7 @@ impl StartValues {
     }
 
     /// Draws a row for each.
-    pub fn rows_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation) {
+    pub fn rows_ui(&mut self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let scene = simulation.scene();
         ui.add_space(6.0);
         ui.label(RichText::new("From the next start on").strong());
@@ -55,7 +56,14 @@ impl StartValues {
             };
             let value = value.number();
             let is_given = differs(info, draft, simulation.original());
-            if let Some(wanted) = row_ui(ui, info, value, is_given) {
+            let mut swept = false;
+            let wanted = row_ui(ui, info, value, is_given, |ui| {
+                // Seeds are asked for beside any other parameter.
+                let is_seed = info.parameter == Parameter::Seed;
+                swept = !is_seed && sweep_button_ui(ui, &info.label);
+            });
+            out.extend(swept.then(|| Request::AskSweep(Some(info.parameter.clone()))));
+            if let Some(wanted) = wanted {
                 let mut changed = draft.clone();
                 let stated = info.parameter.stated(simulation.original());
                 let original = stated.filter(|_| wanted == info.default.number());
@@ -105,9 +113,15 @@ fn differs(info: &ParameterInfo, scene: &Scene, original: &Scene) -> bool {
     info.parameter.stated(scene) != info.parameter.stated(original)
 }
 
-/// The row of a start value, which somebody gave the scene or which it had; what is wanted instead,
-/// if anything.
-fn row_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64, is_given: bool) -> Option<f64> {
+/// The row of a start value, which somebody gave the scene or which it had, with what is drawn
+/// `beside` its field; what is wanted instead, if anything.
+fn row_ui(
+    ui: &mut egui::Ui,
+    info: &ParameterInfo,
+    value: f64,
+    is_given: bool,
+    beside: impl FnOnce(&mut egui::Ui),
+) -> Option<f64> {
     let name = number::capitalised(&info.label);
     let (own, default) = (info.row(), info.default.number());
     let range = info.range();
@@ -125,15 +139,9 @@ fn row_ui(ui: &mut egui::Ui, info: &ParameterInfo, value: f64, is_given: bool) -
     };
     let extent = row.extent();
     row.caption = Some(format!("{extent} · acts at the next start"));
-    value_ui(
-        ui,
-        &row,
-        value,
-        |_| (),
-        |ui| {
-            ui.label(own.description);
-            ui.weak(&extent);
-            ui.weak("It acts when the run is started with it.");
-        },
-    )
+    value_ui(ui, &row, value, beside, |ui| {
+        ui.label(own.description);
+        ui.weak(&extent);
+        ui.weak("It acts when the run is started with it.");
+    })
 }

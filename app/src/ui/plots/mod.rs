@@ -1,6 +1,7 @@
 //! Curves of samples, as several panels draw them.
 
 pub mod axes;
+pub mod chart_plot;
 pub mod decimate;
 pub mod run_curves;
 pub mod time_plot;
