@@ -10,13 +10,17 @@
 //! |---|---|
 //! | `opening` | the run that the window opens with |
 //! | `session` | all branches of a run in one file |
+//! | `session_tail` | what later layouts of that file added |
 //! | `timeline` | all branches of a run: seek, branch, undo |
 //! | `soundness` | whether what a file kept of a run is what a run can be |
 //! | `archive`, `keyframes` | a timeline as a file keeps it; states along all branches |
+//! | `events` | what happened, and when: impacts, avalanches, changes … |
 //! | `past`, `undo` | what is told of a timeline; what can be taken back |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero; where beds are kept |
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
+//! | `changes` | which parameters each change set |
+//! | `meetings` | which of few grains met and parted, and when |
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `orientations` | how far spheres have turned, for pictures |
 //! | `method` | which solver and measures computed a run |
@@ -34,13 +38,16 @@
 mod archive;
 mod bed;
 mod branch;
+mod changes;
 mod check;
 mod command;
 mod estimate;
+mod events;
 mod history;
 mod keyframes;
 mod machine;
 mod measured;
+mod meetings;
 mod method;
 mod opening;
 mod orientations;
@@ -53,6 +60,7 @@ mod rescue;
 mod sampling;
 mod script;
 mod session;
+mod session_tail;
 mod settling;
 mod shared;
 mod snapshot;
@@ -72,12 +80,15 @@ pub use crate::scene::SAMPLE_INTERVAL;
 pub(crate) use bed::BedKey;
 pub use bed::BedStore;
 pub use branch::Branch;
+pub use changes::{Change, Setting, changes};
 pub use check::CommandError;
 pub(crate) use check::accept;
 pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMachine, Estimate};
+pub use events::{Event, EventKind, Happening, Pair, events};
 pub use history::{History, Moment};
 pub use measured::{Measured, Stored};
+pub use meetings::{MOST_MEETINGS, Meeting, MeetingKind};
 pub use method::method;
 pub use opening::{OPENING_SCENE, OpeningError, make_opening, opening};
 pub use orientations::Turned;
