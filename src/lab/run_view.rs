@@ -284,6 +284,11 @@ impl RunView {
         self.advice = advice;
     }
 
+    /// Looks through what was measured, where that was put off: the run may hold by now.
+    pub(super) fn catch_up(&mut self) {
+        self.findings.follow(&self.branch);
+    }
+
     /// Takes in what is new of it.
     pub(super) fn take(&mut self, mut news: RunNews) {
         let is_other = |known: &RunNews| !Arc::ptr_eq(&known.world, &news.world);

@@ -19,19 +19,19 @@
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero; where beds are kept |
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
-//! | `changes` | which parameters each change set |
-//! | `meetings` | which of few grains met and parted, and when |
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `orientations` | how far spheres have turned, for pictures |
 //! | `method` | which solver and measures computed a run |
 //! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `measured` | what was measured, and how much of it stands in files |
+//! | `meetings` | which of few grains met and parted, and when |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `rescue` | what a window was about, for the case that it ends unasked |
 //! | `steps` | which step was when, where the time step changed |
+//! | `changes` | which parameters each change set |
 //! | `command` | everything a person can ask for |
 //! | `shared` | what is shared in memory, in a file |
 

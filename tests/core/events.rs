@@ -143,7 +143,7 @@ fn a_bridge_that_is_drawn_out_ruptures_at_its_rupture_gap() {
             (position: (0.005994, 0, 0), velocity: (0.5, 0, 0), radius_mm: 3, material: "glass"),
         ]),
         liquid: (surface_tension: 0.064, contact_angle_deg: 60, viscosity: 0.001, volume: 1.7e-8,
-            law: Choices(volume: ShadedCap, angle: HalfProduct, viscous_gap: OfEffectiveRadius(0.01),
+            law: Choices(volume: ShadedCap, angle: Mean, viscous_gap: OfEffectiveRadius(0.01),
             capillary_gap: Open, rupture: AtRuptureGap)),
         duration: 0.02,
     )"#;
