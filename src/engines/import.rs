@@ -304,6 +304,7 @@ impl Recording {
             world,
             series: &self.series,
             flow: &self.flow,
+            meetings: &[],
             commands: &self.commands,
             sampling: Sampling::default(),
         })?;
@@ -322,6 +323,7 @@ impl Recording {
             world: &last,
             series: &self.series,
             flow: &self.flow,
+            meetings: &[],
             commands: &self.commands,
             sampling: Sampling::default(),
         };

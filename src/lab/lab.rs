@@ -347,6 +347,7 @@ impl Lab {
                 self.take(update);
             }
         }
+        self.runs.iter_mut().for_each(RunView::catch_up);
         if self.status == Status::Running && self.recording.is_none() {
             self.saved.worked += passed;
         }

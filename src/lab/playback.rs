@@ -244,13 +244,7 @@ impl Playback {
 
     /// Shows the state nearest to `step`.
     fn seek(&mut self, step: u64) {
-        let before = self.recording.index_at(step);
-        let steps = |index: usize| self.recording.moments().get(index).map(|m| m.step);
-        let after = steps(before + 1).is_some_and(|after| {
-            let own = steps(before).unwrap_or(0);
-            after.saturating_sub(step) < step.saturating_sub(own)
-        });
-        self.go_to(before + usize::from(after));
+        self.go_to(self.recording.nearest(step));
     }
 
     /// Shows the state after the one shown, or one that is `steps` later where that is further.

@@ -9,8 +9,8 @@ use crate::measure::{
     Avalanche, FlowHistory, LEFT_OUT, MeanFlow, Measure, Sample, Series, avalanches,
 };
 use crate::run::{
-    Branch, Command, Parameter, ParameterInfo, Past, Sampling, StampedCommand, StepTimes, Turned,
-    Value, time_step,
+    Branch, Command, Event, Meeting, Parameter, ParameterInfo, Past, Sampling, StampedCommand,
+    StepTimes, Turned, Value, events, time_step,
 };
 use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
@@ -36,7 +36,7 @@ pub struct RunView {
     branch: Arc<Branch>,
     past: Past,
     profile: Profile,
-    avalanches: Avalanches,
+    findings: Findings,
     warnings: Vec<String>,
     /// Values asked for and not yet carried out.
     asked: BTreeMap<Parameter, Value>,
@@ -60,7 +60,7 @@ impl RunView {
             branch: Arc::default(),
             past: Past::default(),
             profile: Profile::default(),
-            avalanches: Avalanches::default(),
+            findings: Findings::default(),
             asked: BTreeMap::new(),
             sought: None,
             generation: 0,
@@ -141,7 +141,23 @@ impl RunView {
 
     /// The avalanches so far, of [`SMALLEST_DROP`] at least.
     pub fn avalanches(&self) -> &[Avalanche] {
-        &self.avalanches.list
+        &self.findings.avalanches
+    }
+
+    /// What happened in the present branch so far, in order of time; what comes after the state
+    /// shown too.
+    pub fn events(&self) -> &[Event] {
+        &self.findings.events
+    }
+
+    /// Changes whenever [`RunView::events`] is another list.
+    pub fn events_revision(&self) -> u64 {
+        self.findings.revision
+    }
+
+    /// Contacts and bridges of few grains that began and ended in the present branch.
+    pub fn meetings(&self) -> &[Meeting] {
+        &self.branch.meetings
     }
 
     /// The commands carried out in the present branch since time zero; those after the state shown
@@ -153,6 +169,11 @@ impl RunView {
     /// Index of the first command of each change: a drag or a button may take several.
     pub fn changes(&self) -> &[usize] {
         self.branch.history.changes()
+    }
+
+    /// The commands of each change, in order.
+    pub fn each_change(&self) -> impl Iterator<Item = &[StampedCommand]> {
+        self.branch.history.each_change()
     }
 
     /// Changes whenever [`RunView::commands`] is another list.
@@ -272,6 +293,11 @@ impl RunView {
         self.advice = advice;
     }
 
+    /// Looks through what was measured, where that was put off: the run may hold by now.
+    pub(super) fn catch_up(&mut self) {
+        self.findings.follow(&self.branch);
+    }
+
     /// Takes in what is new of it.
     pub(super) fn take(&mut self, mut news: RunNews) {
         let is_other = |known: &RunNews| !Arc::ptr_eq(&known.world, &news.world);
@@ -284,10 +310,10 @@ impl RunView {
             self.revision = next_number();
         }
         if self.branch.number != news.branch.number {
-            self.avalanches = Avalanches::default();
+            self.findings = Findings::default();
         }
         self.branch = news.branch.clone();
-        self.avalanches.follow(&self.branch.series);
+        self.findings.follow(&self.branch);
         self.past = std::mem::take(&mut news.past);
         self.profile = std::mem::take(&mut news.profile);
         self.news = Some(news);
@@ -300,27 +326,35 @@ fn next_number() -> u64 {
     NUMBERS.fetch_add(1, Ordering::Relaxed)
 }
 
-/// The avalanches of a growing series.
+/// What was found in a branch that grows.
 #[derive(Default)]
-struct Avalanches {
-    list: Vec<Avalanche>,
-    samples: usize,
+struct Findings {
+    avalanches: Vec<Avalanche>,
+    events: Vec<Event>,
+    revision: u64,
+    /// Samples, meetings and commands that were looked through.
+    seen: [usize; 3],
     due: Option<Instant>,
 }
 
-impl Avalanches {
-    /// Looks through `series` again where it has grown, spending a twentieth of the time at most.
-    fn follow(&mut self, series: &Series) {
-        let started = Instant::now();
-        if series.len() == self.samples || self.due.is_some_and(|due| due > started) {
+impl Findings {
+    /// Looks through `branch` again where it has grown, spending a twentieth of the time at most.
+    fn follow(&mut self, branch: &Branch) {
+        let (started, series) = (Instant::now(), &branch.series);
+        let commands = branch.history.commands().len();
+        let seen = [series.len(), branch.meetings.len(), commands];
+        if seen == self.seen || self.due.is_some_and(|due| due > started) {
             return;
         }
-        self.list = avalanches(
-            series.time(),
-            series.column(Measure::SurfaceAngle),
-            SMALLEST_DROP,
-        );
-        self.samples = series.len();
+        let angle = series.column(Measure::SurfaceAngle);
+        self.avalanches = avalanches(series.time(), angle, SMALLEST_DROP);
+        let changes = branch.history.each_change();
+        let found = events(series, &self.avalanches, &branch.meetings, changes);
+        if found != self.events {
+            self.events = found;
+            self.revision = next_number();
+        }
+        self.seen = seen;
         self.due = Some(started + 20 * started.elapsed());
     }
 }

@@ -20,6 +20,7 @@
 //! | `velocity_kernel`, `velocity_map` | mean velocities near a point, and on a grid |
 //! | `deposit` | the heap of a column: front, height, profile, shape |
 //! | `grain_quantity` | numbers of each grain, to colour a picture by |
+//! | `histogram` | how often values occur: [`Histogram`] |
 //! | **of a run** | |
 //! | `series` | samples in columns: [`Series`] |
 //! | `avalanches` | the extrema of θ(t) |
@@ -59,6 +60,7 @@ mod energy_ledger;
 mod estimate;
 mod flow;
 mod grain_quantity;
+mod histogram;
 mod near_pairs;
 pub mod numeral;
 mod packing_fraction;
@@ -100,6 +102,7 @@ pub use energy_ledger::{EnergyLedger, elastic_energy};
 pub use estimate::Estimate;
 pub use flow::{FlowDepth, FlowHistory, FlowProfile, MeanFlow, NON_RIGID_TEMPERATURE};
 pub use grain_quantity::GrainQuantity;
+pub use histogram::Histogram;
 pub use packing_fraction::packing_fraction;
 pub use quantity::{Format, MeasuredValue, Quantity, Scope};
 pub use regime::Regime;

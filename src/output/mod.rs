@@ -15,7 +15,7 @@
 //! | `vtk` | VTK's XML files |
 //! | `base64` | bytes as text |
 //! | `summary_file` | `summary.json`: what was run, how it ended, what came out |
-//! | `series_file`, `profile_files`, `velocity_file` | tables: `series.csv`, `flow.csv` … |
+//! | `series_file`, `profile_files`, `velocity_file`, `events_file` | tables: `series.csv`, `flow.csv` … |
 //! | `folder` | where the files go; nobody else's are touched |
 //! | `digest` | what tells a file from every other |
 //! | `run_so_far`, `ending` | what is seen of a run; how it ended |
@@ -28,6 +28,7 @@ mod container_file;
 mod digest;
 mod ending;
 mod error;
+mod events_file;
 mod folder;
 mod frames;
 mod grains_file;
@@ -45,6 +46,7 @@ pub use container_file::write_container;
 pub use digest::{digest_of, digest_of_file};
 pub use ending::Ending;
 pub use error::OutputError;
+pub use events_file::EVENTS;
 pub use folder::{
     CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_name_below, is_own_name,
     write_file,

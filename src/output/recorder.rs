@@ -6,6 +6,7 @@
 //! second. Bytes written grow like what there is to say: nothing but the summary is written twice.
 
 use super::collection_file::CollectedFile;
+use super::events_file::{EVENTS, events_table, write_events};
 use super::folder::{CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY};
 use super::frames::{self, Frame, FrameFiles, WrittenFrames};
 use super::profile_files::{FLOW, PROFILE, flow_table, profile_table, write_flow, write_profile};
@@ -32,7 +33,7 @@ const SYNC_TIME: Duration = Duration::from_secs(1);
 const SHARE_OF_TIME: u32 = 20;
 /// Files by these names, and the frames', are a run's own; those of an earlier run give way to a
 /// later one.
-const OWN: [&str; 9] = [
+const OWN: [&str; 10] = [
     CHECKPOINT,
     SAMPLES,
     PROFILES,
@@ -41,6 +42,7 @@ const OWN: [&str; 9] = [
     FLOW,
     VELOCITY,
     PROFILE,
+    EVENTS,
     TABLES_METADATA,
 ];
 
@@ -375,6 +377,8 @@ impl Recorder {
         let fastest = run.and_then(|run| run.flow.fastest_since(from));
         let deposit = run.and_then(|run| Deposit::of(run.world));
         let heights = deposit.map(|deposit| deposit.height_profile());
+        let events = run.map(|run| (run.events(), &run.world.container.walls));
+        let events = events.filter(|(events, _)| !events.is_empty());
         let series = self.series.as_ref();
         let tables = [
             (
@@ -392,6 +396,12 @@ impl Recorder {
             (
                 Some(profile_table()),
                 self.write_table(PROFILE, heights.as_ref(), write_profile)?,
+            ),
+            (
+                Some(events_table()),
+                self.write_table(EVENTS, events.as_ref(), |(events, walls), file| {
+                    write_events(events, walls, file)
+                })?,
             ),
         ];
         let written = tables

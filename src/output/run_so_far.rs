@@ -1,7 +1,9 @@
 //! What files and results show of a run.
 
-use crate::measure::{FlowHistory, LEFT_OUT, SMALLEST_DROP, Series, Summary, results, summarise};
-use crate::run::{Run, Sampling, StampedCommand};
+use crate::measure::{
+    FlowHistory, LEFT_OUT, Measure, SMALLEST_DROP, Series, Summary, avalanches, results, summarise,
+};
+use crate::run::{Event, Meeting, Run, Sampling, StampedCommand, events};
 use crate::world::World;
 
 /// A run so far, as files and results show it: its present state and what was kept of it until
@@ -14,6 +16,8 @@ pub struct RunSoFar<'a> {
     pub series: &'a Series,
     /// The flowing layer so far.
     pub flow: &'a FlowHistory,
+    /// Contacts and bridges of few grains that began and ended.
+    pub meetings: &'a [Meeting],
     /// The commands carried out since time zero.
     pub commands: &'a [StampedCommand],
     /// Which samples were taken, and what the next one depends on.
@@ -27,6 +31,7 @@ impl<'a> RunSoFar<'a> {
             world: run.world(),
             series: run.series(),
             flow: run.flow(),
+            meetings: run.meetings(),
             commands: run.commands(),
             sampling: run.sampling(),
         }
@@ -35,6 +40,18 @@ impl<'a> RunSoFar<'a> {
     /// The simulated time from which on results count [s].
     pub fn results_from(&self) -> f64 {
         LEFT_OUT * self.world.time()
+    }
+
+    /// What happened so far, each command as a change of its own.
+    pub fn events(&self) -> Vec<Event> {
+        let angle = self.series.column(Measure::SurfaceAngle);
+        let avalanches = avalanches(self.series.time(), angle, SMALLEST_DROP);
+        events(
+            self.series,
+            &avalanches,
+            self.meetings,
+            self.commands.chunks(1),
+        )
     }
 
     /// The results so far.

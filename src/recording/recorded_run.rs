@@ -62,6 +62,11 @@ impl RecordingFacts {
         index_at(&self.moments, step)
     }
 
+    /// Index of the state that is shown when `step` is asked for: the nearest.
+    pub fn nearest(&self, step: u64) -> usize {
+        nearest(&self.moments, step)
+    }
+
     /// The longest time between two states [s].
     pub fn largest_gap(&self) -> f64 {
         let gaps = self
@@ -70,6 +75,14 @@ impl RecordingFacts {
             .map(|pair| pair[1].time - pair[0].time);
         gaps.fold(0.0, f64::max)
     }
+}
+
+/// Index of that of `moments` which is nearest to `step`.
+fn nearest(moments: &[Moment], step: u64) -> usize {
+    let before = index_at(moments, step);
+    let away = |index: usize| moments.get(index).map(|moment| moment.step.abs_diff(step));
+    let is_nearer = away(before + 1).is_some_and(|after| Some(after) < away(before));
+    before + usize::from(is_nearer)
 }
 
 /// Index of the last of `moments` at or before `step`; the first one where none is.
@@ -432,6 +445,11 @@ impl Recording {
     /// Index of the last state at or before `step`; the first one where none is.
     pub fn index_at(&self, step: u64) -> usize {
         index_at(&self.moments, step)
+    }
+
+    /// Index of the state that is nearest to `step`.
+    pub fn nearest(&self, step: u64) -> usize {
+        nearest(&self.moments, step)
     }
 
     /// What was changed and measured.

@@ -8,6 +8,7 @@
 use super::Snapshot;
 use super::branch::Branch;
 use super::history::Moment;
+use super::meetings::Meeting;
 use super::sampling::Sampling;
 use super::undo::{Changed, Destination, UndoEntry};
 use crate::world::World;
@@ -141,6 +142,20 @@ impl Archive {
     pub fn set_samplings(&mut self, samplings: &[Sampling]) {
         for (state, sampling) in self.states.iter_mut().zip(samplings) {
             state.snapshot.sampling = *sampling;
+        }
+    }
+
+    /// The meetings in each branch.
+    pub fn meetings(&self) -> impl Iterator<Item = &[Meeting]> {
+        self.branches
+            .iter()
+            .map(|branch| branch.meetings.as_slice())
+    }
+
+    /// Gives each branch its `meetings`, as many as there are.
+    pub fn set_meetings(&mut self, meetings: Vec<Vec<Meeting>>) {
+        for (branch, meetings) in self.branches.iter_mut().zip(meetings) {
+            branch.meetings = Arc::new(meetings);
         }
     }
 

@@ -7,6 +7,7 @@
 
 use super::Script;
 use super::history::{History, Moment, Position};
+use super::meetings::Meeting;
 use crate::measure::{FlowHistory, Series};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,6 +27,9 @@ pub struct Branch {
     /// The flowing layer.
     #[serde(with = "super::shared")]
     pub flow: Arc<FlowHistory>,
+    /// Contacts and bridges of few grains that began and ended; they stand apart in a file.
+    #[serde(skip)]
+    pub meetings: Arc<Vec<Meeting>>,
     /// Its last step so far.
     pub end: Moment,
     /// Commands that were given beforehand; those after the end are still to come.
@@ -56,6 +60,11 @@ impl Branch {
             let mut series = Series::default();
             series.copy_first(&branch.series, samples);
             branch.series = Arc::new(series);
+        }
+        let is_past = |meeting: &Meeting| meeting.step <= end.step;
+        let meetings = branch.meetings.partition_point(is_past);
+        if meetings < branch.meetings.len() {
+            Arc::make_mut(&mut branch.meetings).truncate(meetings);
         }
         branch
     }

@@ -98,6 +98,14 @@ impl History {
         &self.changes
     }
 
+    /// The commands of each change, in order.
+    pub fn each_change(&self) -> impl Iterator<Item = &[StampedCommand]> {
+        let ends = self.changes.iter().skip(1).copied();
+        let ends = ends.chain([self.commands.len()]);
+        let spans = self.changes.iter().copied().zip(ends);
+        spans.filter_map(|(first, end)| self.commands.get(first..end))
+    }
+
     /// Adds `command`, which is part of the change before it where it `joins`.
     pub fn push(&mut self, command: StampedCommand, joins: bool) {
         let mut hasher = blake3::Hasher::new();

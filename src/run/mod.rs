@@ -10,9 +10,11 @@
 //! |---|---|
 //! | `opening` | the run that the window opens with |
 //! | `session` | all branches of a run in one file |
+//! | `session_tail` | what later layouts of that file added |
 //! | `timeline` | all branches of a run: seek, branch, undo |
 //! | `soundness` | whether what a file kept of a run is what a run can be |
 //! | `archive`, `keyframes` | a timeline as a file keeps it; states along all branches |
+//! | `events` | what happened, and when: impacts, avalanches, changes … |
 //! | `past`, `undo` | what is told of a timeline; what can be taken back |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero; where beds are kept |
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
@@ -23,24 +25,29 @@
 //! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `measured` | what was measured, and how much of it stands in files |
+//! | `meetings` | which of few grains met and parted, and when |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `rescue` | what a window was about, for the case that it ends unasked |
 //! | `steps` | which step was when, where the time step changed |
+//! | `changes` | which parameters each change set |
 //! | `command` | everything a person can ask for |
 //! | `shared` | what is shared in memory, in a file |
 
 mod archive;
 mod bed;
 mod branch;
+mod changes;
 mod check;
 mod command;
 mod estimate;
+mod events;
 mod history;
 mod keyframes;
 mod machine;
 mod measured;
+mod meetings;
 mod method;
 mod opening;
 mod orientations;
@@ -53,6 +60,7 @@ mod rescue;
 mod sampling;
 mod script;
 mod session;
+mod session_tail;
 mod settling;
 mod shared;
 mod snapshot;
@@ -72,12 +80,15 @@ pub use crate::scene::SAMPLE_INTERVAL;
 pub(crate) use bed::BedKey;
 pub use bed::BedStore;
 pub use branch::Branch;
+pub use changes::{Change, Setting, changes};
 pub use check::CommandError;
 pub(crate) use check::accept;
 pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMachine, Estimate};
+pub use events::{Event, EventKind, Happening, Pair, events};
 pub use history::{History, Moment};
 pub use measured::{Measured, Stored};
+pub use meetings::{MOST_MEETINGS, Meeting, MeetingKind};
 pub use method::method;
 pub use opening::{OPENING_SCENE, OpeningError, make_opening, opening};
 pub use orientations::Turned;

@@ -9,13 +9,12 @@
 
 use super::archive::Archive;
 use super::record::{RunRecord, VERSION};
-use super::sampling::Sampling;
 use super::script::ScriptedCommand;
+use super::session_tail::{LAYOUT, Tail, is_known};
 use super::timeline::Timeline;
 use crate::files::{open_regular, read_whole, write_whole};
 use crate::geometry::Rounded;
 use crate::scene::{HeldCells, Scene, StoredCells, within_folders};
-use glam::Quat;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read};
@@ -23,13 +22,6 @@ use std::path::{Path, PathBuf};
 
 /// What the first line begins with.
 const MARK: &str = "grainfall session";
-/// Raised whenever what follows the second line is laid out otherwise.
-const LAYOUT: &str = "5";
-/// The layout that ends where the orientations begin; it is read, too.
-const WITHOUT_ORIENTATIONS: &str = "4";
-/// The layout that ends where [`Tail`] begins; it is read, too.
-const WITHOUT_TAIL: &str = "3";
-
 /// Largest file that is read [bytes]: a day of a drum with all its branches has less.
 const LARGEST_FILE: u64 = 4 << 30;
 
@@ -55,14 +47,6 @@ struct Rest<A, C> {
     cells: Option<C>,
     /// The scene as it was opened, as JSON, where it is another.
     original: Option<String>,
-}
-
-/// What follows that.
-#[derive(Default, Serialize, Deserialize)]
-struct Tail {
-    /// How samples are taken from each state of the archive on.
-    samplings: Vec<Sampling>,
-    look: String,
 }
 
 /// Why a file cannot be opened as a session, and what to do.
@@ -181,14 +165,9 @@ impl Session {
                 .map(serde_json::to_string)
                 .transpose()?,
         };
-        let tail = Tail {
-            samplings: self.archive.samplings().collect(),
-            look: self.look.clone(),
-        };
+        let tail = Tail::of(&self.archive, &self.look);
         let body = postcard::to_extend(&rest, body).map_err(io::Error::other)?;
         let body = postcard::to_extend(&tail, body).map_err(io::Error::other)?;
-        let orientations: Vec<Vec<Quat>> = self.archive.orientations().collect();
-        let body = postcard::to_extend(&orientations, body).map_err(io::Error::other)?;
         write_whole(path, |file| {
             let checksum = blake3::hash(&body).to_hex();
             writeln!(file, "{MARK} {LAYOUT} {VERSION} {checksum}")?;
@@ -223,7 +202,7 @@ impl Session {
         else {
             return Err(Reason::Damaged("its first line is not whole"));
         };
-        if ![LAYOUT, WITHOUT_ORIENTATIONS, WITHOUT_TAIL].contains(&layout) || version != VERSION {
+        if !is_known(layout) || version != VERSION {
             let build = if version == VERSION {
                 " of another build"
             } else {
@@ -241,11 +220,7 @@ impl Session {
         // A value that no parameter takes stands in the list of changes too, where it has a name.
         let (rest, tail): (Rest<Archive, Vec<Rounded>>, &[u8]) = postcard::take_from_bytes(rest)
             .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
-        let (tail, orientations) = match layout {
-            WITHOUT_TAIL => (Tail::default(), Vec::new()),
-            WITHOUT_ORIENTATIONS => (whole(tail, foreign)?, Vec::new()),
-            _ => whole(tail, foreign)?,
-        };
+        let tail = Tail::read(tail, layout).map_err(|_| Reason::Damaged(foreign))?;
         let _held = rest.cells.and_then(HeldCells::hold);
         // The grains of its scene are in it: no other file is opened.
         let record: RunRecord = within_folders(&[], || of_json(second))?;
@@ -258,8 +233,7 @@ impl Session {
             scene.check().map_err(|e| Reason::Scene(e.to_string()))?;
         }
         let mut archive = rest.archive;
-        archive.set_samplings(&tail.samplings);
-        archive.set_orientations(orientations);
+        let look = tail.complete(&mut archive);
         archive.check(&record.scene).map_err(Reason::Unsound)?;
         let hash = archive.shown().map(|world| world.hash().to_string());
         if !record.is_genuine() || hash != record.state_hash {
@@ -271,14 +245,9 @@ impl Session {
             record,
             archive,
             original,
-            look: tail.look,
+            look,
         })
     }
-}
-
-/// What `bytes` hold to their end.
-fn whole<T: DeserializeOwned>(bytes: &[u8], foreign: &'static str) -> Result<T, Reason> {
-    postcard::from_bytes(bytes).map_err(|_| Reason::Damaged(foreign))
 }
 
 /// Why the list of changes in the claim `text` cannot be used, where it cannot.
@@ -317,6 +286,7 @@ mod tests {
     //! vouches for them says that they are right. `FUZZ_SECONDS=60` forges for a minute.
 
     use super::*;
+    use crate::run::session_tail::WITHOUT_TAIL;
     use crate::run::{BedStore, Command, Parameter, Preparation, Prepared, Run};
     use crate::solver::advise;
     use rand::{RngExt, SeedableRng};

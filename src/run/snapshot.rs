@@ -5,6 +5,7 @@
 //! the run's work.
 
 use super::StampedCommand;
+use super::meetings::Meeting;
 use super::orientations::Turned;
 use super::sampling::Sampling;
 use crate::measure::{FlowHistory, FlowProfile, Series};
@@ -72,6 +73,9 @@ pub struct Checkpoint {
     pub(super) series: Arc<Series>,
     #[serde(with = "super::shared")]
     pub(super) flow: Arc<FlowHistory>,
+    /// Stands behind the rest in a file.
+    #[serde(skip)]
+    pub(super) meetings: Arc<Vec<Meeting>>,
     pub(super) sampling: Sampling,
 }
 
@@ -118,14 +122,20 @@ impl Checkpoint {
         self.commands.len()
     }
 
-    /// The same with the samples of the run until then, and the profiles of its flowing layer in
-    /// the first seconds, which are kept apart.
+    /// The same with the samples of the run until then, the profiles of its flowing layer in the
+    /// first seconds and its meetings, which are kept apart.
     #[must_use]
-    pub fn with_measured(self, series: Series, seconds: Vec<FlowProfile>) -> Self {
+    pub fn with_measured(
+        self,
+        series: Series,
+        seconds: Vec<FlowProfile>,
+        meetings: Vec<Meeting>,
+    ) -> Self {
         let rest = Arc::unwrap_or_clone(self.flow).counted_from(seconds.len());
         Self {
             series: Arc::new(series),
             flow: Arc::new(rest.behind(seconds)),
+            meetings: Arc::new(meetings),
             ..self
         }
     }

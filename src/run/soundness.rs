@@ -9,6 +9,7 @@ use super::archive::{Archive, ArchivedDestination, ArchivedEntry, ArchivedState}
 use super::branch::Branch;
 use super::check::accept;
 use super::history::Moment;
+use super::meetings::{MOST_MEETINGS, Meeting};
 use super::{Checkpoint, Command, RunRecord};
 use crate::measure::{FlowHistory, Series};
 use crate::parameters::{ParameterInfo, live_parameters};
@@ -36,6 +37,7 @@ impl Checkpoint {
         self.world.check().map_err(|error| error.to_string())?;
         is_of_scene(&self.world, scene)?;
         check_measured(&self.series, &self.flow)?;
+        check_meetings(&self.meetings, &self.world)?;
         let parameters = live_parameters(scene, &self.world);
         let commands = self.commands.iter();
         let commands = commands.map(|stamped| (stamped.step, stamped.time, &stamped.command));
@@ -140,6 +142,7 @@ fn check_branch(branch: &Branch, parameters: &[ParameterInfo], bed: &World) -> R
         "a branch in it ends nowhere",
     )?;
     check_measured(&branch.series, &branch.flow)?;
+    check_meetings(&branch.meetings, bed)?;
     let commands = branch.history.commands().iter();
     let commands = commands.map(|stamped| (stamped.step, stamped.time, &stamped.command));
     check_commands(commands, parameters, bed)?;
@@ -153,6 +156,15 @@ fn check_measured(series: &Series, flow: &FlowHistory) -> Result<(), String> {
         series.is_whole() && flow.is_whole(),
         "its samples do not fit together",
     )
+}
+
+/// Whether the `meetings` are in order, and between grains and walls that there are in `world`.
+fn check_meetings(meetings: &[Meeting], world: &World) -> Result<(), String> {
+    let (grains, walls) = (world.grains.len(), world.container.walls.len());
+    let are_sound = (meetings.iter()).all(|meeting| meeting.is_sound(grains, walls))
+        && meetings.is_sorted_by_key(|meeting| meeting.step)
+        && meetings.len() <= 2 * MOST_MEETINGS;
+    require(are_sound, "its meetings of grains do not fit together")
 }
 
 /// Whether commands that were carried out are in order, and such as a run carries out.

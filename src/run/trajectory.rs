@@ -9,6 +9,7 @@ use super::branch::Branch;
 use super::check::accept;
 use super::history::Moment;
 use super::measured::{Measured, Stored};
+use super::meetings::{MOST_MEETINGS, Meeting, meetings};
 use super::orientations::{Orientations, Turned};
 use super::sampling::{Pace, Sampling};
 use super::script::Script;
@@ -120,6 +121,12 @@ impl Run {
     /// The flowing layer up to the state.
     pub fn flow(&self) -> &Arc<FlowHistory> {
         self.flow.as_ref().unwrap_or(&self.branch.flow)
+    }
+
+    /// Contacts and bridges of few grains that began and ended; where the state is an earlier one of
+    /// the run, those after it too.
+    pub fn meetings(&self) -> &Arc<Vec<Meeting>> {
+        &self.branch.meetings
     }
 
     /// The commands carried out from time zero up to the state.
@@ -273,6 +280,9 @@ impl Run {
         };
         before.clone_from(&self.world);
         let outcome = self.solver.advance(&mut self.world, 1);
+        if outcome.is_ok() {
+            self.keep_meetings(&before);
+        }
         if outcome.is_ok() && self.sampling.heed(&before, &self.world) {
             if self.sampling.note_before(&before.clock) {
                 self.keep_sample(&sample(&before));
@@ -306,6 +316,7 @@ impl Run {
             commands: self.commands().to_vec(),
             series: self.branch.series.clone(),
             flow: self.flow().clone(),
+            meetings: self.branch.meetings.clone(),
             sampling: self.sampling,
         }
     }
@@ -321,6 +332,7 @@ impl Run {
             history: Arc::new(checkpoint.commands.into_iter().collect()),
             series: checkpoint.series,
             flow: checkpoint.flow,
+            meetings: checkpoint.meetings,
             end: Moment::of(&self.world),
             plan: self.script.clone(),
             number: self.branch.number,
@@ -503,6 +515,17 @@ impl Run {
             Arc::make_mut(&mut self.branch.series).push(*sample);
         }
         self.samples = self.branch.series.taken_until(sample.step);
+    }
+
+    /// Keeps who met and parted in the step from the state `before`, as long as there is room.
+    fn keep_meetings(&mut self, before: &World) {
+        let known = &self.branch.meetings;
+        // On the way to a later moment of the branch they are in it already.
+        let last = known.last().map_or(0, |last| last.step);
+        let new = meetings(before, &self.world);
+        if !new.is_empty() && last < self.world.clock.step && known.len() < MOST_MEETINGS {
+            Arc::make_mut(&mut self.branch.meetings).extend(new);
+        }
     }
 
     /// Notes the state as the branch's end, where it is at or beyond it.

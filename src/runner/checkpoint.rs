@@ -13,7 +13,7 @@ use crate::measure::{FlowProfile, Measure, Sample, Series};
 use crate::output::{
     CHECKPOINT, FRAME_LOG, Frame, OutputError, PROFILES, RunSoFar, SAMPLES, Written, WrittenRest,
 };
-use crate::run::{Checkpoint, CheckpointParts, Measured, Stored, VERSION};
+use crate::run::{Checkpoint, CheckpointParts, Measured, Meeting, Stored, VERSION};
 use crate::scene::{Scene, Until};
 use crate::solver::advise;
 use serde::{Deserialize, Serialize};
@@ -150,8 +150,10 @@ impl CheckpointFile {
             Ok(contents) => contents,
             Err(reason) => return CheckpointLookup::Unusable(reason),
         };
-        let contents: Contents<Checkpoint> = match postcard::from_bytes(contents) {
-            Ok(contents) => contents,
+        let read = postcard::take_from_bytes::<Contents<Checkpoint>>(contents);
+        let read = read.and_then(|(contents, rest)| Ok((contents, meetings(rest)?)));
+        let (contents, meetings) = match read {
+            Ok(read) => read,
             Err(error) => return CheckpointLookup::Unusable(damaged(&error)),
         };
         let samples = self.samples.go_on(contents.samples);
@@ -166,7 +168,7 @@ impl CheckpointFile {
         });
         match logs {
             Ok((series, seconds, frames)) => CheckpointLookup::Kept(Box::new(Kept {
-                checkpoint: contents.run.with_measured(series, seconds),
+                checkpoint: contents.run.with_measured(series, seconds, meetings),
                 written: contents.written.with(frames),
             })),
             Err(error) => CheckpointLookup::Unusable(damaged(&error)),
@@ -284,8 +286,9 @@ impl CheckpointFile {
             frames: self.frames.part(),
         };
         let failed = |source| OutputError::write(&self.path, source);
-        let contents =
-            postcard::to_stdvec(&contents).map_err(|error| failed(io::Error::other(error)))?;
+        let contents = postcard::to_stdvec(&contents)
+            .and_then(|contents| postcard::to_extend(run.meetings, contents))
+            .map_err(|error| failed(io::Error::other(error)))?;
         let (key, checksum) = (self.key.to_hex(), blake3::hash(&contents).to_hex());
         let whole = write_whole(&self.path, |file| {
             writeln!(file, "{MARK} {LAYOUT} {VERSION} {key} {checksum}")?;
@@ -337,6 +340,15 @@ fn series(bytes: &[u8]) -> Series {
     let samples = bytes.chunks_exact(SAMPLE_SIZE);
     samples.for_each(|bytes| series.push(sample(bytes)));
     series
+}
+
+/// Who met, as the `bytes` behind the rest of a checkpoint say it; nothing stands there in those of
+/// earlier builds.
+fn meetings(bytes: &[u8]) -> postcard::Result<Vec<Meeting>> {
+    if bytes.is_empty() {
+        return Ok(Vec::new());
+    }
+    postcard::from_bytes(bytes)
 }
 
 /// The profiles that the `bytes` of the log hold.

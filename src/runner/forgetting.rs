@@ -129,6 +129,7 @@ fn run_that_forgets_what_stands_in_files_comes_to_the_same_results_and_files() {
         "series.csv",
         "flow.csv",
         "velocity.csv",
+        "events.csv",
         "summary.json",
         "checkpoint-profiles.bin",
         "checkpoint-frames.bin",

@@ -9,6 +9,7 @@ mod architecture;
 mod comparison;
 mod doors;
 mod engines;
+mod events;
 mod kept_results;
 mod lesson;
 mod measure;

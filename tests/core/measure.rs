@@ -9,6 +9,7 @@ mod energy;
 mod errors;
 mod flow;
 mod grain;
+mod histogram;
 mod packing;
 mod registry;
 mod sample;

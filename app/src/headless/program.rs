@@ -161,6 +161,7 @@ impl Advance for RunInApp {
                 world,
                 series: (self.measured.as_ref()).map_or(simulation.series(), |all| &all.series),
                 flow: (self.measured.as_ref()).map_or(simulation.flow(), |all| &all.flow),
+                meetings: simulation.meetings(),
                 commands: simulation.commands(),
                 sampling: simulation.sampling(),
             }),

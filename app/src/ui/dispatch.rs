@@ -13,7 +13,7 @@ use crate::ui::request::{LessonAct, Request, Requests};
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
 use crate::ui::session_look::SessionLook;
 use crate::ui::sweep_desk::SweepDesk;
-use crate::view::{CameraRequest, OrbitCamera, ViewSettings};
+use crate::view::{CameraRequest, OrbitCamera, Ruler, ViewSettings};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::tasks::futures::check_ready;
@@ -137,7 +137,9 @@ fn fulfil(
         }
         (Request::RunOn, Some(recording)) => opener.run_on(recording, dock),
         (Request::MeasureFlow, Some(recording)) => recording.send(LabCommand::MeasureFlow),
+        (Request::Repeat, Some(simulation)) => dock.transport.repeat.mark(simulation),
         (Request::Trail, _) => opener.trace_selected(),
+        (Request::Ruler, _) => opener.view.ruler.toggle(),
         (Request::NoTrails, _) => opener.view.traced.clear(),
         (Request::Camera(request), _) => {
             let keeps = matches!(request, CameraRequest::Save(_));
@@ -187,6 +189,7 @@ fn fulfil(
             | Request::RunOn
             | Request::MeasureFlow
             | Request::Lesson(_)
+            | Request::Repeat
             | Request::SaveSession(_)
             | Request::SaveChanges(_),
             None,
@@ -507,6 +510,7 @@ impl Opener<'_, '_> {
         (self.view.selected, self.view.beside) = (None, None);
         self.view.follows_selected = false;
         self.view.traced.clear();
+        self.view.ruler = Ruler::default();
         self.view.focus = Half::Left;
         self.view.camera_request = Some(CameraRequest::Home);
     }

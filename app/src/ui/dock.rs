@@ -21,8 +21,10 @@ use crate::ui::panels::collapse_plots::CollapsePlots;
 use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
 use crate::ui::panels::compare::Compare;
 use crate::ui::panels::energy_stack::EnergyStack;
+use crate::ui::panels::events::Events;
 use crate::ui::panels::explorer::Explorer;
 use crate::ui::panels::flow_over_depth::FlowOverDepth;
+use crate::ui::panels::grains::Grains;
 use crate::ui::panels::lesson::LessonDesk;
 use crate::ui::panels::mean_velocities::MeanVelocities;
 use crate::ui::panels::microscope::Microscope;
@@ -65,7 +67,7 @@ pub struct Dock {
     pub sweeps: SweepDesk,
     /// The lesson that is followed.
     pub lesson: LessonDesk,
-    transport: Transport,
+    pub(super) transport: Transport,
     badge: Badge,
     shown: OpenSides,
     /// The plot that a file is being chosen for.
@@ -125,7 +127,9 @@ fn right() -> Vec<Section> {
         section(Microscope::default(), false),
         section(AvalanchePlots::default(), true),
         section(CollapsePlots::default(), true),
+        section(Events::default(), false),
         section(Explorer::default(), false),
+        section(Grains::default(), false),
         section(EnergyStack, false),
         section(MeanVelocities::default(), false),
         section(FlowOverDepth::default(), false),

@@ -23,9 +23,10 @@
 //! | `sweep_desk` | the parameter sweep that runs in the background |
 //! | `plots` | curves of samples: axes, the part of the run in view, all runs on one plot |
 //! | `playback` | what can be asked of the run now: play, steps, leaps, the next avalanche |
+//! | `repeat` | the part of a run that is played again and again |
 //! | `request`, `screenshot_orders` | what panels ask for; pictures and films that are asked for |
 //! | `plot_export` | a plot on its way to a file |
-//! | `detail` | how many parameters are shown |
+//! | `detail`, `event_kinds` | how many parameters are shown, which kinds of events |
 //! | `widgets` | a number to type, the row of a parameter, tables, choices, buttons, the focus |
 //! | `words` | numbers, symbols, parameters and runs in text |
 //! | `theme` | every colour, size and font |
@@ -35,6 +36,7 @@ mod detail;
 mod dialogs;
 mod dispatch;
 mod dock;
+mod event_kinds;
 mod keyboard;
 mod panel;
 mod panels;
@@ -42,6 +44,7 @@ mod playback;
 mod plot_export;
 mod plots;
 mod plugin;
+mod repeat;
 mod request;
 mod rescue;
 mod screenshot_orders;
@@ -68,6 +71,7 @@ pub use panels::collapse_plots::CollapsePlots;
 pub use panels::column_beside_paper::ColumnBesidePaper;
 pub use panels::compare::Compare;
 pub use panels::energy_stack::EnergyStack;
+pub use panels::events::Events;
 pub use panels::explorer::Explorer;
 pub use panels::flow_over_depth::FlowOverDepth;
 pub use panels::lesson::LessonDesk;

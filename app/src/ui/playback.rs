@@ -4,8 +4,9 @@
 //! elsewhere. Buttons, keys and plots ask here, so that all of them follow the same rule.
 
 use crate::simulation::Simulation;
+use crate::ui::event_kinds::EventKinds;
 use crate::ui::request::Request;
-use grainfall::lab::{RunView, Status};
+use grainfall::lab::{Half, RunView, Status};
 use grainfall::recording::RecordingFacts;
 use grainfall::run::{Command, SAMPLE_INTERVAL};
 
@@ -151,6 +152,33 @@ pub fn to_avalanche(simulation: &RunView, way: Way) -> Option<Request> {
         Way::On => starts.find(|start| *start > now + time_step),
     };
     seek(simulation, start?)
+}
+
+/// The request to show the event of the run in this `half` before or after the moment shown, where
+/// there is one of these `kinds`; of a recording, one that is nearest to another state.
+pub fn to_event(
+    simulation: &Simulation,
+    half: Half,
+    kinds: EventKinds,
+    way: Way,
+) -> Option<Request> {
+    let (times, shown) = (simulation.step_times()?, simulation.step());
+    let place = |time: f64| {
+        let step = times.step_at(time);
+        let recording = simulation.recording();
+        recording.map_or(Some(step), |recording| {
+            let state = recording.moments.get(recording.nearest(step));
+            state.map(|moment| moment.step)
+        })
+    };
+    let events = simulation.half(half).events().iter();
+    let events = events.filter(|event| kinds.show(event.kind()));
+    let mut steps = events.filter_map(|event| place(event.time));
+    let step = match way {
+        Way::Back => steps.rfind(|step| *step < shown),
+        Way::On => steps.find(|step| *step > shown),
+    };
+    Some(Request::Command(Command::Seek(step?)))
 }
 
 /// The moment shown [s], where it is not the newest.

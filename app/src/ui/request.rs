@@ -38,6 +38,11 @@ pub enum Request {
     SetIn(Half, Parameter, Value),
     /// Go on with one of two runs, and keep the other as a branch of it.
     EndComparison(Half),
+    /// Mark the moment shown as an end of the part that is played again and again; the third time
+    /// play on without that.
+    Repeat,
+    /// Take the ruler out, or put it away.
+    Ruler,
     /// Draw the trail of the selected grain, or no longer.
     Trail,
     /// Draw no trails.

@@ -5,10 +5,14 @@
 //! text is typed or a dialog is open, no key counts.
 
 use crate::simulation::Simulation;
-use crate::ui::playback::{Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche};
+use crate::ui::event_kinds::EventKinds;
+use crate::ui::playback::{
+    Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche, to_event,
+};
 use crate::ui::request::{LessonAct, Request, Sheet};
 use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
+use grainfall::lab::Half;
 use grainfall::lesson::{Change, Prediction};
 use grainfall::run::Command;
 
@@ -29,6 +33,7 @@ enum KeyAction {
     Leap(Way),
     ToTheNewest,
     Avalanche(Way),
+    Event(Way),
     Ask(Request),
 }
 
@@ -146,6 +151,11 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: KeyAction::Ask(Request::Trail),
     },
     Shortcut {
+        keys: &[key(Key::M)],
+        name: "Ruler: distance and angle between two clicks",
+        action: KeyAction::Ask(Request::Ruler),
+    },
+    Shortcut {
         keys: &[key(Key::F)],
         name: "Everything in view",
         action: KeyAction::Ask(Request::Camera(CameraRequest::Fit)),
@@ -256,6 +266,22 @@ pub const SHORTCUTS: &[Shortcut] = &[
         name: "The next avalanche",
         action: KeyAction::Avalanche(Way::On),
     },
+    // Before the plain key, which would take it.
+    Shortcut {
+        keys: &[shift(Key::E)],
+        name: "The event before, of the kinds shown",
+        action: KeyAction::Event(Way::Back),
+    },
+    Shortcut {
+        keys: &[key(Key::E)],
+        name: "The next event, of the kinds shown",
+        action: KeyAction::Event(Way::On),
+    },
+    Shortcut {
+        keys: &[key(Key::L)],
+        name: "Play a part again and again: mark A, B, none",
+        action: KeyAction::Ask(Request::Repeat),
+    },
     Shortcut {
         keys: &[key(Key::Enter)],
         name: "In a lesson: predict, play, go on",
@@ -364,7 +390,7 @@ impl Shortcut {
     }
 
     /// What it asks for, if `simulation` allows it now.
-    fn request(&self, simulation: Option<&Simulation>) -> Option<Request> {
+    fn request(&self, ctx: &egui::Context, simulation: Option<&Simulation>) -> Option<Request> {
         let command = match &self.action {
             KeyAction::Ask(Request::Command(command)) => command.clone(),
             KeyAction::Ask(request) => return Some(request.clone()),
@@ -374,6 +400,9 @@ impl Shortcut {
             KeyAction::Leap(way) => leap(simulation?, *way)?,
             KeyAction::Steps(way, steps) => go(simulation?, *way, *steps)?,
             KeyAction::Avalanche(way) => return to_avalanche(simulation?, *way),
+            KeyAction::Event(way) => {
+                return to_event(simulation?, Half::Left, EventKinds::of(ctx), *way);
+            }
             KeyAction::ToTheNewest => Command::Seek(simulation?.past().end.step),
         };
         allows(simulation?.status(), &command).then_some(Request::Command(command))
@@ -392,6 +421,6 @@ pub fn pressed(ctx: &egui::Context, simulation: Option<&Simulation>) -> Vec<Requ
         .filter(|shortcut| !(focused && shortcut.moves_a_control()))
         .filter(|shortcut| shortcut.is_pressed(ctx));
     pressed
-        .filter_map(|shortcut| shortcut.request(simulation))
+        .filter_map(|shortcut| shortcut.request(ctx, simulation))
         .collect()
 }

@@ -16,6 +16,7 @@
 //! | `viewport` | the pointer over the picture |
 //! | `overlay` | scale bar, clock, legend in the picture |
 //! | `measured_marks` | lines and numbers where something is measured |
+//! | `ruler_marks` | the ruler in the picture |
 //! | `pick` | which grain a point of the picture shows |
 //! | `rig` | Bevy's cameras, which follow the orbiting eye |
 //! | `trace` | follows the grains that are traced, and what is measured |
@@ -32,7 +33,7 @@
 //! | `colour` | every colour, the legend |
 //! | `shown_worlds` | the worlds in the picture |
 //! | `view_settings` | what a person chose to see |
-//! | `trail`, `measured` | the ways of chosen grains; what is measured of a world |
+//! | `trail`, `measured`, `ruler` | the ways of chosen grains; what is measured of a world; a ruler |
 //! | `halves`, `scale` | the picture in parts; lengths and numbers in it |
 //! | `film`, `png` | films and pictures as files |
 
@@ -56,6 +57,8 @@ mod png;
 mod polyhedron_meshes;
 mod quads;
 mod rig;
+mod ruler;
+mod ruler_marks;
 mod scale;
 mod shown_worlds;
 mod spheres;
@@ -80,6 +83,7 @@ pub use plugin::ViewPlugin;
 pub use png::{save_drawing, save_png};
 pub use polyhedron_meshes::Meshing;
 pub use rig::WorldCamera;
+pub use ruler::{Reading, Ruler, RulerEnd};
 pub use scale::ScaleBar;
 pub use shown_worlds::{ShownWorlds, ViewSystems};
 pub use trail::Trail;

@@ -40,6 +40,14 @@ pub(super) fn pick(
     nearest.map(|(i, _)| i)
 }
 
+/// The place [m] that the point `at` of the picture shows in the plane through the camera's focus
+/// that faces the viewer.
+pub(super) fn point_in_focus(camera: &OrbitCamera, at: Vec2) -> DVec3 {
+    let from_middle = (at - camera.viewport / 2.0) * camera.metres_per_point();
+    let across = bevy::math::Vec3::new(from_middle.x, -from_middle.y, 0.0);
+    (camera.focus + camera.rotation() * across).as_dvec3()
+}
+
 /// The first point of `chord` that is not `hidden`.
 fn first_seen((enter, leave): Chord, hidden: Option<Chord>) -> Option<f64> {
     match hidden {
@@ -50,9 +58,7 @@ fn first_seen((enter, leave): Chord, hidden: Option<Chord>) -> Option<f64> {
 
 impl Ray {
     fn through(camera: &OrbitCamera, at: Vec2) -> Self {
-        let from_middle = (at - camera.viewport / 2.0) * camera.metres_per_point();
-        let across = bevy::math::Vec3::new(from_middle.x, -from_middle.y, 0.0);
-        let point = (camera.focus + camera.rotation() * across).as_dvec3();
+        let point = point_in_focus(camera, at);
         let eye = camera.eye().as_dvec3();
         match camera.projection {
             ProjectionKind::Perspective => Self {

@@ -3,6 +3,7 @@
 //! In: choices made in panels. Out: plain data that the view reads every frame. Nothing here draws.
 
 use crate::view::measured::Measured;
+use crate::view::ruler::Ruler;
 use crate::view::trail::Trail;
 use bevy::prelude::Resource;
 use bevy_egui::egui;
@@ -48,6 +49,8 @@ pub struct ViewSettings {
     pub follows_selected: bool,
     /// The grains whose ways are drawn, by their numbers.
     pub traced: Vec<usize>,
+    /// The ruler.
+    pub ruler: Ruler,
     /// The half of the picture that the panels describe, where there are two.
     pub focus: Half,
     /// Whether the directions of the axes are drawn.
@@ -106,6 +109,7 @@ impl Default for ViewSettings {
             beside: None,
             follows_selected: false,
             traced: Vec::new(),
+            ruler: Ruler::default(),
             focus: Half::Left,
             show_axes: false,
             show_container: true,

@@ -10,6 +10,7 @@ use crate::view::ink::Ink;
 use crate::view::measured_marks;
 use crate::view::overlay::{Caption, PicturePart, legend, legend_margin, overlay};
 use crate::view::pick::pick;
+use crate::view::ruler_marks::ruler_ui;
 use crate::view::view_settings::ViewSettings;
 use bevy::math::Vec2;
 use bevy_egui::egui::{Id, Response, Sense, Ui, WidgetInfo, WidgetType};
@@ -47,6 +48,9 @@ pub fn viewport_ui(
         apply_response(&response, camera);
         click(&response, half, caption, settings, camera);
         measured(&response, half, caption, settings, camera);
+        if let Some(world) = caption.world {
+            ruler_ui(&response, world, settings, camera);
+        }
         if settings.show_overlay {
             let part = PicturePart {
                 half,
@@ -107,7 +111,7 @@ fn click(
     let (Some(world), Some(at)) = (caption.world, response.interact_pointer_pos()) else {
         return;
     };
-    if !response.clicked() {
+    if !response.clicked() || settings.ruler.is_out {
         return;
     }
     settings.focus = half;

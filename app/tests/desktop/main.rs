@@ -6,6 +6,7 @@
 )]
 
 mod comparison;
+mod events;
 mod headless_film;
 mod lesson;
 mod measured;

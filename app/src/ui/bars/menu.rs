@@ -123,6 +123,7 @@ fn view_ui(
         );
     }
     ui.separator();
+    item_ui(ui, "Ruler", Request::Ruler, out);
     let mut parallel = view.projection == ProjectionKind::Orthographic;
     if ui.checkbox(&mut parallel, "Parallel projection").changed() {
         view.projection = if parallel {

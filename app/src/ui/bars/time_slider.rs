@@ -1,35 +1,39 @@
 //! The timeline under the picture: the present run from its start to its newest state, to look at
 //! any moment of it.
 //!
-//! In: the simulation. Out: requests to show a moment, to undo and to redo. Changes are marked
-//! above the line, avalanches below it.
+//! In: the simulation. Out: requests to show a moment, to undo and to redo. What happened is marked
+//! on the line by [`super::time_marks`].
 
 use crate::simulation::Simulation;
+use crate::ui::bars::time_marks::marks_ui;
 use crate::ui::playback::allows;
+use crate::ui::repeat::Repeat;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::ui::words::run_names::parameter_name;
-use bevy_egui::egui::{self, Rect, RichText, WidgetInfo, WidgetType, pos2, vec2};
+use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType, vec2};
 use grainfall::recording::{RecordingFacts, RunProgress};
 use grainfall::run::{Changed, Command};
 
-/// Of marks closer together than this one is drawn, in points.
-const BETWEEN_MARKS: f32 = 3.0;
-
 /// Draws the timeline, over the whole width; nothing while there is no run.
-pub fn timeline_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+pub fn timeline_ui(
+    ui: &mut egui::Ui,
+    simulation: &Simulation,
+    repeat: &Repeat,
+    out: &mut Vec<Request>,
+) {
     if simulation.world().is_none() {
         return;
     }
     ui.horizontal(|ui| {
         if let Some(recording) = simulation.recording() {
             run_anew_ui(ui, out);
-            line_ui(ui, simulation, out);
+            line_ui(ui, simulation, repeat, out);
             state_ui(ui, simulation, recording);
         } else {
             undo_ui(ui, simulation, out);
-            line_ui(ui, simulation, out);
+            line_ui(ui, simulation, repeat, out);
             place_ui(ui, simulation, out);
         }
     });
@@ -142,7 +146,7 @@ fn changed_name(what: &Changed, simulation: &Simulation) -> String {
 }
 
 /// The line itself.
-fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, repeat: &Repeat, out: &mut Vec<Request>) {
     let Some(world) = simulation.world() else {
         return;
     };
@@ -169,44 +173,13 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
             out.push(Request::Command(Command::Seek(step)));
         }
     }
-    marks_ui(ui, response.rect, simulation, end.time);
+    marks_ui(ui, response.rect, simulation, end.time, repeat);
     response.on_hover_text(match simulation.recording() {
         Some(_) => "Drag to see any state of the recording.",
         None => {
             "Drag to see any moment of the run. Change something there to begin another run from it."
         }
     });
-}
-
-/// Changes above the line, avalanches below it.
-fn marks_ui(ui: &egui::Ui, line: Rect, simulation: &Simulation, end: f64) {
-    let palette = Palette::of(ui.visuals());
-    let inset = line.height() / 2.5;
-    let span = line.x_range().shrink(inset);
-    let place = |time: f64| egui::lerp(span, (time / end.max(f64::MIN_POSITIVE)).min(1.0) as f32);
-    let mut drawn_until = f32::NEG_INFINITY;
-    let commands = simulation.commands();
-    let changes = (simulation.changes().iter()).filter_map(|first| commands.get(*first));
-    for x in changes.map(|change| place(change.time)) {
-        if x >= drawn_until {
-            let mark = egui::Stroke::new(2.0, palette.change);
-            ui.painter()
-                .vline(x, line.top()..=line.center().y - 3.0, mark);
-            drawn_until = x + BETWEEN_MARKS;
-        }
-    }
-    drawn_until = f32::NEG_INFINITY;
-    for x in simulation
-        .avalanches()
-        .iter()
-        .map(|avalanche| place(avalanche.start))
-    {
-        if x >= drawn_until {
-            let centre = pos2(x, line.bottom() - 2.0);
-            ui.painter().circle_filled(centre, 2.0, palette.maximum);
-            drawn_until = x + BETWEEN_MARKS;
-        }
-    }
 }
 
 /// Shows the newest state of the run.

@@ -4,6 +4,7 @@
 use crate::simulation::Simulation;
 use crate::ui::bars::time_slider::timeline_ui;
 use crate::ui::playback::{SPEEDS, allows, go_to, play_or_pause, step_back, step_on};
+use crate::ui::repeat::Repeat;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::field::Field;
@@ -31,6 +32,8 @@ pub struct Transport {
     was_played: bool,
     /// Whether there was room for the clock.
     shows_time: bool,
+    /// What is played again and again.
+    pub repeat: Repeat,
 }
 
 impl Transport {
@@ -46,12 +49,14 @@ impl Transport {
             let newest = simulation.past().end.step;
             self.was_played |= newest > *self.opened_at.get_or_insert(newest);
         }
-        let timeline = ui.scope(|ui| timeline_ui(ui, simulation, out));
+        self.repeat.follow(simulation, out);
+        let timeline = ui.scope(|ui| timeline_ui(ui, simulation, &self.repeat, out));
         touch::mark_ui(ui, &Touch::Time, timeline.response.rect);
         ui.horizontal_wrapped(|ui| {
             play_ui(ui, simulation, !self.was_played, out);
             buttons_ui(ui, simulation, out);
             speed_ui(ui, simulation.speed(), out);
+            repeat_ui(ui, simulation, &self.repeat, out);
             if !self.was_played {
                 scenes_ui(ui, out);
             }
@@ -200,6 +205,31 @@ fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
         .on_hover_text("Speed: simulated seconds per second");
     response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Speed"));
     touch::mark_ui(ui, &Touch::Speed, response.rect);
+}
+
+/// The button that marks what is played again and again, and how long that is.
+fn repeat_ui(ui: &mut egui::Ui, simulation: &Simulation, repeat: &Repeat, out: &mut Vec<Request>) {
+    let is_marked = repeat.duration().is_some();
+    let (text, hint) = match (repeat.duration(), repeat.ends().count()) {
+        (Some(duration), _) => (
+            format!("A–B {}", number::moment(duration)),
+            "What lies between A and B is played again and again. Play on without that (L)",
+        ),
+        (None, 0) => (
+            "A–B".to_owned(),
+            "Play a part again and again, or take a time: mark its start A at the moment shown (L)",
+        ),
+        (None, _) => ("A–…".to_owned(), "Mark its end B at the moment shown (L)"),
+    };
+    let enabled = simulation.world().is_some();
+    let button = egui::Button::selectable(is_marked, text).min_size(vec2(0.0, 26.0));
+    let response = ui.add_enabled(enabled, button).on_hover_text(hint);
+    response.widget_info(|| {
+        WidgetInfo::selected(WidgetType::Button, enabled, is_marked, "Repeat a part")
+    });
+    if response.clicked() {
+        out.push(Request::Repeat);
+    }
 }
 
 /// `0.5×`, `max`.

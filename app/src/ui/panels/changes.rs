@@ -9,13 +9,12 @@ use crate::ui::plots::run_curves::line_sample_ui;
 use crate::ui::request::Request;
 use crate::ui::theme::{Palette, dash};
 use crate::ui::words::number;
-use crate::ui::words::run_names::{bare_value, parameter_name, value_in_words};
+use crate::ui::words::run_names::{parameter_name, setting_in_words, value_in_words};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, ScrollArea};
 use grainfall::lab::{Half, RunView};
-use grainfall::parameters::{Parameter, Value};
-use grainfall::run::{Branch, Command};
-use std::collections::BTreeMap;
+use grainfall::parameters::Parameter;
+use grainfall::run::{Branch, Command, changes};
 
 /// Height of the list of changes before it scrolls, in points.
 const LIST_HEIGHT: f32 = 170.0;
@@ -119,46 +118,17 @@ fn rows(simulation: &Simulation) -> Vec<ChangeRow> {
 
 /// The changes of one run in words; only those of parameters that are `listed`.
 fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<ChangeRow> {
-    let commands = simulation.commands();
-    let changes = simulation.changes();
-    let ends = changes.iter().skip(1).copied().chain([commands.len()]);
-    let mut values: BTreeMap<&Parameter, Value> = BTreeMap::new();
-    let mut rows = Vec::new();
-    for (first, end) in changes.iter().copied().zip(ends) {
-        let Some(change) = commands.get(first..end) else {
-            break;
-        };
-        let mut set: BTreeMap<&Parameter, (Option<Value>, Value)> = BTreeMap::new();
-        for stamped in change {
-            if let Command::Set { parameter, value } = &stamped.command
-                && listed(parameter)
-            {
-                let before = values.insert(parameter, *value);
-                set.entry(parameter).or_insert((before, *value)).1 = *value;
-            }
-        }
-        let texts: Vec<String> = set
-            .into_iter()
-            .map(|(parameter, (from, to))| in_words(parameter, from, to, simulation))
-            .collect();
-        if let Some(stamped) = change.first().filter(|_| !texts.is_empty()) {
-            rows.push(ChangeRow {
-                step: stamped.step,
-                time: stamped.time,
-                text: texts.join(", "),
-            });
-        }
-    }
-    rows
-}
-
-/// `friction glass – glass 0.4 → 0.2`; from the scene's value where it had not been changed before.
-fn in_words(parameter: &Parameter, from: Option<Value>, to: Value, simulation: &RunView) -> String {
-    let info = simulation.info_of(parameter);
-    let from = from.or(info.map(|info| info.default));
-    let from = from.map_or(String::new(), |from| bare_value(parameter, from));
-    let to = value_in_words(parameter, to);
-    format!("{} {from} → {to}", parameter_name(parameter, simulation))
+    let rows = changes(simulation.each_change()).into_iter();
+    let rows = rows.map(|change| ChangeRow {
+        step: change.step,
+        time: change.time,
+        text: (change.set.iter())
+            .filter(|setting| listed(&setting.parameter))
+            .map(|setting| setting_in_words(setting, simulation))
+            .collect::<Vec<_>>()
+            .join(", "),
+    });
+    rows.filter(|row| !row.text.is_empty()).collect()
 }
 
 /// The runs that were left for others.

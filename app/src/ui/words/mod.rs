@@ -1,5 +1,6 @@
 //! What the panels say, as text.
 
+pub mod events;
 pub mod number;
 pub mod run_names;
 pub mod symbol;

@@ -7,6 +7,7 @@ use crate::ui::words::number;
 use grainfall::lab::{Half, RunView};
 use grainfall::parameters::{Parameter, Value};
 use grainfall::physics::{Liquid, LiquidCase};
+use grainfall::run::Setting;
 
 /// What people call `parameter`.
 pub fn parameter_name(parameter: &Parameter, simulation: &RunView) -> String {
@@ -47,6 +48,16 @@ fn liquid_in_words(liquid: &Liquid) -> String {
     }
     let viscosity = Value::Number(liquid.viscosity);
     format!("η = {}", value_in_words(&Parameter::Viscosity, viscosity))
+}
+
+/// `friction glass – glass 0.4 → 0.2`; from the scene's value where it had not been changed before.
+pub fn setting_in_words(setting: &Setting, simulation: &RunView) -> String {
+    let parameter = &setting.parameter;
+    let info = simulation.info_of(parameter);
+    let from = setting.before.or(info.map(|info| info.default));
+    let from = from.map_or(String::new(), |from| bare_value(parameter, from));
+    let to = value_in_words(parameter, setting.value);
+    format!("{} {from} → {to}", parameter_name(parameter, simulation))
 }
 
 /// A value of `parameter` in the unit that people think in, without that unit.
