@@ -14,6 +14,7 @@ mod lesson;
 mod measure;
 #[path = "../common/meshes.rs"]
 mod meshes;
+mod packages;
 mod paper;
 mod parameters;
 mod recorder;
