@@ -87,6 +87,7 @@ pub(crate) use playback::first_speed;
 pub use plot_export::Export;
 pub use plots::run_curves::{Curves, KeptRun};
 pub use plugin::{DockPlugin, UiPlugin};
+pub use repeat::Repeat;
 pub use request::{LessonAct, Request, Requests, Sheet};
 pub use rescue::RescuePlugin;
 pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};

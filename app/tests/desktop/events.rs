@@ -1,13 +1,19 @@
-//! The list of events, its keys, and the part of a run that is repeated, by their accessible labels.
+//! The list of events, its keys, the part of a run that is repeated, the ruler, the quantities of
+//! grains: by their accessible labels, and by what they tell of a run that is known.
 
-use crate::window_of_panels::{Window, after, commands, ready, standing};
+use crate::timeline::carried_out;
+use crate::window_of_panels::{Window, after, commands, prepared, ready, standing};
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use glam::DVec3;
 use grainfall::run::{Command, EventKind};
 use grainfall::scene::Scene;
 use grainfall_app::simulation::Simulation;
-use grainfall_app::ui::Request;
+use grainfall_app::ui::{Repeat, Request};
+use grainfall_app::view::{Ruler, RulerEnd};
+use std::f64::consts::FRAC_PI_2;
+use std::time::Duration;
 
 /// A grain that has met the floor twice, and left it.
 fn bounced() -> Simulation {
@@ -105,4 +111,97 @@ fn a_key_and_a_button_mark_what_is_repeated() {
     harness.run_steps(3);
     let repeats = [Request::Repeat, Request::Repeat];
     assert_eq!(harness.state().asked, repeats);
+}
+
+#[test]
+fn what_lies_between_two_marks_is_played_again_and_again() {
+    let scene = Scene::open("bouncing-grain").unwrap();
+    let mut simulation = ready(Simulation::open(scene, standing()));
+    carried_out(&mut simulation, Command::Step(4000));
+    let hash = simulation.world().unwrap().hash();
+    let mut repeat = Repeat::default();
+    carried_out(&mut simulation, Command::Seek(3000));
+    repeat.mark(&simulation);
+    assert_eq!((repeat.ends().count(), repeat.duration()), (1, None));
+    // The mark that is earlier is the start, whichever was made first.
+    carried_out(&mut simulation, Command::Seek(2000));
+    repeat.mark(&simulation);
+    let step = simulation.world().unwrap().clock.time_step;
+    let lasts = repeat.duration().unwrap();
+    assert!((lasts - 1000.0 * step).abs() < 1e-12, "{lasts}");
+
+    simulation.send(Command::Speed(0.2));
+    simulation.send(Command::Play);
+    let (mut turns, mut last, mut latest) = (0, 2000, 0);
+    for _ in 0..4000 {
+        simulation.tick(Duration::from_millis(16));
+        let mut asked = Vec::new();
+        repeat.follow(&simulation, &mut asked);
+        for command in commands(&asked) {
+            simulation.send(command);
+        }
+        let now = simulation.world().unwrap().clock.step;
+        turns += u32::from(now < last);
+        (last, latest) = (now, latest.max(now));
+        if turns == 3 {
+            break;
+        }
+    }
+    assert_eq!(turns, 3, "at step {last}");
+    // A picture may come a sixtieth of a second late.
+    assert!((3000..4000).contains(&latest), "{latest}");
+    assert_eq!(simulation.past().end.step, 4000, "nothing new is computed");
+
+    repeat.mark(&simulation);
+    assert_eq!(repeat.ends().count(), 0);
+    carried_out(&mut simulation, Command::Pause);
+    carried_out(&mut simulation, Command::Seek(4000));
+    assert_eq!(simulation.world().unwrap().hash(), hash);
+}
+
+#[test]
+fn a_ruler_between_grains_goes_with_them() {
+    let simulation = prepared();
+    let mut world = (**simulation.world().unwrap()).clone();
+    let mut ruler = Ruler::default();
+    ruler.toggle();
+    ruler.lay(RulerEnd::Grain(0));
+    assert_eq!(ruler.reading(&world), None);
+    ruler.lay(RulerEnd::Grain(2));
+    for (way, inclination) in [
+        (DVec3::new(3.0, 4.0, 0.0), (4.0_f64 / 3.0).atan()),
+        (DVec3::new(0.0, -5.0, 0.0), FRAC_PI_2),
+        (DVec3::new(-4.0, 0.0, 3.0), 0.0),
+        (DVec3::new(-3.0, 4.0, 0.0), (4.0_f64 / 3.0).atan()),
+    ] {
+        let from = DVec3::new(0.1, -0.2, 0.3);
+        world.grains.position[0] = from;
+        world.grains.position[2] = from + 1e-3 * way;
+        let reading = ruler.reading(&world).unwrap();
+        assert!((reading.distance - 5e-3).abs() < 1e-15, "{reading:?}");
+        assert!(
+            (reading.inclination - inclination).abs() < 1e-12,
+            "{reading:?}"
+        );
+    }
+    ruler.lay(RulerEnd::Place(DVec3::ZERO));
+    assert_eq!(ruler.places(&world), [DVec3::ZERO], "it is laid anew");
+    ruler.toggle();
+    assert_eq!(ruler, Ruler::default());
+    ruler.lay(RulerEnd::Grain(7));
+    assert!(ruler.places(&world).is_empty(), "there is no such grain");
+}
+
+/// Three grains that fall freely for 10 ms are equally fast: g t = 98.1 mm/s.
+#[test]
+fn the_histogram_and_the_curve_of_a_grain_show_its_speed() {
+    let simulation = after(prepared(), 0.01);
+    let speed = simulation.world().unwrap().grains.velocity[1].length();
+    assert!((speed - 0.0981).abs() < 1e-4, "{speed}");
+    let mut harness = Window::of(simulation);
+    harness.state_mut().show_panel("Grains");
+    harness.state_mut().view.selected = Some(1);
+    harness.run_steps(6);
+    harness.get_by_label_contains("Grains over Speed [mm/s]: 3 grains, mean 98.1");
+    harness.get_by_label_contains("Grain 1 over time [s], Speed [mm/s], now 98.1");
 }

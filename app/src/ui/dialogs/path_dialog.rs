@@ -119,13 +119,12 @@ impl Purpose {
 
     fn suggestion(self) -> String {
         match self {
-            Self::Open => String::new(),
+            Self::Open | Self::SweepFolder => String::new(),
             Self::Session => free_name("session", self.extension()),
             Self::Picture => free_name("grainfall", self.extension()),
             Self::Changes => free_name("changes", self.extension()),
             Self::Plot => free_name("plot", self.extension()),
             Self::Film => free_name("film", self.extension()),
-            Self::SweepFolder => String::new(),
         }
     }
 

@@ -241,34 +241,3 @@ fn histogram_ui(ui: &mut egui::Ui, histogram: &Histogram, unit: &ShownUnit, own:
         .response
         .widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, format!("{title}: {text}")));
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_course_holds_each_moment_once_in_order_of_time() {
-        let mut course = Course::default();
-        for (time, value) in [(0.1, 1.0), (0.3, 3.0), (0.2, 2.0), (0.3, 4.0)] {
-            course.add(time, value);
-        }
-        assert_eq!(course.points, [[0.1, 1.0], [0.2, 2.0], [0.3, 4.0]]);
-        (0..MOST_POINTS).for_each(|i| course.add(1.0 + i as f64, 0.0));
-        assert_eq!(course.points.len(), MOST_POINTS);
-        assert_eq!(course.points[0], [1.0, 0.0]);
-    }
-
-    #[test]
-    fn a_prefix_suits_the_largest_value() {
-        let histogram = Histogram::of(&[-0.012, 0.004], 2).unwrap();
-        let unit = ShownUnit::of(GrainQuantity::VelocityX, &histogram);
-        assert_eq!(unit.axis, "Velocity along x [mm/s]");
-        assert_eq!(unit.text(-0.012), "−12.00 mm/s");
-        let counts = Histogram::of(&[3.0, 6.0], 2).unwrap();
-        let unit = ShownUnit::of(GrainQuantity::Coordination, &counts);
-        assert_eq!(
-            (unit.axis.as_str(), unit.factor),
-            ("Coordination number", 1.0)
-        );
-    }
-}

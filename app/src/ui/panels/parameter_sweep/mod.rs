@@ -11,7 +11,7 @@ mod progress;
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
-use crate::ui::sweep_desk::SweepDesk;
+use crate::ui::sweep_desk::{SweepDesk, SweepSeen};
 use crate::view::ViewSettings;
 use answer::Answer;
 use bevy_egui::egui;
@@ -60,7 +60,7 @@ impl Panel for ParameterSweep {
         out: &mut Vec<Request>,
     ) {
         let seen = self.desk.seen();
-        let is_running = seen.as_ref().is_some_and(|seen| seen.is_running());
+        let is_running = seen.as_ref().is_some_and(SweepSeen::is_running);
         if simulation.recording().is_none() {
             self.form.ui(ui, simulation, &self.desk, is_running, out);
         }
