@@ -85,6 +85,7 @@ fn caption(world: &Grains) -> Caption<'_> {
         real_time_factor: None,
         title: None,
         has_clock: true,
+        is_for_afar: false,
     }
 }
 

@@ -4,6 +4,5 @@
 pub mod badge;
 pub mod film_bar;
 pub mod menu;
-pub mod sides;
 pub mod time_slider;
 pub mod transport;
