@@ -274,6 +274,11 @@ impl Dock {
         });
     }
 
+    /// Where the panels stand.
+    pub fn arrangement(&self) -> Arrangement {
+        self.sides.arrangement()
+    }
+
     /// The panels as they are at first, where this person wants them.
     fn renew_panels(&mut self) {
         self.sides = self.sides.renewed([left(), right()], self.memory.panels());

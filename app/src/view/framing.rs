@@ -17,7 +17,7 @@ const FARTHEST: f64 = 30.0;
 /// whole way that one does not see them turn: the picture goes with them instead.
 const FAR: f64 = 8.0;
 /// Room round a group that the picture goes with, in its size.
-const ROOM: f64 = 5.0;
+const ROOM: f64 = 7.0;
 /// Room beside a straight path for grains that swerve, as a share of its length.
 const SWERVE: f64 = 0.12;
 

@@ -302,4 +302,33 @@ mod tests {
         world.grains.position[0].x += 0.7;
         assert!(!show(&mut app, &world));
     }
+
+    #[test]
+    fn a_grain_that_slides_far_is_seen_large_all_the_way() {
+        let scene = Scene::open("slide-to-roll").unwrap();
+        let mut world = world::build(&scene, advise(&scene).time_step);
+        let mut app = App::new();
+        app.init_resource::<ViewSettings>()
+            .init_resource::<OrbitCamera>()
+            .init_resource::<ShownWorlds>()
+            .add_systems(Update, steer);
+        let mut places = Vec::new();
+        for _ in 0..30 {
+            let mut shown = app.world_mut().resource_mut::<ShownWorlds>();
+            shown.watched = 0.5 * scene.duration;
+            shown.show(Some(Arc::new(world.clone())));
+            app.update();
+            let camera = app.world().resource::<OrbitCamera>();
+            let grain = world.grains.position[0].as_vec3();
+            let (place, points_per_metre) = camera.project(grain).unwrap();
+            let across = 2.0 * world.grains.radius[0] as f32 * points_per_metre;
+            assert!(across > 60.0, "{across}");
+            places.push(place);
+            world.clock.step += 100;
+            world.grains.position[0].x += 0.01;
+        }
+        // A tenth of a point: single precision.
+        let moved = places.iter().map(|place| (*place - places[0]).length());
+        assert!(moved.fold(0.0, f32::max) < 0.1, "{places:?}");
+    }
 }

@@ -14,6 +14,7 @@ mod played;
 mod polyhedra;
 mod recording;
 mod rescue;
+mod seen;
 mod session;
 mod timeline;
 mod turning;
