@@ -132,9 +132,11 @@ fn place_ui(
     };
     title.context_menu(&mut menu);
     let size = egui::vec2(MENU_WIDTH, title.rect.height());
-    let corner = egui::Align2::RIGHT_TOP.align_size_within_rect(size, title.rect);
+    // A title is as wide as its text; the menus stand one below the other.
+    let whole = title.rect.with_max_x(ui.max_rect().right());
+    let corner = egui::Align2::RIGHT_TOP.align_size_within_rect(size, whole);
     let mut aside = ui.new_child(egui::UiBuilder::new().max_rect(corner));
-    let button = egui::Button::new("⋮").frame(false).min_size(size);
+    let button = egui::Button::new("☰").frame(false).min_size(size);
     let button = egui::containers::menu::MenuButton::from_button(button).ui(&mut aside, menu);
     let hint = "Where this panel stands; closed, it is found in View, Panels";
     let response = button.0.on_hover_text(hint);

@@ -11,7 +11,7 @@ use crate::view::view_settings::{ColourMap, Legend};
 use bevy::math::{DVec2, Vec3};
 use bevy_egui::egui::{Align2, Mesh, Shape as Drawn};
 use grainfall::measure::{MeanFlow, SurfaceLine, TemperatureMap};
-use grainfall::world::World;
+use grainfall::world::{Shape, World};
 
 /// Half the length of the line below the flowing layer, in that of the surface line.
 const REACH: f64 = 0.6;
@@ -24,6 +24,9 @@ const FILLED: f32 = 0.16;
 const VEILED: f32 = 0.62;
 /// Largest over smallest temperature of the veil's colours.
 const DECADES: f64 = 1e4;
+/// Least temperature at the end of the veil's colours [m²/s²]: below, a bed is rigid, and noise is not
+/// shown as heat.
+const COOL: f64 = 1e-7;
 /// The veil's colours: none of grains.
 const MAP: ColourMap = ColourMap::Magma;
 
@@ -104,6 +107,7 @@ pub(super) fn veil_legend(maps: &[&TemperatureMap], before: Option<&Legend>) -> 
         return None;
     }
     let suits = |before: &&Legend| (0.2 * before.max..=before.max).contains(&hottest);
+    let hottest = hottest.max(COOL);
     let max = before
         .filter(suits)
         .map_or_else(|| round_up(hottest), |before| before.max);
@@ -129,7 +133,12 @@ pub(super) fn draw_veil(sheet: &Sheet, world: &World, map: &TemperatureMap, lege
         let [r, g, b] = MAP.colour(legend.share(temperature));
         let colour = bevy_egui::egui::Color32::from_rgb(r, g, b).gamma_multiply(VEILED);
         let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-        let corners = corners.map(|own| (corner + map.spacing * own).extend(z).as_vec3());
+        // Cells end where the drum does.
+        let inside = |x: DVec2| match world.container.shape {
+            Shape::Drum { radius, .. } => x.clamp_length_max(radius),
+            _ => x,
+        };
+        let corners = corners.map(|own| inside(corner + map.spacing * own).extend(z).as_vec3());
         let places = sheet.places(&corners);
         if places.len() == corners.len() {
             let first = mesh.vertices.len() as u32;

@@ -18,9 +18,9 @@ use std::f64::consts::TAU;
 const ARC: f64 = 0.6;
 /// Marks on the arc: one for so many degrees, a longer one for twice as many.
 const TICK_DEGREES: usize = 5;
-/// Where the drum's mark begins and ends, in its radii, and where its label stands.
+/// Where the drum's mark begins and ends, in its radii, and above where of it its label stands.
 const MARK: [f64; 2] = [0.2, 1.045];
-const BESIDE_DRUM: f64 = 1.07;
+const BESIDE_MARK: f64 = 0.7;
 /// Corners of a circle.
 const CORNERS: usize = 144;
 /// Fronts closer than this to the column's radius at the start, over it, are not told from it.
@@ -123,19 +123,14 @@ impl Sheet<'_> {
         let at = |share: f64| (share * radius * way).extend(z).as_vec3();
         let points = self.places(&MARK.map(at));
         self.marks.push(Mark::new(MarkKind::DrumMark, points));
-        let outside = at(BESIDE_DRUM);
-        let anchor = if way.x < 0.0 {
-            Align2::RIGHT_CENTER
-        } else {
-            Align2::LEFT_CENTER
-        };
         let turns = angle.abs() / TAU;
         let text = if turns < 1.0 {
             format!("turned {:.0}°", angle.abs().to_degrees())
         } else {
             format!("turned {turns:.2} times")
         };
-        self.label(outside, (anchor, 0.0), &text, self.ink.mark);
+        let over = (Align2::CENTER_BOTTOM, 8.0);
+        self.label(at(BESIDE_MARK), over, &text, self.ink.mark);
     }
 
     fn deposit(&mut self, deposit: &DepositOutline) {
