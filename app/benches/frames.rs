@@ -2,7 +2,8 @@
 //! graphics device: colours, shadows and places of all grains, for two drums of spheres and a
 //! column of as many polyhedra as the tallest one of Man et al. 2023; and what it costs to make the
 //! meshes of those polyhedra, once for a scene. Then the same for the whole window, every panel
-//! open and a grain under the microscope, with what a frame allocates.
+//! open, a grain under the microscope, flowing layer and temperatures drawn, with what a frame
+//! allocates.
 //!
 //! `cargo bench -p grainfall --bench frames`, see `benches/README.md`.
 
@@ -170,6 +171,7 @@ fn window(scene: Scene) -> App {
     let mut view = app.world_mut().resource_mut::<ViewSettings>();
     (view.selected, view.traced) = (Some(0), vec![0, 1, 2]);
     (view.colour_by, view.show_forces) = (ColourBy::Quantity(GrainQuantity::Speed), true);
+    (view.show_flow, view.show_temperature) = (true, true);
     let is_ready = |app: &App| {
         let standing = *app.world().resource::<Simulation>().status() == Status::Paused;
         let (meshing, grains) = (

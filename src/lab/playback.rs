@@ -35,6 +35,8 @@ pub struct Playback {
     flow: Option<RecordedFlow>,
     /// The step that it has come to: that of a state, or one between two.
     reached: u64,
+    /// The first state that can be read.
+    start: Arc<World>,
     /// The state shown and its index.
     shown: (usize, Arc<World>),
     /// States read lately, the last one at the end.
@@ -61,9 +63,11 @@ impl Playback {
             match recording.state(index) {
                 Ok(state) => {
                     notes.extend(state.notes);
+                    let start = Arc::new(state.world);
                     return Ok(Self {
                         reached: moment.step,
-                        shown: (index, Arc::new(state.world)),
+                        shown: (index, start.clone()),
+                        start,
                         kept: VecDeque::new(),
                         memory,
                         notes,
@@ -262,6 +266,7 @@ impl Playback {
             comparison: None,
             runs: vec![RunNews {
                 world: self.shown.1.clone(),
+                start: self.start.clone(),
                 turned: None,
                 reached: self.reached,
                 parameters: self.recording.parameters().clone(),

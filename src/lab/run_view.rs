@@ -83,6 +83,11 @@ impl RunView {
         self.news.as_ref().map(|news| &news.world)
     }
 
+    /// The state with which it began; of a recording, the first that can be read.
+    pub fn start(&self) -> Option<&Arc<World>> {
+        self.news.as_ref().map(|news| &news.start)
+    }
+
     /// How far each sphere of that state has turned since time zero; none of polyhedra.
     pub fn orientations(&self) -> Option<&Turned> {
         self.news.as_ref()?.turned.as_ref()

@@ -94,6 +94,7 @@ impl LabRun {
         RunNews {
             world: self.shown.clone(),
             reached: self.shown.clock.step,
+            start: self.timeline.run().bed().clone(),
             turned: self.turned.clone(),
             parameters: self.timeline.run().parameters().clone(),
             branch: self.branch.clone(),

@@ -47,6 +47,8 @@ pub struct RunNews {
     /// The step that was come to: that of the state, or a later one where only some states of a
     /// run are known.
     pub reached: u64,
+    /// The state it began with: of a recording, the first that can be read.
+    pub start: Arc<World>,
     /// How far each of its spheres has turned since time zero; none of polyhedra.
     pub turned: Option<Turned>,
     /// The parameters that can change while it goes on.

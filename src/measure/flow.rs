@@ -206,6 +206,24 @@ pub struct MeanFlow {
     pub depths: Vec<FlowDepth>,
 }
 
+impl MeanFlow {
+    /// Depth of the flowing layer [m]: where the mean velocity along the surface changes its sign,
+    /// as grains go down the slope above and up with the drum below. None where it never does.
+    pub fn layer_depth(&self) -> Option<f64> {
+        let known = self.depths.iter().filter(|depth| depth.samples > 0);
+        let known: Vec<[f64; 2]> = known.map(|own| [own.depth, own.velocity]).collect();
+        let crossing = (known.windows(2)).find(|pair| pair[0][1] * pair[1][1] <= 0.0)?;
+        let [[above, first], [below, second]] = [crossing[0], crossing[1]];
+        // Zero at both is zero at the first.
+        let share = if first == second {
+            0.0
+        } else {
+            first / (first - second)
+        };
+        Some(above + share * (below - above))
+    }
+}
+
 /// The mean velocity at one depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowDepth {

@@ -7,7 +7,8 @@ use super::quantity::{Format, Scope, quantities};
 use super::temperature::fluctuations;
 use crate::geometry::sphere_volume;
 use crate::physics::{Unit, units};
-use crate::world::{Partner, World};
+use crate::world::{Partner, Shape, World};
+use glam::DVec3;
 
 quantities! {
     /// A number that each grain of a world has.
@@ -114,6 +115,27 @@ quantities! {
             unit: Unit::same("m/s"),
             format: Format::Prefixed,
         }
+        PositionX {
+            key: "position x",
+            description: "Where the centre is to the right of the origin.",
+            short_label: "Position along x",
+            unit: Unit::same("m"),
+            format: Format::Prefixed,
+        }
+        PositionY {
+            key: "position y",
+            description: "Where the centre is above the origin.",
+            short_label: "Position along y",
+            unit: Unit::same("m"),
+            format: Format::Prefixed,
+        }
+        AxisDistance {
+            key: "distance from the axis",
+            description: "Distance of the centre from the axis of its drum, or of its column.",
+            short_label: "Distance from the axis",
+            unit: Unit::same("m"),
+            format: Format::Prefixed,
+        }
     }
 }
 
@@ -136,14 +158,19 @@ impl GrainQuantity {
                 (world.contacts.first()).is_none_or(|contact| contact.force.is_finite())
             }
             Self::LargestOverlap => world.polyhedra.is_none(),
+            Self::AxisDistance => {
+                let shape = world.container.shape;
+                matches!(shape, Shape::Drum { .. } | Shape::Column { .. })
+            }
             _ => true,
         }
     }
 
     /// Whether it has a sign.
     pub fn is_signed(self) -> bool {
-        let signed = [Self::VelocityX, Self::VelocityY, Self::VelocityZ];
-        signed.contains(&self)
+        let velocities = [Self::VelocityX, Self::VelocityY, Self::VelocityZ];
+        let signed = [Self::PositionX, Self::PositionY];
+        velocities.contains(&self) || signed.contains(&self)
     }
 
     /// That of each grain of `world` in the shown unit, appended to `values`.
@@ -173,8 +200,18 @@ impl GrainQuantity {
             Self::VelocityX => values.extend(grains.velocity.iter().map(|v| v.x)),
             Self::VelocityY => values.extend(grains.velocity.iter().map(|v| v.y)),
             Self::VelocityZ => values.extend(grains.velocity.iter().map(|v| v.z)),
+            Self::PositionX => values.extend(grains.position.iter().map(|x| x.x)),
+            Self::PositionY => values.extend(grains.position.iter().map(|x| x.y)),
+            Self::AxisDistance => append_axis_distances(world, values),
         }
     }
+}
+
+/// From the upright axis of a column, from the level one along z of anything else.
+fn append_axis_distances(world: &World, values: &mut Vec<f64>) {
+    let is_upright = matches!(world.container.shape, Shape::Column { .. });
+    let distance = |x: &DVec3| x.x.hypot(if is_upright { x.z } else { x.y });
+    values.extend(world.grains.position.iter().map(distance));
 }
 
 fn append_largest_forces(world: &World, values: &mut Vec<f64>) {

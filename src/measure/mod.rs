@@ -12,6 +12,7 @@
 //! | `sample` | all [`Measure`]s of a world at once: [`Sample`] |
 //! | `surface` | the free surface as a straight line: angle θ, roughness h, curvature κ |
 //! | `temperature` | granular temperature, in the laboratory's and in the drum's frame |
+//! | `temperature_map` | the latter on a grid over the cross-section |
 //! | `packing_fraction` | grain volume per volume of the bed |
 //! | `contact_network` | coordination number, shares of the pairs of species, largest overlap |
 //! | `energy_ledger` | elastic energy, and what came in and was lost since the start |
@@ -77,6 +78,7 @@ mod series;
 mod summary;
 mod surface;
 mod temperature;
+mod temperature_map;
 mod velocity_kernel;
 mod velocity_map;
 mod verdict;
@@ -116,6 +118,7 @@ pub use series::Series;
 pub use summary::{Summary, SummaryEntry};
 pub use surface::{MIDDLE_SHARE, SurfaceLine, surface_line};
 pub use temperature::{Temperatures, granular_temperatures, rotation_temperature};
+pub use temperature_map::{TemperatureMap, temperature_map};
 pub use velocity_kernel::{kernel_reach, mean_velocity};
 pub use velocity_map::{VelocityMap, velocity_map};
 pub use verdict::Verdict;

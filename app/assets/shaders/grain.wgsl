@@ -19,6 +19,8 @@ struct Grain {
     hidden_zx: f32,
     // From body axes to the world's; zeros of a sphere without a pattern.
     orientation: vec4<f32>,
+    // 1 where a liquid covers it, else 0.
+    wet: f32,
 }
 
 // What lies beyond both planes, `dot(normal, x) > w`, is cut away.
@@ -88,11 +90,14 @@ fn open_sky(grain: Grain, n: vec3<f32>) -> f32 {
     return clamp(1.0 - 1.5 * hidden, 0.0, 1.0);
 }
 
-// A grain's skin: matt with a soft gloss, darker in the gaps between grains.
-fn skin(colour: vec3<f32>, sky_open: f32, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+// A grain's skin: matt with a soft gloss, darker in the gaps between grains. A film of liquid makes it darker and mirrors
+// the light in a small bright spot.
+fn skin(colour: vec3<f32>, sky_open: f32, normal: vec3<f32>, to_eye: vec3<f32>, wet: f32) -> vec3<f32> {
     let sky = mix(0.16, 1.0, sky_open);
-    let shine = 0.18 * sky * gloss(normal, to_eye);
-    return colour * matt_light(normal) * sky + vec3<f32>(shine);
+    let soft = gloss(normal, to_eye);
+    let sharp = soft * soft * soft * soft;
+    let shine = sky * (0.18 * soft + 0.8 * wet * sharp);
+    return colour * matt_light(normal) * sky * mix(1.0, 0.8, wet) + vec3<f32>(shine);
 }
 
 // The vector `v` of the world in the axes of a body that is turned by `q`.
@@ -114,10 +119,11 @@ fn pattern(turned: vec4<f32>, normal: vec3<f32>, pixel: f32) -> vec2<f32> {
         + vec2<f32>(1.0 - dot(turned, turned), 0.0);
 }
 
-// A flat section of this normal, `from_rim` inside its rim, which is darker over `breadth`.
-fn section(colour: vec3<f32>, normal: vec3<f32>, from_rim: f32, breadth: f32) -> vec3<f32> {
-    let pale = mix(colour, vec3<f32>(1.0), 0.12);
-    // Half as much light as on skin: a section is a drawing, but the two faces of a quarter differ.
-    let light = 0.5 + 0.5 * matt_light(normal);
-    return light * mix(colour * 0.35, pale, smoothstep(0.0, breadth, from_rim));
+// A flat section at `hit` in this plane of the cut, `from_rim` inside its rim, which is darker over `breadth`, as is the
+// edge between the two faces of a quarter. It is a drawing in the colour of the legend: no light falls on it.
+fn section(colour: vec3<f32>, cut: Cut, plane: vec4<f32>, hit: vec3<f32>, from_rim: f32, breadth: f32) -> vec3<f32> {
+    let is_first = all(plane == cut.planes[0]);
+    let other = select(cut.planes[0], cut.planes[1], is_first);
+    let from_edge = 2.0 * abs(dot(other.xyz, hit) - other.w);
+    return mix(colour * 0.35, colour, smoothstep(0.0, breadth, min(from_rim, from_edge)));
 }

@@ -10,13 +10,16 @@ struct Link {
     // The larger of the radii at both ends.
     radius: f32,
     to_point: vec3<f32>,
-    // Bytes: the radius at each end in 255ths of the larger one, the place in the palette, how much thinner the middle is.
+    // Bytes: the radius at each end in 255ths of the larger one; the place in the palette in two bits with that among the
+    // forces in six; how much thinner the middle is.
     shape: u32,
 }
 
 struct Palette {
     // The fourth number tells how it shines.
     colours: array<vec4<f32>, 4>,
+    // Of the first two kinds, by how large the force is.
+    forces: array<vec4<f32>, 64>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> links: array<Link>;
@@ -56,7 +59,9 @@ fn vertex(corner: Corner) -> Covered {
     covered.along = corner.place.y;
     covered.waist = unpacked.w;
     covered.world = middle + corner.place.x * link.radius * mix(shares.x, shares.y, end) * covered.side;
-    covered.colour = palette.colours[(link.shape >> 16u) & 3u];
+    let kind = (link.shape >> 16u) & 3u;
+    let force = palette.forces[(link.shape >> 18u) & 63u];
+    covered.colour = select(palette.colours[kind], force, kind < 2u);
     covered.position = view.clip_from_world * vec4<f32>(covered.world, 1.0);
     return covered;
 }

@@ -69,7 +69,7 @@ fn surface(covered: Covered) -> vec3<f32> {
     let normal = normalize(covered.normal);
     // Dust settles on edges: a face is outlined softly.
     let edge = smoothstep(0.0, 0.3, 1.0 - dot(covered.normal, covered.normal));
-    return skin(covered.colour.rgb * mix(1.0, 0.72, edge), covered.colour.a, normal, to_eye);
+    return skin(covered.colour.rgb * mix(1.0, 0.72, edge), covered.colour.a, normal, to_eye, 0.0);
 }
 
 #ifdef CUT
@@ -106,7 +106,7 @@ fn fragment(covered: Covered, @builtin(front_facing) front: bool) -> Painted {
     if inside < 0.0 { discard; }
     let clip = view.clip_from_world * vec4<f32>(hit, 1.0);
     let radius = grains[covered.grain].radius;
-    let light = section(covered.colour.rgb, exit.plane.xyz, inside, 0.07 * radius);
+    let light = section(covered.colour.rgb, cut, exit.plane, hit, inside, 0.07 * radius);
     return Painted(vec4<f32>(light, 1.0), clip.z / clip.w);
 }
 

@@ -26,6 +26,7 @@ struct Covered {
     @location(5) @interpolate(flat) hidden_a: vec4<f32>,
     @location(6) @interpolate(flat) hidden_b: vec4<f32>,
     @location(7) @interpolate(flat) turned: vec4<f32>,
+    @location(8) @interpolate(flat) wet: f32,
 }
 
 struct Painted {
@@ -44,6 +45,7 @@ fn vertex(corner: Corner) -> Covered {
     covered.hidden_b = vec4<f32>(grain.hidden_yy, grain.hidden_xy, grain.hidden_yz, grain.hidden_zx);
 
     covered.turned = grain.orientation;
+    covered.wet = grain.wet;
 
     // Selected, not branched to, as in `ray_through`.
     let parallel = orthographic();
@@ -75,7 +77,7 @@ fn handed_over(covered: Covered) -> Grain {
         covered.colour.xyz, covered.colour.w,
         covered.hidden_a.xyz, covered.hidden_a.w,
         covered.hidden_b.x, covered.hidden_b.y, covered.hidden_b.z, covered.hidden_b.w,
-        covered.turned,
+        covered.turned, covered.wet,
     );
 }
 
@@ -119,7 +121,7 @@ fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>, pixel: f32) -> ve
     let turned_away = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
     let painted = pattern(grain.orientation, normal, pixel);
     let colour = mix(grain.colour * painted.x, vec3<f32>(0.9), painted.y);
-    return skin(colour * turned_away, open_sky(grain, normal), normal, to_eye);
+    return skin(colour * turned_away, open_sky(grain, normal), normal, to_eye, grain.wet);
 }
 
 // The section by a plane: a disc.
@@ -127,5 +129,5 @@ fn section_of(grain: Grain, hit: vec3<f32>, plane: vec4<f32>, pixel: f32) -> vec
     let beyond = plane.w - dot(plane.xyz, grain.centre);
     let radius = sqrt(max(grain.radius * grain.radius - beyond * beyond, 0.0));
     let from_rim = radius - length(hit - grain.centre - beyond * plane.xyz);
-    return section(grain.colour, plane.xyz, from_rim, 0.09 * grain.radius + pixel);
+    return section(grain.colour, cut, plane, hit, from_rim, 0.09 * grain.radius + pixel);
 }

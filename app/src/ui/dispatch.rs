@@ -157,6 +157,9 @@ fn fulfil(
         (Request::OpenCase(case), _) => opener.open_case(*case, dock),
         (Request::ShowScenes, _) => dock.show_scenes(),
         (Request::Show(sheet), _) => dock.show_sheet(sheet),
+        (Request::Arrange(asked), run) => dock.rearrange(asked, run.as_deref()),
+        (Request::Present, _) => dock.present(),
+        (Request::FullScreen, _) => dock.is_full_screen ^= true,
         (Request::Open(name), _) => opener.open(name, dock),
         (Request::OpenLeft(path), _) => opener.open_left(path, dock),
         (Request::DiscardLeft(path), _) => {

@@ -1,18 +1,19 @@
-//! Everything that is drawn round the picture: which panels there are, where they stand, what lies
+//! Everything that is drawn round the picture: which panels there are, what stands above, below and
 //! over them.
 //!
 //! In: the simulation and the view's settings. Out: requests, and what is left free for the
 //! picture. Needs no Bevy app.
 
 use crate::simulation::Simulation;
+use crate::ui::arrangement::{Arrangement, Rearrangement};
 use crate::ui::bars::badge::Badge;
-use crate::ui::bars::menu::menu_ui;
-use crate::ui::bars::sides::{OpenSides, ROOM_FOR_BOTH, ROOM_FOR_ONE};
+use crate::ui::bars::menu::{Shown, menu_ui};
 use crate::ui::bars::transport::Transport;
 use crate::ui::detail::Detail;
 use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
 use crate::ui::dialogs::scene_gallery::Gallery;
 use crate::ui::dialogs::sheets::{doubt_ui, left_ui, open_error_ui, sheet_ui, unsaved_ui};
+use crate::ui::notice::{Notice, StaleTooltips};
 use crate::ui::panels::about_scene::AboutScene;
 use crate::ui::panels::avalanche_plots::AvalanchePlots;
 use crate::ui::panels::beside_paper::BesidePaper;
@@ -35,41 +36,41 @@ use crate::ui::panels::results::Results;
 use crate::ui::panels::solver_profile::SolverProfile;
 use crate::ui::plot_export::Export;
 use crate::ui::request::{Request, Sheet};
-use crate::ui::sections::{Section, section, sections_ui};
+use crate::ui::sections::{Section, section};
+use crate::ui::sides::Sides;
 use crate::ui::sweep_desk::SweepDesk;
 use crate::ui::theme::Palette;
 use crate::ui::user_memory::{Look, UserMemory};
 use crate::ui::widgets::focus::focus_ui;
 use crate::ui::words::run_names::title_in_words;
-use crate::ui::{shortcuts, theme};
+use crate::ui::{shortcuts, text_size, theme};
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;
-use bevy_egui::egui::{self, Align2, FontId, Id, Margin, RichText};
+use bevy_egui::egui::{self, Align2, FontId, Key, Margin, Modifiers, RichText};
 use grainfall::lab::Status;
 use grainfall::lesson::Lesson;
 use grainfall::run::Parameter;
 use grainfall::scene::built_in;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Computing time over which the speed of a scene is worth knowing.
 const WORTH_MEASURING: Duration = Duration::from_millis(200);
-/// How long a notice stays.
-const NOTICE_TIME: Duration = Duration::from_secs(6);
+/// What is said when the panels go away.
+const HOW_BACK: &str = "P or Esc brings the panels back";
 
 /// All that surrounds the picture.
 #[derive(Resource)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Dock {
-    left: Vec<Section>,
-    right: Vec<Section>,
+    /// The panels on both sides.
+    pub(super) sides: Sides,
     /// The parameter sweep that runs in the background.
     pub sweeps: SweepDesk,
     /// The lesson that is followed.
     pub lesson: LessonDesk,
     pub(super) transport: Transport,
     badge: Badge,
-    shown: OpenSides,
     /// The plot that a file is being chosen for.
     pub export: Option<Box<Export>>,
     gallery: Gallery,
@@ -93,19 +94,25 @@ pub struct Dock {
     leaving: Option<Request>,
     /// What to do when the session has been saved.
     pub after_saving: Option<Request>,
-    notice: Option<(String, Instant)>,
+    notice: Notice,
     /// Whether a button of the pointer or a key is held: what is changed meanwhile is one change.
     pub is_holding: bool,
     /// Whether such a change is under way.
     pub is_changing: bool,
     /// Whether a picture of the window is being taken, in which no tooltip belongs.
     pub is_photographed: bool,
-    /// Tooltips that there were when a dialog came over the panels, while it is there.
-    stale_tooltips: Option<Vec<egui::LayerId>>,
+    stale_tooltips: StaleTooltips,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
     /// Whether the dock is hidden and the picture fills the window.
     pub is_hidden: bool,
+    /// Whether panels are away and the picture has numbers that are read from afar.
+    pub is_presenting: bool,
+    /// Whether the window is to fill the screen.
+    pub is_full_screen: bool,
+    /// Size of the window [logical pixels], which decides how large text is; where it is not known,
+    /// text has its usual size.
+    pub window: Option<egui::Vec2>,
 }
 
 /// The register of panels on the left, from top to bottom, and whether each is open at first.
@@ -143,16 +150,11 @@ impl Default for Dock {
     fn default() -> Self {
         let sweeps = SweepDesk::default();
         Self {
-            left: left(&sweeps),
-            right: right(),
+            sides: Sides::new(left(&sweeps), right()),
             sweeps,
             lesson: LessonDesk::default(),
             transport: Transport::default(),
             badge: Badge::default(),
-            shown: OpenSides {
-                left: true,
-                right: true,
-            },
             export: None,
             gallery: Gallery::default(),
             shows_scenes: false,
@@ -167,13 +169,16 @@ impl Default for Dock {
             taken_up: None,
             leaving: None,
             after_saving: None,
-            notice: None,
+            notice: Notice::default(),
             is_holding: false,
             is_changing: false,
             is_photographed: false,
-            stale_tooltips: None,
+            stale_tooltips: StaleTooltips::default(),
             file_hovers: false,
             is_hidden: false,
+            is_presenting: false,
+            is_full_screen: false,
+            window: None,
         }
     }
 }
@@ -198,72 +203,108 @@ impl Dock {
         let pressed = shortcuts::pressed(root.ctx(), simulation).into_iter();
         let follows = self.lesson.under_way().is_some();
         out.extend(pressed.filter(|asked| follows || !is_lesson(asked)));
-        self.menu_bar_ui(root, simulation, view, out);
-        if let Some(simulation) = simulation {
-            self.lesson.follow(simulation, out);
-            self.sides_ui(root, simulation, view, out);
-            let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
-            bar.show(root, |ui| self.transport.ui(ui, simulation, out));
+        if self.is_presenting {
+            self.presented_ui(root, simulation, out);
+        } else {
+            self.panels_ui(root, simulation, view, out);
         }
         self.windows_ui(root.ctx(), out);
         focus_ui(root.ctx(), Palette::of(root.visuals()));
-        self.hide_stale_tooltips(root.ctx());
+        let (has_dialog, is_photographed) = (self.has_dialog(), self.is_photographed);
+        (self.stale_tooltips).hide(root.ctx(), has_dialog, is_photographed);
     }
 
-    /// Leaves out of this frame what tells of a place under the pointer that a dialog lies over now,
-    /// and in a picture every such thing: egui lets it stand until the pointer leaves that place.
-    fn hide_stale_tooltips(&mut self, ctx: &egui::Context) {
-        let has_dialog = self.shows_scenes
+    /// Menu bar, both sides and the bar below.
+    fn panels_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        self.menu_bar_ui(root, simulation, view, out);
+        let Some(simulation) = simulation else {
+            return;
+        };
+        let lesson = &mut self.lesson;
+        lesson.follow(simulation, out);
+        (self.sides).ui(root, simulation, view, out, |ui, out| {
+            lesson.ui(ui, simulation, out);
+        });
+        let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
+        bar.show(root, |ui| self.transport.ui(ui, simulation, out));
+    }
+
+    /// The picture alone, but for the bar below while nothing can be played.
+    fn presented_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        out: &mut Vec<Request>,
+    ) {
+        let escape = |input: &mut egui::InputState| input.consume_key(Modifiers::NONE, Key::Escape);
+        if !self.has_dialog() && root.ctx().input_mut(escape) {
+            out.push(Request::Present);
+        }
+        let Some(simulation) = simulation else {
+            return;
+        };
+        self.lesson.follow(simulation, out);
+        if !matches!(simulation.status(), Status::Running | Status::Paused) {
+            let bar = egui::Panel::bottom("transport").frame(bar_frame(root));
+            bar.show(root, |ui| self.transport.ui(ui, simulation, out));
+        }
+    }
+
+    /// Whether a dialog or a sheet lies over the panels.
+    fn has_dialog(&self) -> bool {
+        self.shows_scenes
             || self.path_dialog.is_open()
             || self.sheet.is_some()
             || self.open_error.is_some()
             || self.leaving.is_some()
             || self.doubted.is_some()
-            || !self.left_behind.is_empty();
-        let is_tooltip = |layer: &egui::LayerId| layer.order == egui::Order::Tooltip;
-        let layers: Vec<_> = ctx.memory(|memory| memory.layer_ids().filter(is_tooltip).collect());
-        self.stale_tooltips = match (has_dialog, self.stale_tooltips.take()) {
-            (false, _) => None,
-            (true, known) => Some(known.unwrap_or_else(|| layers.clone())),
-        };
-        let stale = self.stale_tooltips.clone().unwrap_or_default();
-        let hidden = if self.is_photographed { layers } else { stale };
-        ctx.graphics_mut(|graphics| {
-            for layer in hidden {
-                *graphics.entry(layer) = egui::layers::PaintList::default();
-            }
+            || !self.left_behind.is_empty()
+    }
+
+    /// Panels away over the whole screen, or back.
+    pub fn present(&mut self) {
+        self.is_presenting ^= true;
+        self.is_full_screen = self.is_presenting;
+        if self.is_presenting {
+            self.notify(HOW_BACK);
+        }
+    }
+
+    /// Does what was `asked` of the places of panels, and remembers it.
+    pub fn rearrange(&mut self, asked: Rearrangement, simulation: Option<&Simulation>) {
+        self.sides.rearrange(asked, simulation);
+        self.memory.keep_panels(match asked {
+            Rearrangement::AsAtFirst => Arrangement::default(),
+            _ => self.sides.arrangement(),
         });
     }
 
-    /// The sections of both sides, by the titles of their panels.
-    pub(super) fn sections(&mut self) -> impl Iterator<Item = &mut Section> {
-        self.left.iter_mut().chain(&mut self.right)
+    /// Where the panels stand.
+    pub fn arrangement(&self) -> Arrangement {
+        self.sides.arrangement()
     }
 
-    /// The sections of both sides.
-    pub(super) fn shown_sections(&self) -> impl Iterator<Item = &Section> {
-        self.left.iter().chain(&self.right)
+    /// The panels as they are at first, where this person wants them.
+    fn renew_panels(&mut self) {
+        self.sides = self.sides.renewed([left(&self.sweeps), right()], self.memory.panels());
+        self.transport = Transport::default();
     }
 
     /// Remembers in `memory` from now on.
     pub fn remember(&mut self, memory: UserMemory) {
+        self.sides.arrange(memory.panels());
         self.memory = memory;
     }
 
     /// Opens the panel called `title`, on whichever side it stands.
     pub fn show_panel(&mut self, title: &str) {
-        let sides = [
-            (&mut self.left, &mut self.shown.left),
-            (&mut self.right, &mut self.shown.right),
-        ];
-        for (sections, shown) in sides {
-            let wanted = sections
-                .iter_mut()
-                .find(|section| section.panel.title() == title);
-            if let Some(section) = wanted {
-                (section.is_wanted, *shown) = (true, true);
-            }
-        }
+        self.sides.show_panel(title);
     }
 
     /// Opens the panel where two values are compared: of `parameter`, where one is given.
@@ -279,18 +320,14 @@ impl Dock {
     /// Opens the panel called `title`: about `parameter`, where one is given.
     fn take_up(&mut self, title: &str, parameter: Option<&Parameter>) {
         self.show_panel(title);
-        let mut sections = self.left.iter_mut().chain(&mut self.right);
-        let wanted = sections.find(|section| section.panel.title() == title);
-        if let Some((section, parameter)) = wanted.zip(parameter) {
-            section.panel.take_up(parameter);
+        if let Some(parameter) = parameter {
+            self.sides.take_up(title, parameter);
         }
     }
 
     /// Opens every panel on both sides.
     pub fn show_all_panels(&mut self) {
-        for section in self.left.iter_mut().chain(&mut self.right) {
-            section.is_wanted = true;
-        }
+        self.sides.open_all();
     }
 
     /// Lets the person choose where the plot `export` goes.
@@ -307,14 +344,15 @@ impl Dock {
     /// Restores the look of the last session, then keeps the present one.
     fn remember_look(&mut self, ctx: &egui::Context, view: &mut ViewSettings) {
         if let Some(look) = self.memory.last_look() {
-            ctx.set_zoom_factor(look.scale);
+            text_size::choose(ctx, look.scale);
             view.background = look.background;
         } else {
             self.memory.keep_look(Look {
-                scale: ctx.zoom_factor(),
+                scale: text_size::chosen(ctx),
                 background: view.background,
             });
         }
+        text_size::follow(ctx, self.window);
     }
 
     /// Restores how much the controls showed the last time, then keeps that and how fast the scene
@@ -360,7 +398,7 @@ impl Dock {
 
     /// Whether the panels say which moment is shown: then the picture need not.
     pub fn shows_time(&self) -> bool {
-        !self.is_hidden && self.transport.shows_time()
+        !self.is_hidden && !self.is_presenting && self.transport.shows_time()
     }
 
     /// Shows a sheet.
@@ -395,12 +433,12 @@ impl Dock {
 
     /// Says `text` for a few seconds.
     pub fn notify(&mut self, text: impl Into<String>) {
-        self.notice = Some((text.into(), Instant::now()));
+        self.notice.say(text.into());
     }
 
     /// What is told now, if anything.
     pub fn notice(&self) -> Option<&str> {
-        self.notice.as_ref().map(|(text, _)| text.as_str())
+        self.notice.text()
     }
 
     /// Puts the scene called `name` first among the recent ones and resets the panels for it.
@@ -412,23 +450,21 @@ impl Dock {
             .find(|known| *known == name);
         self.session = None;
         self.lesson = LessonDesk::default();
-        (self.left, self.right) = (left(&self.sweeps), right());
-        self.transport = Transport::default();
+        self.renew_panels();
     }
 
     /// Does the same for the scene of `lesson`, which begins.
     pub fn lesson_opened(&mut self, name: &str, lesson: Lesson) {
         self.scene_opened(name);
         self.lesson.begin(lesson);
-        self.shown.left = true;
+        self.sides.shown.left = true;
     }
 
     /// Resets the panels for a scene made from the present one.
     pub fn scene_changed(&mut self) {
         self.session = None;
         self.scene = None;
-        (self.left, self.right) = (left(&self.sweeps), right());
-        self.transport = Transport::default();
+        self.renew_panels();
     }
 
     /// Does the same for the session in the file called `name`, where it will be saved again.
@@ -444,10 +480,16 @@ impl Dock {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let (recent, shown, badge) = (self.memory.recent(), &mut self.shown, &mut self.badge);
+        let badge = &mut self.badge;
+        let panels = self.sides.titles(simulation);
+        let mut shown = Shown {
+            recent: self.memory.recent(),
+            sides: &mut self.sides.shown,
+            panels,
+        };
         let mut of_badge = Vec::new();
         egui::Panel::top("menu").show(root, |ui| {
-            menu_ui(ui, simulation, recent, shown, view, out, |ui| {
+            menu_ui(ui, simulation, &mut shown, view, out, |ui| {
                 if let Some(simulation) = simulation {
                     badge.ui(ui, simulation, &mut of_badge);
                     let title = RichText::new(title_in_words(simulation)).weak();
@@ -456,34 +498,6 @@ impl Dock {
             });
         });
         out.extend(of_badge);
-    }
-
-    fn sides_ui(
-        &mut self,
-        root: &mut egui::Ui,
-        simulation: &Simulation,
-        view: &mut ViewSettings,
-        out: &mut Vec<Request>,
-    ) {
-        let width = root.available_width();
-        let size = |share: f32, least: f32, most: f32| (share * width).clamp(least, most);
-        if width >= ROOM_FOR_ONE {
-            egui::Panel::left("controls")
-                .default_size(size(0.235, 290.0, 380.0))
-                .size_range(240.0..=520.0)
-                .show_collapsible(root, &mut self.shown.left, |ui| {
-                    self.lesson.ui(ui, simulation, out);
-                    sections_ui(ui, &mut self.left, simulation, view, out);
-                });
-        }
-        if width >= ROOM_FOR_BOTH || (width >= ROOM_FOR_ONE && !self.shown.left) {
-            egui::Panel::right("measures")
-                .default_size(size(0.285, 350.0, 560.0))
-                .size_range(280.0..=900.0)
-                .show_collapsible(root, &mut self.shown.right, |ui| {
-                    sections_ui(ui, &mut self.right, simulation, view, out);
-                });
-        }
     }
 
     fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
@@ -501,32 +515,9 @@ impl Dock {
             (self.doubted.take()).filter(|(reason, request)| doubt_ui(ctx, reason, request, out));
         let asked = |next: &Request| unsaved_ui(ctx, next, out);
         self.leaving = self.leaving.take().filter(asked);
-        self.notice_ui(ctx);
-    }
-
-    fn notice_ui(&mut self, ctx: &egui::Context) {
-        self.notice = self
-            .notice
-            .take()
-            .filter(|(_, since)| since.elapsed() < NOTICE_TIME);
         let waiting = "Waiting for the system's file dialog; ask again to type a path";
-        let said = self.notice();
-        let Some(text) = said.or(self.path_dialog.is_waiting().then_some(waiting)) else {
-            return;
-        };
-        // Each text is laid out by itself, however long the last one was.
-        egui::Area::new(Id::new("notice").with(text))
-            .anchor(Align2::CENTER_TOP, [0.0, 44.0])
-            .interactable(false)
-            .show(ctx, |ui| {
-                egui::Frame::popup(ui.style())
-                    .inner_margin(10)
-                    .show(ui, |ui| {
-                        ui.set_max_width(0.6 * ui.ctx().content_rect().width());
-                        ui.label(text);
-                    });
-            });
-        ctx.request_repaint_after(NOTICE_TIME);
+        let otherwise = self.path_dialog.is_waiting().then_some(waiting);
+        self.notice.ui(ctx, otherwise);
     }
 }
 

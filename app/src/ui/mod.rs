@@ -13,7 +13,9 @@
 //! | `rescue` | work that is in no file, kept for the case that the program ends unasked |
 //! | `dispatch` | what each request does |
 //! | `session_look` | how a window looked, as a session keeps it |
-//! | `dock`, `sections` | the register of panels, where they stand, what lies over them; one side of them |
+//! | `dock` | the register of panels, what stands round the picture and lies over it |
+//! | `sides`, `sections` | both sides of panels; one side of them |
+//! | `notice` | what is told for a few seconds |
 //! | `dialogs` | windows over the rest: scenes with their pictures, a path to choose, sheets of text |
 //! | `bars` | menu bar, the bar under the picture with its time slider, the film's bar, the badge of trust |
 //! | `shortcuts`, `keyboard` | what each key does; what was held with it |
@@ -26,11 +28,14 @@
 //! | `repeat` | the part of a run that is played again and again |
 //! | `request`, `screenshot_orders` | what panels ask for; pictures and films that are asked for |
 //! | `plot_export` | a plot on its way to a file |
+//! | `arrangement` | where panels stand, by their titles; how wide sides may be |
 //! | `detail`, `event_kinds` | how many parameters are shown, which kinds of events |
+//! | `text_size` | how large text is |
 //! | `widgets` | a number to type, the row of a parameter, tables, choices, buttons, the focus |
 //! | `words` | numbers, symbols, parameters and runs in text |
 //! | `theme` | every colour, size and font |
 
+mod arrangement;
 mod bars;
 mod detail;
 mod dialogs;
@@ -38,6 +43,7 @@ mod dispatch;
 mod dock;
 mod event_kinds;
 mod keyboard;
+mod notice;
 mod panel;
 mod panels;
 mod playback;
@@ -51,12 +57,15 @@ mod screenshot_orders;
 mod sections;
 mod session_look;
 mod shortcuts;
+mod sides;
 mod sweep_desk;
+mod text_size;
 pub mod theme;
 mod user_memory;
 mod widgets;
 mod words;
 
+pub use arrangement::{Arrangement, Rearrangement};
 pub use bars::badge::{Check, Level, checks, stable_step};
 pub use bars::film_bar::film_bar_ui;
 pub use bars::transport::{Transport, status_ui};

@@ -16,8 +16,11 @@ use crate::ui::{keyboard, theme};
 use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
 use bevy::asset::AssetEventSystems;
 use bevy::prelude::*;
-use bevy::window::{FileDragAndDrop, WindowCloseRequested};
-use bevy_egui::{EguiContexts, EguiPostUpdateSet, EguiPreUpdateSet, EguiPrimaryContextPass, egui};
+use bevy::window::{FileDragAndDrop, PrimaryWindow, WindowCloseRequested, WindowMode};
+use bevy_egui::{
+    EguiContexts, EguiPostUpdateSet, EguiPreUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext,
+    egui,
+};
 
 /// Draws the panels and fulfils what they ask for. Needs Bevy's default plugins, `EguiPlugin` and
 /// the view's plugin.
@@ -32,6 +35,7 @@ impl Plugin for UiPlugin {
         let options = self.options.clone();
         app.add_plugins(DockPlugin { options })
             .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain())
+            .add_systems(Update, follow_full_screen)
             .add_systems(
                 PreUpdate,
                 keyboard::tell_modifiers
@@ -95,7 +99,10 @@ fn draw_panels(
     mut requests: ResMut<Requests>,
     orders: Res<ScreenshotOrders>,
     simulation: Option<Res<Simulation>>,
+    window: Option<Single<&Camera, With<PrimaryEguiContext>>>,
 ) -> Result {
+    let size = window.and_then(|camera| camera.logical_target_size());
+    dock.window = size.map(|size| egui::vec2(size.x, size.y));
     let ctx = contexts.ctx_mut()?.clone();
     let builder = egui::UiBuilder::new()
         .layer_id(egui::LayerId::background())
@@ -111,7 +118,10 @@ fn draw_panels(
     // A film runs at its own speed, however long its pictures take.
     let is_filmed = orders.film != FilmState::Idle;
     let has_clock = is_filmed || !dock.shows_time();
-    let captions = captions(simulation, is_filmed, has_clock);
+    let mut captions = captions(simulation, is_filmed, has_clock);
+    for caption in &mut captions {
+        caption.is_for_afar = dock.is_presenting && !dock.is_hidden;
+    }
     viewport_ui(&mut root, &captions, &mut view, &mut camera);
     if !dock.is_hidden {
         dock.over_picture_ui(&root, simulation);
@@ -149,6 +159,23 @@ fn caption(run: Option<&RunView>, factor: f64, title: Option<String>) -> Caption
         real_time_factor: (factor > 0.0).then_some(factor),
         title,
         has_clock: true,
+        is_for_afar: false,
+    }
+}
+
+/// Lets the window fill the screen, or not, where that was asked for.
+fn follow_full_screen(
+    dock: Res<Dock>,
+    mut was: Local<bool>,
+    window: Option<Single<&mut Window, With<PrimaryWindow>>>,
+) {
+    if let Some(mut window) = window.filter(|_| dock.is_full_screen != *was) {
+        *was = dock.is_full_screen;
+        window.mode = if *was {
+            WindowMode::BorderlessFullscreen(MonitorSelection::Current)
+        } else {
+            WindowMode::Windowed
+        };
     }
 }
 

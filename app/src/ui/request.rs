@@ -1,6 +1,7 @@
 //! What panels ask for. Panels change nothing themselves but how the picture is drawn: they push
 //! requests, and one function ([`super::dispatch`]) fulfils them.
 
+use crate::ui::arrangement::Rearrangement;
 use crate::ui::plot_export::Export;
 use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::view::CameraRequest;
@@ -99,6 +100,12 @@ pub enum Request {
     Screenshot(ScreenshotOrder),
     /// Show a sheet over the window.
     Show(Sheet),
+    /// Another place for a panel.
+    Arrange(Rearrangement),
+    /// Panels away and numbers that are read from afar, or back.
+    Present,
+    /// The window over the whole screen, or back.
+    FullScreen,
     /// End the program.
     Quit,
 }

@@ -5,11 +5,11 @@
 //! or all of it as it was. What belongs to a person rather than to a session (background, size of
 //! text) is not here but in `user_memory`.
 
+use crate::ui::arrangement::Arrangement;
 use crate::ui::dock::Dock;
 use crate::view::{
     CameraPose, ColourBy, ColourMap, ColourRange, Cut, OrbitCamera, ProjectionKind, ViewSettings,
 };
-use grainfall::measure::GrainQuantity;
 use grainfall::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +40,8 @@ pub struct SessionLook {
     /// Not known to sessions saved before it was drawn.
     #[serde(default = "yes")]
     show_measured: bool,
+    show_flow: bool,
+    show_temperature: bool,
     container_opacity: f32,
     projection: ProjectionKind,
     selected: Option<usize>,
@@ -48,6 +50,8 @@ pub struct SessionLook {
     traced: Vec<usize>,
     camera: Option<CameraPose>,
     panels: Vec<PanelLook>,
+    /// Where they stood.
+    arrangement: Arrangement,
     /// The lesson that was followed, in its own words; empty where none was.
     lesson: String,
 }
@@ -67,17 +71,13 @@ fn yes() -> bool {
 impl SessionLook {
     /// The present look.
     pub fn of(view: &ViewSettings, camera: Option<&OrbitCamera>, dock: &Dock) -> Self {
-        let colour_by = match view.colour_by {
-            ColourBy::Species => "",
-            ColourBy::Quantity(quantity) => quantity.quantity().key,
-        };
-        let panels = dock.shown_sections().map(|section| PanelLook {
+        let panels = dock.sides.sections().map(|section| PanelLook {
             title: section.panel.title().into(),
             is_open: section.is_open(),
             choices: section.panel.choices(),
         });
         Self {
-            colour_by: colour_by.into(),
+            colour_by: view.colour_by.key().into(),
             colour_map: view.colour_map,
             range: view.range,
             log_colours: view.log_colours,
@@ -91,6 +91,8 @@ impl SessionLook {
             show_container: view.show_container,
             show_overlay: view.show_overlay,
             show_measured: view.show_measured,
+            show_flow: view.show_flow,
+            show_temperature: view.show_temperature,
             container_opacity: view.container_opacity,
             projection: view.projection,
             selected: view.selected,
@@ -99,6 +101,7 @@ impl SessionLook {
             traced: view.traced.clone(),
             camera: camera.map(OrbitCamera::pose),
             panels: panels.collect(),
+            arrangement: dock.sides.arrangement(),
             lesson: dock.lesson.in_words(),
         }
     }
@@ -123,9 +126,8 @@ impl SessionLook {
         scene: &Scene,
     ) {
         dock.lesson.take_up(&self.lesson, scene);
-        let mut quantities = GrainQuantity::ALL.into_iter();
-        let quantity = quantities.find(|quantity| quantity.quantity().key == self.colour_by);
-        view.colour_by = quantity.map_or(ColourBy::Species, ColourBy::Quantity);
+        let colour_by = ColourBy::all().find(|by| by.key() == self.colour_by);
+        view.colour_by = colour_by.unwrap_or_default();
         view.colour_map = self.colour_map;
         view.range = self.range;
         view.log_colours = self.log_colours;
@@ -139,6 +141,8 @@ impl SessionLook {
         view.show_container = self.show_container;
         view.show_overlay = self.show_overlay;
         view.show_measured = self.show_measured;
+        view.show_flow = self.show_flow;
+        view.show_temperature = self.show_temperature;
         view.container_opacity = self.container_opacity.clamp(0.0, 1.0);
         view.projection = self.projection;
         (view.selected, view.beside) = (self.selected, self.beside);
@@ -150,8 +154,9 @@ impl SessionLook {
         {
             view.camera_request = None;
         }
+        dock.sides.arrange(&self.arrangement);
         let mut looks = self.panels;
-        for section in dock.sections() {
+        for section in dock.sides.sections_mut() {
             // Of two panels with one title the first is the first. Other builds have other panels.
             let title = section.panel.title();
             if let Some(index) = looks.iter().position(|look| look.title == title) {

@@ -328,6 +328,16 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: KeyAction::Ask(Request::Show(Sheet::Shortcuts)),
     },
     Shortcut {
+        keys: &[key(Key::P)],
+        name: "Present: panels away, large numbers; and back",
+        action: KeyAction::Ask(Request::Present),
+    },
+    Shortcut {
+        keys: &[key(Key::F11)],
+        name: "The whole screen, and back",
+        action: KeyAction::Ask(Request::FullScreen),
+    },
+    Shortcut {
         keys: &[ctrl(Key::Q)],
         name: "Quit",
         action: KeyAction::Ask(Request::Quit),
@@ -335,11 +345,12 @@ pub const SHORTCUTS: &[Shortcut] = &[
 ];
 
 /// What egui's own keys and the mouse over the picture do.
-pub const GESTURES: [(&str, &str); 7] = [
+pub const GESTURES: [(&str, &str); 8] = [
     (
         "Ctrl + +, −, 0",
-        "Text and controls larger, smaller, as at first",
+        "Text and controls larger, smaller, as large as suits the window",
     ),
+    ("Esc", "The panels back, after presenting"),
     ("Click a grain", "Put it under the microscope"),
     ("Shift + click a grain", "Draw its trail, or no longer"),
     ("Drag", "Orbit"),

@@ -63,7 +63,7 @@ const DARK: Palette = Palette {
     threshold: Color32::from_rgb(0x9A, 0xA5, 0xB4),
     maximum: Color32::from_rgb(0xFF, 0xD5, 0x7A),
     minimum: Color32::from_rgb(0x5F, 0xD3, 0xA8),
-    change: Color32::from_rgb(0x8B, 0x7B, 0xC8),
+    change: Color32::from_rgb(0x9E, 0x8F, 0xD6),
     compared: Color32::from_rgb(0xF2, 0xA9, 0xDC),
     kept: Color32::from_rgb(0xB4, 0xBD, 0xC9),
     grid: Color32::from_rgb(0x3B, 0x45, 0x54),
@@ -81,13 +81,13 @@ const DARK: Palette = Palette {
 
 const LIGHT: Palette = Palette {
     angle: rgb(MEASURED_ON_LIGHT),
-    temperature: Color32::from_rgb(0xB8, 0x55, 0x0A),
+    temperature: Color32::from_rgb(0xA8, 0x4A, 0x06),
     threshold: Color32::from_rgb(0x5D, 0x67, 0x74),
-    maximum: Color32::from_rgb(0xA8, 0x6B, 0x00),
-    minimum: Color32::from_rgb(0x0B, 0x7D, 0x59),
+    maximum: Color32::from_rgb(0x8F, 0x5A, 0x00),
+    minimum: Color32::from_rgb(0x0A, 0x75, 0x53),
     change: Color32::from_rgb(0x6A, 0x56, 0xB5),
     compared: Color32::from_rgb(0x96, 0x25, 0x77),
-    kept: Color32::from_rgb(0x6B, 0x74, 0x80),
+    kept: Color32::from_rgb(0x5F, 0x68, 0x74),
     grid: Color32::from_rgb(0xC9, 0xD0, 0xD9),
     stages: [
         Color32::from_rgb(0x2F, 0x86, 0xCB),
@@ -155,8 +155,8 @@ const LIGHT_SURFACES: Surfaces = Surfaces {
     pressed: Color32::from_rgb(0xBC, 0xC7, 0xD4),
     text: Color32::from_rgb(0x22, 0x2A, 0x35),
     strong: Color32::from_rgb(0x0B, 0x10, 0x18),
-    weak: Color32::from_rgb(0x55, 0x60, 0x6E),
-    accent: Color32::from_rgb(0x2B, 0x7A, 0xBD),
+    weak: Color32::from_rgb(0x4C, 0x56, 0x63),
+    accent: Color32::from_rgb(0x25, 0x70, 0xB0),
     accent_text: Color32::from_rgb(0xFF, 0xFF, 0xFF),
 };
 
@@ -270,5 +270,44 @@ fn shadow() -> Shadow {
         blur: 16,
         spread: 0,
         color: Color32::from_black_alpha(0x58),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::contrast;
+
+    fn rgb_of(colour: Color32) -> [u8; 3] {
+        [colour.r(), colour.g(), colour.b()]
+    }
+
+    /// Asserts that all of `inks` are read on all of `grounds`.
+    #[track_caller]
+    fn assert_read(inks: &[Color32], grounds: &[Color32]) {
+        for (ink, ground) in inks
+            .iter()
+            .flat_map(|ink| grounds.iter().map(move |g| (ink, g)))
+        {
+            let contrast = contrast(rgb_of(*ink), rgb_of(*ground));
+            assert!(contrast >= 4.5, "{ink:?} on {ground:?}: {contrast}");
+        }
+    }
+
+    #[test]
+    fn light_and_dark_are_equally_legible() {
+        for (surfaces, palette) in [(DARK_SURFACES, DARK), (LIGHT_SURFACES, LIGHT)] {
+            let s = &surfaces;
+            let still = [s.panel, s.window, s.sunken, s.stripe];
+            assert_read(&[s.text, s.strong, s.weak], &still);
+            assert_read(&[s.text, s.strong], &[s.button, s.hovered, s.pressed]);
+            assert_read(&[s.accent_text], &[s.accent]);
+            let p = &palette;
+            let curves = [p.angle, p.temperature, p.threshold, p.maximum, p.minimum];
+            assert_read(&curves, &still[..3]);
+            let others = [p.change, p.compared, p.kept, p.warning, p.error];
+            assert_read(&others, &still[..3]);
+            assert_read(&[p.error], &[p.error_fill]);
+        }
     }
 }

@@ -1,17 +1,19 @@
 //! What the program remembers of one person from start to start: files opened, how much the
-//! controls show, how large and on which background, how fast each scene ran on this machine.
+//! controls show, how large and on which background, where panels stand, how fast each scene ran on
+//! this machine.
 //!
 //! In: a small JSON file of the user's. Out: the same file, written whenever something changes. A
 //! file that is damaged or cannot be written is reported once; then less is remembered, and nothing
 //! else is lost. Scenes and sessions are not kept here.
 
+use crate::ui::arrangement::Arrangement;
 use crate::ui::detail::Detail;
+use crate::ui::text_size::SCALES;
 use crate::view::Background;
 use bevy::log::warn;
 use grainfall::files::{read_whole, write_whole};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -21,8 +23,6 @@ const LARGEST: u64 = 1 << 20;
 const RECENT: usize = 8;
 /// A speed that exceeds the one known by less than this share of it is not news.
 const NEWS: f64 = 0.3;
-/// Sizes of text and controls that somebody can work with.
-const SCALES: RangeInclusive<f32> = 0.2..=5.0;
 
 /// What is remembered, and where.
 #[derive(Debug, Default)]
@@ -37,8 +37,8 @@ pub struct UserMemory {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Look {
-    /// Size of text and controls over their usual one.
-    pub scale: f32,
+    /// Size of text and controls over their usual one; none where the window's size decides.
+    pub scale: Option<f32>,
     /// Behind picture and panels.
     pub background: Background,
 }
@@ -46,7 +46,7 @@ pub struct Look {
 impl Default for Look {
     fn default() -> Self {
         Self {
-            scale: 1.0,
+            scale: None,
             background: Background::Dark,
         }
     }
@@ -58,6 +58,7 @@ struct Remembered {
     recent: Vec<String>,
     lab: bool,
     look: Look,
+    panels: Arrangement,
     speeds: BTreeMap<String, f64>,
 }
 
@@ -101,8 +102,21 @@ impl UserMemory {
     /// How everything looks, at a scale in [`SCALES`].
     pub fn look(&self) -> Look {
         let Look { scale, background } = self.kept.look;
-        let scale = if SCALES.contains(&scale) { scale } else { 1.0 };
+        let scale = scale.filter(|scale| SCALES.contains(scale));
         Look { scale, background }
+    }
+
+    /// Where panels stand.
+    pub fn panels(&self) -> &Arrangement {
+        &self.kept.panels
+    }
+
+    /// Remembers where panels stand.
+    pub fn keep_panels(&mut self, panels: Arrangement) {
+        if panels != self.kept.panels {
+            self.kept.panels = panels;
+            self.write();
+        }
     }
 
     /// How fast each scene ran here, in simulated seconds per second.
@@ -200,16 +214,22 @@ mod tests {
         memory.opened("scene 7");
         memory.show(Detail::Lab);
         let look = Look {
-            scale: 1.5,
+            scale: Some(1.5),
             background: Background::Light,
         };
         memory.keep_look(look);
+        let panels = Arrangement {
+            closed: vec!["Solver".into()],
+            ..Arrangement::default()
+        };
+        memory.keep_panels(panels);
         memory.ran("dry-r3", 2.0);
         memory.ran("dry-r3", 2.1);
         memory.ran("dry-r3", 2e-5);
         let again = UserMemory::at(path.clone());
         assert_eq!(again.kept, memory.kept);
         assert_eq!(again.look(), look);
+        assert!(again.panels().is_closed("Solver"));
         assert_eq!(again.recent()[..2], ["scene 7", "scene 9"]);
         assert_eq!(again.recent().len(), RECENT);
         assert_eq!(

@@ -68,7 +68,7 @@ impl Scheme {
                 background: Color::srgb_u8(0xF7, 0xF7, 0xF4),
                 surface: Color::srgb_u8(0x9D, 0xAF, 0xC4),
                 line: Color::srgb_u8(0x3F, 0x50, 0x66),
-                mark: Color::srgb_u8(0xD4, 0x55, 0x2A),
+                mark: Color::srgb_u8(0xB8, 0x40, 0x18),
                 frame: Color::srgb_u8(0x7C, 0x8C, 0xA0),
                 measured: MEASURED_ON_LIGHT,
                 text: [0x1E, 0x24, 0x2C],
@@ -78,7 +78,7 @@ impl Scheme {
     }
 }
 
-/// What the colours of `worlds` mean, the same in all of them; `None` for species, or of no world.
+/// What the colours of grains mean whose numbers are those of `worlds`, the same in all of them; `None` for species, or of no world.
 /// An automatic range stays as it was in `before` while it suits, so that colours do not jump from
 /// frame to frame.
 pub fn legend(
@@ -87,18 +87,20 @@ pub fn legend(
     (range, is_log): (ColourRange, bool),
     before: Option<&Legend>,
 ) -> Option<Legend> {
-    let ColourBy::Quantity(quantity) = colour_by else {
-        return None;
-    };
+    let quantity = colour_by.quantity()?;
     if worlds.is_empty() {
         return None;
     }
-    let title = quantity.name();
+    let title = colour_by.label();
     let automatic = |before: &&Legend| before.min <= 0.0 || before.is_log;
     let before = before.filter(|before| before.title == title && automatic(before));
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
         ColourRange::Percentiles(low, high) => percentiles(worlds, quantity, low, high),
+        // It stays as it is, wherever the middle.
+        ColourRange::Automatic if matches!(colour_by, ColourBy::Start(_)) => {
+            percentiles(worlds, quantity, 0.0, 1.0)
+        }
         ColourRange::Automatic => {
             let max = automatic_maximum(worlds, quantity, before);
             (if quantity.is_signed() { -max } else { 0.0 }, max)
@@ -122,7 +124,7 @@ pub fn legend(
 /// Largest over smallest number of an automatic range whose steps are factors.
 const DECADES: f64 = 1e4;
 
-/// Calls `paint` with the linear colour of each grain in turn.
+/// Calls `paint` with the linear colour of each grain in turn, whose numbers are those of `world`.
 pub fn colours(
     world: &World,
     colour_by: ColourBy,
@@ -130,7 +132,7 @@ pub fn colours(
     legend: Option<&Legend>,
     mut paint: impl FnMut([f32; 3]),
 ) {
-    let (ColourBy::Quantity(quantity), Some(legend)) = (colour_by, legend) else {
+    let (Some(quantity), Some(legend)) = (colour_by.quantity(), legend) else {
         let palette = SPECIES.map(linear);
         for (i, species) in world.grains.species.iter().enumerate() {
             let colour = palette[usize::from(species.0) % palette.len()];
@@ -261,9 +263,35 @@ pub fn trail_colour(index: usize) -> [u8; 3] {
     TRAILS[index % TRAILS.len()]
 }
 
+/// Ratio of the lighter to the darker of two sRGB colours as the Web Content Accessibility
+/// Guidelines count it, 1 … 21; text is read at 4.5.
+#[cfg(test)]
+pub(crate) fn contrast(one: [u8; 3], other: [u8; 3]) -> f32 {
+    let luminance = |colour| {
+        let [r, g, b] = linear(colour);
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    };
+    let (a, b) = (luminance(one), luminance(other));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::ink::srgb;
+
+    #[test]
+    fn words_in_the_picture_stand_out_from_its_background() {
+        assert!((contrast([0; 3], [255; 3]) - 21.0).abs() < 1e-4);
+        for background in [Background::Dark, Background::Light] {
+            let scheme = Scheme::of(background);
+            let (ground, mark) = (srgb(scheme.background), srgb(scheme.mark));
+            for ink in [scheme.text, scheme.faint_text, scheme.measured, mark] {
+                let contrast = contrast(ink, ground);
+                assert!(contrast >= 4.5, "{background:?} {ink:?}: {contrast}");
+            }
+        }
+    }
 
     #[test]
     fn range_ends_at_round_numbers() {

@@ -55,8 +55,11 @@ enum WallPiece {
     Plane {
         /// The wall's index.
         wall: usize,
-        /// The point whose foot on the plane is the piece's middle.
+        /// The point whose foot on the plane is the piece's middle at first.
         near: DVec3,
+        /// Distance after which its lines repeat; it moves by whole ones with grains in the open
+        /// [m]. None where it stays.
+        period: Option<f64>,
     },
 }
 
@@ -88,6 +91,9 @@ impl Paint {
 
 /// Cells from the middle to where a floor with a grid has faded away.
 const FLOOR_CELLS: f32 = 40.0;
+
+/// Every so many lines of a grid one is bold.
+const BOLD_CELLS: f64 = 5.0;
 
 /// What decides the meshes: the shape, of how many walls and triangles it is made, for planes how
 /// long grains fly over them [s], and whether they are wanted twice.
@@ -192,9 +198,25 @@ fn place(shown: Res<ShownWorlds>, mut pieces: Query<(&DrawnIn, &WallPiece, &mut 
             }
             WallPiece::Tube { wall } => tube_transform(&world.container, wall),
             WallPiece::Mesh { wall } => mesh_transform(&world.container, wall),
-            WallPiece::Plane { wall, near } => plane_transform(&world.container, wall, near),
+            WallPiece::Plane { wall, near, period } => {
+                let near = under_grains(world, wall, near, period);
+                plane_transform(&world.container, wall, near)
+            }
         });
     }
+}
+
+/// The point whose foot on the plane `wall` is the middle of its piece now: below the grains of
+/// `world`, but for less than one `period`.
+fn under_grains(world: &World, wall: usize, near: DVec3, period: Option<f64>) -> DVec3 {
+    let (Some(period), Some((min, max))) = (period, grain_box(world)) else {
+        return near;
+    };
+    let turn = plane_transform(&world.container, wall, near)
+        .rotation
+        .as_dquat();
+    let way = turn.inverse() * (0.5 * (min + max) - near);
+    near + turn * ((way / period).round() * period)
 }
 
 /// Where the piece of the plane `wall` lies: its z axis along the normal, its middle at the foot of
@@ -364,7 +386,14 @@ fn planes(world: &World, watched: f64) -> Vec<(WallPiece, Paint, Mesh)> {
         fade: FLOOR_CELLS,
         circle: 0.0,
     };
-    floors(world, (min + max) / 2.0, cell, FLOOR_CELLS, paint)
+    let period = BOLD_CELLS * cell;
+    floors(
+        world,
+        ((min + max) / 2.0, Some(period)),
+        cell,
+        FLOOR_CELLS,
+        paint,
+    )
 }
 
 /// A floor with rings round the axis of a column, the one on which it stood marked.
@@ -376,13 +405,14 @@ fn column_floors(world: &World, radius: f64, height: f64) -> Vec<(WallPiece, Pai
         fade,
         circle: (radius / cell) as f32,
     };
-    floors(world, DVec3::ZERO, cell, fade, paint)
+    floors(world, (DVec3::ZERO, None), cell, fade, paint)
 }
 
-/// A square of `half` cells to each side of the foot of `near` on each plane.
+/// A square of `half` cells to each side of the foot of `near` on each plane, which goes with the
+/// grains by whole periods where it has one.
 fn floors(
     world: &World,
-    near: DVec3,
+    (near, period): (DVec3, Option<f64>),
     cell: f64,
     half: f32,
     paint: Paint,
@@ -401,7 +431,11 @@ fn floors(
                 builder.vertex(Vec3::new(x * cell, y * cell, 0.0), Vec3::Z, [x, y]);
             }
             builder.indices.extend([0, 1, 2, 2, 3, 0]);
-            (WallPiece::Plane { wall, near }, paint, builder.mesh())
+            (
+                WallPiece::Plane { wall, near, period },
+                paint,
+                builder.mesh(),
+            )
         })
         .collect()
 }

@@ -5,7 +5,7 @@
 use crate::view::colour::round_up;
 use bevy::math::DVec3;
 use bevy::prelude::*;
-use grainfall::world::{Shape, Surface, World};
+use grainfall::world::{Shape, Surface, Wall, World};
 use std::f32::consts::TAU;
 
 /// Breadth of a drum's hoops in its radius.
@@ -13,11 +13,17 @@ pub(super) const HOOP_BREADTH: f32 = 0.045;
 /// Grains in flight are kept in the picture for at most this many times the size of the group, so
 /// that they stay large enough to see.
 const FARTHEST: f64 = 30.0;
+/// Grains that fly further than this, in sizes of their group, are so small in a picture of their
+/// whole way that one does not see them turn: the picture goes with them instead.
+const FAR: f64 = 8.0;
+/// Room round a group that the picture goes with, in its size.
+const ROOM: f64 = 7.0;
 /// Room beside a straight path for grains that swerve, as a share of its length.
 const SWERVE: f64 = 0.12;
 
 /// Points that a picture of `world` should hold: its container's, or, where that is unbounded,
-/// those of its grains and of their way in the next `watched` seconds.
+/// those of its grains and of their way in the next `watched` seconds, unless the picture is to go
+/// with them.
 pub fn outline(world: &World, watched: f64) -> Vec<Vec3> {
     match world.container.shape {
         Shape::Drum { radius, width } => {
@@ -34,10 +40,44 @@ pub fn outline(world: &World, watched: f64) -> Vec<Vec3> {
             corners(min.as_vec3(), max.as_vec3()).to_vec()
         }
         Shape::Column { radius, height } => column_outline(radius, height),
-        Shape::Planes => surroundings(world, watched).map_or_else(Vec::new, |(min, max)| {
-            corners(min.as_vec3(), max.as_vec3()).to_vec()
-        }),
+        Shape::Planes => {
+            let around = match group_on_its_way(world, watched) {
+                Some((middle, size)) => Some((middle - ROOM * size, middle + ROOM * size)),
+                None => surroundings(world, watched),
+            };
+            around.map_or_else(Vec::new, |(min, max)| {
+                corners(min.as_vec3(), max.as_vec3()).to_vec()
+            })
+        }
     }
+}
+
+/// Middle and half size [m] of the grains of `world`, where they slide or roll in the open, together,
+/// on a way of which a picture would show them too small.
+pub fn group_on_its_way(world: &World, watched: f64) -> Option<(DVec3, f64)> {
+    if !matches!(world.container.shape, Shape::Planes) {
+        return None;
+    }
+    let (min, max) = grain_box(world)?;
+    let size = 0.5 * (max - min).max_element();
+    let velocities = &world.grains.velocity;
+    let speeds = velocities.iter().map(|v| v.length());
+    // All of them, that is: one that leaves the others is no group with them.
+    let slowest = speeds.fold(f64::INFINITY, f64::min);
+    let middle = 0.5 * (min + max);
+    let along = |normal: DVec3| {
+        velocities
+            .iter()
+            .all(|v| v.dot(normal).abs() < 0.2 * v.length())
+    };
+    let slides_on = |wall: &Wall| match wall.surface {
+        Surface::Plane { point, normal } => {
+            (middle - point).dot(normal).abs() < 2.0 * size && along(normal)
+        }
+        _ => false,
+    };
+    let goes_far = watched * slowest > 2.0 * FAR * size;
+    (goes_far && world.container.walls.iter().any(slides_on)).then_some((middle, size))
 }
 
 /// The column as it stands and the floor that it will spread over, with some room for grains that

@@ -62,6 +62,9 @@ struct DrawnGrain {
     hidden_quadrupole: [f32; 5],
     /// From body axes to the world's: x, y, z, w; zeros of a sphere without a pattern.
     orientation: [f32; 4],
+    /// 1 where a liquid covers it, else 0.
+    wet: f32,
+    unused: [f32; 3],
 }
 
 /// The planes beyond all of which everything is cut away, as the shaders read them.
@@ -157,13 +160,16 @@ fn fill(
     }
     if moved || recoloured {
         kept.colouring = Some(colouring);
-        let worlds: Vec<&World> = shown.worlds().collect();
+        let told = |half| tells_colour(&shown, half, settings.colour_by);
+        let worlds: Vec<&World> = Half::ALL.into_iter().filter_map(told).collect();
         let before = settings.legend.as_ref();
         let range = (settings.range, settings.log_colours);
         settings.legend = colour::legend(&worlds, settings.colour_by, range, before);
         for half in Half::ALL {
             let turned = shown.turned(half);
-            kept.halves[half.index()].redraw(shown.half(half), turned, &settings);
+            let told = tells_colour(&shown, half, settings.colour_by);
+            let worlds = shown.half(half).map(|world| (world, told));
+            kept.halves[half.index()].redraw(worlds, turned, &settings);
         }
     }
     let cut = CutPlanes::of(settings.cut);
@@ -177,6 +183,15 @@ fn fill(
         }
     }
     buffer.shadows_are_whole = kept.shadows_are_whole();
+}
+
+/// The state whose numbers the colours of this half show: its own, or that with which its run began,
+/// where that is known.
+fn tells_colour(shown: &ShownWorlds, half: Half, by: ColourBy) -> Option<&World> {
+    match by {
+        ColourBy::Start(_) => shown.start(half),
+        ColourBy::Species | ColourBy::Quantity(_) => shown.half(half),
+    }
 }
 
 impl GrainBuffer {
@@ -212,13 +227,19 @@ impl HalfBuffer {
 }
 
 impl ColouredHalf {
-    /// Writes places and colours, and lets the shadows follow.
-    fn redraw(&mut self, world: Option<&World>, turned: Option<&[Quat]>, settings: &ViewSettings) {
+    /// Writes places and colours of a world, with the one whose numbers those tell, and lets the
+    /// shadows follow.
+    fn redraw(
+        &mut self,
+        worlds: Option<(&World, Option<&World>)>,
+        turned: Option<&[Quat]>,
+        settings: &ViewSettings,
+    ) {
         self.drawn.clear();
         self.spheres.clear();
-        if let Some(world) = world {
+        if let Some((world, told)) = worlds {
             self.place(world, settings.grain_size);
-            self.colour(world, turned, settings);
+            self.colour(world, told, turned, settings);
         }
         self.shadows.outdate();
     }
@@ -238,7 +259,13 @@ impl ColouredHalf {
         (self.spheres).extend(places.map(|(i, x)| (x.as_vec3(), size * own(i))));
     }
 
-    fn colour(&mut self, world: &World, turned: Option<&[Quat]>, settings: &ViewSettings) {
+    fn colour(
+        &mut self,
+        world: &World,
+        told: Option<&World>,
+        turned: Option<&[Quat]>,
+        settings: &ViewSettings,
+    ) {
         let polyhedra = world.polyhedra.as_deref();
         let has_pattern = settings.shows_turning(world);
         let turn_of = |i: usize| match (polyhedra, turned) {
@@ -247,12 +274,14 @@ impl ColouredHalf {
             (Some(polyhedra), _) => Some(polyhedra.orientation[i].as_quat()),
             (None, turned) => turned.and_then(|turned| turned.get(i).copied()),
         };
+        let has_liquid = world.wetting().is_some();
+        let is_wet = |i: usize| has_liquid && world.grains.film[i] > 0.0;
         let (drawn, spheres) = (&mut self.drawn, &self.spheres);
         colour::colours(
-            world,
+            told.unwrap_or(world),
             settings.colour_by,
             settings.colour_map,
-            settings.legend.as_ref(),
+            settings.legend.as_ref().filter(|_| told.is_some()),
             |colour| {
                 let i = drawn.len();
                 drawn.push(DrawnGrain {
@@ -260,6 +289,7 @@ impl ColouredHalf {
                     radius: settings.grain_size * world.grains.radius[i] as f32,
                     colour,
                     orientation: turn_of(i).map_or([0.0; 4], Quat::to_array),
+                    wet: if is_wet(i) { 1.0 } else { 0.0 },
                     ..DrawnGrain::zeroed()
                 });
             },

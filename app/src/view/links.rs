@@ -2,8 +2,8 @@
 //! to scale.
 //!
 //! In: the world shown and what of it is to be seen. Out: one draw of round bars, and what their
-//! thickness and length mean. A bar of a force goes from centre to centre, as thick as the force is
-//! large; one that pulls has a waist. A bridge is a meniscus between the grains' surfaces that holds
+//! colour, thickness and length mean. A bar of a force goes from centre to centre, coloured and as
+//! thick as the force is large; one that pulls has a waist. A bridge is a meniscus between the grains' surfaces that holds
 //! its volume. An arrow tapers to its tip.
 
 use crate::simulation::DrawnIn;
@@ -11,7 +11,7 @@ use crate::view::colour::{linear, quantile, round_up, stride};
 use crate::view::grain_buffer::CutPlanes;
 use crate::view::quads::{self, quads};
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
-use crate::view::view_settings::{Cut, LinkScales, ViewSettings};
+use crate::view::view_settings::{ColourMap, Cut, Legend, LinkScales, ViewSettings};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::mesh::MeshVertexBufferLayoutRef;
@@ -30,7 +30,8 @@ use std::f64::consts::PI;
 
 const SHADER: Handle<Shader> = uuid_handle!("c1a9b0de-5f35-4a25-8a53-71f5a2f0cb21");
 
-/// What a bar stands for; `as usize` gives its place in the palette.
+/// What a bar stands for; `as usize` gives its place in the palette, where that is no force, whose
+/// colour tells how large it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum LinkKind {
     /// A force that pushes.
@@ -49,8 +50,7 @@ impl LinkKind {
     /// sRGB.
     pub(super) fn colour(self) -> [u8; 3] {
         match self {
-            Self::Push => [0xF0, 0x8A, 0x4B],
-            Self::Pull => [0x6F, 0xB6, 0xF2],
+            Self::Push | Self::Pull => FORCE_MAP.colour(1.0),
             Self::Liquid => [0x46, 0x9F, 0xE0],
             Self::Velocity => [0xE8, 0xEC, 0xF2],
         }
@@ -64,6 +64,11 @@ impl LinkKind {
         }
     }
 }
+
+/// The colours of forces, from none to the reference: none of the maps that grains have at first.
+pub(super) const FORCE_MAP: ColourMap = ColourMap::Plasma;
+/// Steps of these colours: what of a byte [`LinkKind`] leaves.
+const LEVELS: usize = 64;
 
 /// Radius of the bar of the reference force, and of the root of an arrow, in mean radii of grains.
 const FORCE_RADIUS: f64 = 0.3;
@@ -104,6 +109,8 @@ struct LinkMaterial {
 #[derive(Clone, Copy, ShaderType)]
 struct LinkColours {
     colours: [Vec4; LinkKind::ALL.len()],
+    /// Of forces by how large they are.
+    forces: [Vec4; LEVELS],
 }
 
 impl Material for LinkMaterial {
@@ -142,8 +149,9 @@ struct Link {
     /// The larger of the radii at both ends.
     radius: f32,
     to: [f32; 3],
-    /// Radii at both ends in 255ths of the larger one, the [`LinkKind`], and how much thinner the
-    /// middle is than straight sides would make it, in 255ths.
+    /// Radii at both ends in 255ths of the larger one; the [`LinkKind`] in two bits with the place of
+    /// its colour in six; and how much thinner the middle is than straight sides would make it, in
+    /// 255ths.
     shape: [u8; 4],
 }
 
@@ -162,6 +170,13 @@ impl Link {
     /// It with a middle of this `waist` over its radius; from there it widens as a parabola.
     fn with_waist(mut self, waist: f64) -> Self {
         self.shape[3] = (255.0 * (1.0 - waist)).round() as u8;
+        self
+    }
+
+    /// It in the colour at this `share` of the reference force.
+    fn coloured(mut self, share: f64) -> Self {
+        let level = (share.clamp(0.0, 1.0) * (LEVELS - 1) as f64).round() as u8;
+        self.shape[2] |= level << 2;
         self
     }
 
@@ -184,7 +199,10 @@ fn spawn(
     mut materials: ResMut<Assets<LinkMaterial>>,
 ) {
     let colours = LinkKind::ALL.map(|kind| Vec3::from(linear(kind.colour())).extend(kind.gloss()));
-    let palette = LinkColours { colours };
+    let level = |k: usize| FORCE_MAP.colour(k as f64 / (LEVELS - 1) as f64);
+    let gloss = LinkKind::Push.gloss();
+    let forces = std::array::from_fn(|k| Vec3::from(linear(level(k))).extend(gloss));
+    let palette = LinkColours { colours, forces };
     for half in Half::ALL {
         commands.spawn((
             DrawnIn(half),
@@ -273,6 +291,18 @@ fn room_for(count: usize, room: usize) -> usize {
     }
 }
 
+/// What the colours of forces mean, where `scales` have them.
+pub(super) fn force_legend(scales: &LinkScales) -> Option<Legend> {
+    let max = scales.force?;
+    Some(Legend {
+        title: "Force",
+        min: 0.0,
+        max,
+        unit: "N",
+        is_log: false,
+    })
+}
+
 /// What the bars that are asked for mean, the same in all `worlds`.
 fn scales(worlds: &[&World], settings: &ViewSettings) -> LinkScales {
     let before = &settings.link_scales;
@@ -337,12 +367,18 @@ impl Links {
         let [from, to] = ends(world, contact);
         let thick = FORCE_RADIUS * radius * share.min(LARGEST);
         if contact.force.dot(to - from) <= 0.0 {
-            self.push([from, to], [thick; 2], LinkKind::Push);
+            let bar = Link::new([from, to], [thick; 2], LinkKind::Push);
+            self.drawn.push(bar.coloured(share));
             return;
         }
         let (middle, thin) = (0.5 * (from + to), WAIST * thick);
-        self.push([from, middle], [thick, thin], LinkKind::Pull);
-        self.push([middle, to], [thin, thick], LinkKind::Pull);
+        for (ends, radii) in [
+            ([from, middle], [thick, thin]),
+            ([middle, to], [thin, thick]),
+        ] {
+            let bar = Link::new(ends, radii, LinkKind::Pull);
+            self.drawn.push(bar.coloured(share));
+        }
     }
 
     fn bridge(&mut self, world: &World, contact: &Contact) {
@@ -486,12 +522,13 @@ mod tests {
         let [push] = bars(-0.5 * along, &mut world)[..] else {
             panic!("a push is one bar");
         };
-        assert_eq!((push.radius, push.shape), (0.15e-3, [255, 255, 0, 0]));
+        // Half the reference force: the colour in the middle.
+        assert_eq!((push.radius, push.shape), (0.15e-3, [255, 255, 32 << 2, 0]));
         let pull = bars(0.5 * along, &mut world);
         assert_eq!(pull.len(), 2);
         // A waist of 0.35 in 255ths.
-        assert_eq!(pull[0].shape, [255, 89, LinkKind::Pull as u8, 0]);
-        assert_eq!(pull[1].shape, [89, 255, LinkKind::Pull as u8, 0]);
+        assert_eq!(pull[0].shape, [255, 89, LinkKind::Pull as u8 | 32 << 2, 0]);
+        assert_eq!(pull[1].shape, [89, 255, LinkKind::Pull as u8 | 32 << 2, 0]);
         assert!(bars(DVec3::splat(f64::NAN), &mut world).is_empty());
     }
 }

@@ -1,15 +1,15 @@
 //! What is measured, drawn where it is measured: the surface line with the protractor of its angle,
-//! the front of a heap with its height and the circle on which the column stood.
+//! the front of a heap with its height and the circle on which the column stood, how far a drum has
+//! turned.
 //!
-//! In: what is measured of the world shown, the camera. Out: egui shapes over the picture, and
-//! which of them a point lies on.
+//! In: what is measured of the world shown. Out: egui shapes over the picture, on a [`Sheet`].
 
 use crate::view::camera::OrbitCamera;
-use crate::view::ink::Ink;
-use crate::view::measured::Measured;
+use crate::view::measured::{Measured, in_words};
 use crate::view::scale::length;
+use crate::view::sheet::{Mark, MarkKind, Sheet, WIDTHS};
 use bevy::math::{DVec2, Vec3};
-use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Shape as Drawn, Stroke, vec2};
+use bevy_egui::egui::{Align2, Shape as Drawn, Stroke};
 use grainfall::measure::{DepositOutline, Measure, SurfaceLine};
 use grainfall::world::{Shape, World};
 use std::f64::consts::TAU;
@@ -18,17 +18,13 @@ use std::f64::consts::TAU;
 const ARC: f64 = 0.6;
 /// Marks on the arc: one for so many degrees, a longer one for twice as many.
 const TICK_DEGREES: usize = 5;
+/// Where the drum's mark begins and ends, in its radii, and above where of it its label stands.
+const MARK: [f64; 2] = [0.2, 1.045];
+const BESIDE_MARK: f64 = 0.7;
 /// Corners of a circle.
 const CORNERS: usize = 144;
-/// How near to a mark the pointer lies on it, in points.
-const NEAR: f32 = 9.0;
 /// Fronts closer than this to the column's radius at the start, over it, are not told from it.
 const SPREAD: f64 = 1.08;
-/// Widths of lines, in points: usually, and while their curve is under the pointer.
-const WIDTHS: [f32; 2] = [2.2, 4.5];
-/// Length of dashes and of the gaps between them, in points.
-const DASHES: [f32; 2] = [6.0, 5.0];
-
 /// A surface line and its angle as lines in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protractor {
@@ -74,58 +70,22 @@ impl Protractor {
     }
 }
 
-/// A mark in the picture: what it shows, and where it is.
-pub(super) struct Mark {
-    measure: Measure,
-    points: Vec<Pos2>,
-}
-
-/// Draws what is `measured` of `world` into `rect`; what shows the measure that is `lit` stands out.
-pub(super) fn draw(
-    ink: &Ink,
-    rect: Rect,
-    camera: &OrbitCamera,
-    (world, measured): (&World, &Measured),
-    lit: Option<Measure>,
-) -> Vec<Mark> {
-    let mut sheet = Sheet {
-        ink,
-        rect,
-        camera,
-        lit,
-        marks: Vec::new(),
-    };
+/// Draws what is `measured` of `world`.
+pub(super) fn draw(sheet: &mut Sheet, world: &World, measured: &Measured) {
     if let Some(surface) = &measured.surface {
-        let z = front_plane(world, camera);
+        let z = front_plane(world, sheet.camera);
         sheet.surface(surface, &Protractor::of(surface, z));
     }
     if let Some(deposit) = &measured.deposit {
         sheet.deposit(deposit);
     }
-    sheet.marks
-}
-
-/// What the mark at `pointer` shows, where there is one.
-pub(super) fn under(marks: &[Mark], pointer: Pos2) -> Option<Measure> {
-    let distance = |mark: &Mark| {
-        let pieces = mark.points.windows(2);
-        let away = pieces.map(|ends| distance_to_piece(pointer, [ends[0], ends[1]]));
-        away.fold(f32::INFINITY, f32::min)
-    };
-    let near = marks.iter().map(|mark| (mark.measure, distance(mark)));
-    let near = near.filter(|(_, distance)| *distance < NEAR);
-    near.min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(measure, _)| measure)
-}
-
-fn distance_to_piece(point: Pos2, [from, to]: [Pos2; 2]) -> f32 {
-    let (way, away) = (to - from, point - from);
-    let share = (away.dot(way) / way.length_sq().max(1e-9)).clamp(0.0, 1.0);
-    (away - share * way).length()
+    if let Shape::Drum { radius, .. } = world.container.shape {
+        sheet.turn(world, radius);
+    }
 }
 
 /// Where the side of the container that faces the viewer cuts the z axis [m].
-fn front_plane(world: &World, camera: &OrbitCamera) -> f64 {
+pub(super) fn front_plane(world: &World, camera: &OrbitCamera) -> f64 {
     let (low, high) = match world.container.shape {
         Shape::Drum { width, .. } => (-0.5 * width, 0.5 * width),
         Shape::Box { min, max } | Shape::Mesh { min, max } => (min.z, max.z),
@@ -135,49 +95,7 @@ fn front_plane(world: &World, camera: &OrbitCamera) -> f64 {
     if is_before { high } else { low }
 }
 
-/// The picture while it is drawn on.
-struct Sheet<'a> {
-    ink: &'a Ink<'a>,
-    rect: Rect,
-    camera: &'a OrbitCamera,
-    lit: Option<Measure>,
-    marks: Vec<Mark>,
-}
-
 impl Sheet<'_> {
-    fn place(&self, x: Vec3) -> Option<Pos2> {
-        let (place, _) = self.camera.project(x)?;
-        Some(self.rect.min + vec2(place.x, place.y))
-    }
-
-    fn places(&self, points: &[Vec3]) -> Vec<Pos2> {
-        points.iter().filter_map(|x| self.place(*x)).collect()
-    }
-
-    fn width(&self, measure: Measure) -> f32 {
-        WIDTHS[usize::from(self.lit == Some(measure))]
-    }
-
-    /// A line that shows `measure`.
-    fn line(&mut self, measure: Measure, points: &[Vec3], width: f32) {
-        let points = self.places(points);
-        (self.ink).bold_line(points.clone(), width, self.ink.measured);
-        self.marks.push(Mark { measure, points });
-    }
-
-    fn dashed(&self, points: &[Vec3], width: f32, colour: Color32) {
-        let stroke = Stroke::new(width, colour);
-        let points = self.places(points);
-        let dashes = Drawn::dashed_line(&points, stroke, DASHES[0], DASHES[1]);
-        self.ink.painter.extend(dashes);
-    }
-
-    fn label(&self, at: Vec3, (anchor, lift): (Align2, f32), text: &str, colour: Color32) {
-        let Some(place) = self.place(at) else { return };
-        let (font, lift) = (FontId::proportional(16.0), vec2(0.0, -lift));
-        (self.ink).grounded(place + lift, anchor, text, font, colour, self.ink.veil);
-    }
-
     fn surface(&mut self, surface: &SurfaceLine, protractor: &Protractor) {
         let (measure, colour) = (Measure::SurfaceAngle, self.ink.measured);
         let width = self.width(measure);
@@ -192,9 +110,27 @@ impl Sheet<'_> {
         self.label(
             over,
             (Align2::CENTER_BOTTOM, 8.0),
-            &value(measure, surface.angle),
+            &in_words(measure, surface.angle),
             colour,
         );
+    }
+
+    /// How far the drum has turned, beside the mark that turns with it.
+    fn turn(&mut self, world: &World, radius: f64) {
+        let angle = world.container.angle;
+        let z = front_plane(world, self.camera);
+        let way = DVec2::from_angle(angle);
+        let at = |share: f64| (share * radius * way).extend(z).as_vec3();
+        let points = self.places(&MARK.map(at));
+        self.marks.push(Mark::new(MarkKind::DrumMark, points));
+        let turns = angle.abs() / TAU;
+        let text = if turns < 1.0 {
+            format!("turned {:.0}°", angle.abs().to_degrees())
+        } else {
+            format!("turned {turns:.2} times")
+        };
+        let over = (Align2::CENTER_BOTTOM, 8.0);
+        self.label(at(BESIDE_MARK), over, &text, self.ink.mark);
     }
 
     fn deposit(&mut self, deposit: &DepositOutline) {
@@ -217,7 +153,7 @@ impl Sheet<'_> {
             let before = at(deposit.front, self.azimuth(0.0));
             self.label(before, (Align2::CENTER_TOP, -30.0), &text, self.ink.mark);
         }
-        let text = value(front, deposit.front);
+        let text = in_words(front, deposit.front);
         self.label(
             at(deposit.front, aside),
             (Align2::RIGHT_TOP, -8.0),
@@ -231,7 +167,7 @@ impl Sheet<'_> {
             &circle(deposit.middle, deposit.height),
             0.7 * self.width(height),
         );
-        let text = value(height, deposit.height);
+        let text = in_words(height, deposit.height);
         self.label(top, (Align2::CENTER_BOTTOM, 18.0), &text, colour);
     }
 
@@ -278,12 +214,6 @@ impl Sheet<'_> {
         let (sin, cos) = (self.camera.yaw + aside).sin_cos();
         f64::from(cos).atan2(f64::from(sin))
     }
-}
-
-/// `θ = 24.31°`.
-fn value(measure: Measure, value: f64) -> String {
-    let quantity = measure.quantity();
-    format!("{} = {}", quantity.symbol, quantity.text(value))
 }
 
 /// The point of the floor at this distance from the axis [m] and azimuth [rad].

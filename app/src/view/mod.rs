@@ -15,6 +15,7 @@
 //! | `plugin` | what is set up, and what runs in which order |
 //! | `viewport` | the pointer over the picture |
 //! | `overlay` | scale bar, clock, legend in the picture |
+//! | `bed_marks` | the flowing layer, the temperature as a veil |
 //! | `measured_marks` | lines and numbers where something is measured |
 //! | `ruler_marks` | the ruler in the picture |
 //! | `pick` | which grain a point of the picture shows |
@@ -29,7 +30,7 @@
 //! | `quads` | what spheres and links are drawn on |
 //! | `framing` | what of a scene a picture should hold |
 //! | `camera` | the orbiting eye, without Bevy's entities |
-//! | `ink` | text and lines into the picture |
+//! | `sheet`, `ink` | lines and labels in space; text and lines into the picture |
 //! | `colour` | every colour, the legend |
 //! | `shown_worlds` | the worlds in the picture |
 //! | `view_settings` | what a person chose to see |
@@ -37,6 +38,7 @@
 //! | `halves`, `scale` | the picture in parts; lengths and numbers in it |
 //! | `film`, `png` | films and pictures as files |
 
+mod bed_marks;
 mod camera;
 mod colour;
 mod container_walls;
@@ -60,6 +62,7 @@ mod rig;
 mod ruler;
 mod ruler_marks;
 mod scale;
+mod sheet;
 mod shown_worlds;
 mod spheres;
 #[cfg(test)]
@@ -71,7 +74,10 @@ mod viewport;
 mod wall_material;
 mod wall_meshes;
 
+pub use bed_marks::FlowLines;
 pub use camera::{CameraPose, OrbitCamera, apply_response};
+#[cfg(test)]
+pub(crate) use colour::contrast;
 pub(crate) use colour::{MEASURED_ON_DARK, MEASURED_ON_LIGHT, round_up};
 pub use colour::{species_colour, trail_colour};
 pub use film::{FILM_RATE, FilmKind, FilmWriter};
@@ -89,6 +95,6 @@ pub use shown_worlds::{ShownWorlds, ViewSystems};
 pub use trail::Trail;
 pub use view_settings::{
     Background, CameraRequest, ColourBy, ColourMap, ColourRange, CoordinateAxis, Cut, Legend,
-    LinkScales, ProjectionKind, SAVED_VIEWS, StandardView, ViewSettings,
+    LinkScales, ProjectionKind, SAVED_VIEWS, StandardView, StartPlace, ViewSettings,
 };
 pub use viewport::viewport_ui;

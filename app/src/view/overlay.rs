@@ -4,13 +4,14 @@
 //! In: the free part of the window, camera, settings and what is shown. Out: egui shapes. Nothing
 //! here reacts to the pointer.
 
+use crate::view::bed_marks::veil_map;
 use crate::view::camera::OrbitCamera;
 use crate::view::colour::{SELECTED, Scheme, species_colour, stride, trail_colour};
 use crate::view::framing::ring_distance;
 use crate::view::grain_buffer::CutPlanes;
 use crate::view::halves::BETWEEN;
 use crate::view::ink::{Ink, rgb, srgb};
-use crate::view::links::LinkKind;
+use crate::view::links::{FORCE_MAP, LinkKind, force_legend};
 use crate::view::scale::{Prefixed, ScaleBar, length, short_number, with_unit};
 use crate::view::view_settings::{ColourMap, CoordinateAxis, Legend, ViewSettings};
 use bevy::math::{Vec2, Vec3};
@@ -30,6 +31,8 @@ const LONGEST_BAR: f32 = 180.0;
 /// Room for the bar of colours, and for the names of species, at the right of a picture [points].
 const LEGEND_MARGIN: f32 = 128.0;
 const SPECIES_MARGIN: f32 = 96.0;
+/// Height of a bar of colours with its title and the room above it [points].
+const LEGEND_HEIGHT: f32 = 216.0;
 
 /// What the overlay of one half of the picture, or of all of it, says beside what the settings
 /// know.
@@ -43,6 +46,8 @@ pub struct Caption<'a> {
     pub title: Option<String>,
     /// Whether the moment shown is written into the picture, and how fast it passes.
     pub has_clock: bool,
+    /// Whether that, and what is measured, is to be read from the last row of a lecture hall.
+    pub is_for_afar: bool,
 }
 
 /// Where something is written: which half of the picture, and whether it has the left or the right
@@ -89,7 +94,15 @@ pub(super) fn overlay(
         {
             ring_labels(&ink, rect, camera, world, radius);
         }
-        if part.is_first && caption.has_clock {
+        if caption.is_for_afar {
+            let time = part
+                .is_first
+                .then(|| (numeral::moment(world.time()), ink.text));
+            let measured = settings.measured[part.half.index()].in_words();
+            let measured = measured.map(|words| (words, ink.measured));
+            let lines = measured.into_iter().chain(time);
+            from_afar(&ink, inner.left_top(), rect.size(), lines);
+        } else if part.is_first && caption.has_clock {
             let at = inner.left_top();
             clock(&ink, at, world.time(), caption.real_time_factor);
         }
@@ -111,11 +124,12 @@ pub(super) fn legend_margin<'a>(
     settings: &ViewSettings,
     mut worlds: impl Iterator<Item = &'a World>,
 ) -> f32 {
-    match settings.legend {
+    let has_bar = settings.legend.is_some() || settings.veil.is_some();
+    match has_bar || settings.link_scales.force.is_some() {
         _ if !settings.show_overlay => 0.0,
-        Some(_) => LEGEND_MARGIN,
-        None if worlds.any(|world| world.species.len() > 1) => SPECIES_MARGIN,
-        None => 0.0,
+        true => LEGEND_MARGIN,
+        false if worlds.any(|world| world.species.len() > 1) => SPECIES_MARGIN,
+        false => 0.0,
     }
 }
 
@@ -132,6 +146,18 @@ pub(super) fn legend(
     let ground = rgb(srgb(Scheme::of(settings.background).background));
     painter.rect_filled(margin, CornerRadius::ZERO, ground);
     let corner = rect.right_bottom() - vec2(INSET, INSET);
+    let forces = force_legend(&settings.link_scales);
+    let others = [
+        (settings.veil.as_ref(), veil_map()),
+        (forces.as_ref(), FORCE_MAP),
+    ];
+    let others = others
+        .into_iter()
+        .filter_map(|(own, map)| Some((own?, map)));
+    for (place, (own, map)) in (1_u8..).zip(others) {
+        let above = corner - vec2(0.0, f32::from(place) * LEGEND_HEIGHT);
+        colour_bar(&ink, above, own, map);
+    }
     match (&settings.legend, world) {
         (Some(legend), _) => colour_bar(&ink, corner, legend, settings.colour_map),
         (None, Some(world)) if world.species.len() > 1 => species(&ink, corner, world),
@@ -191,6 +217,23 @@ fn clock(ink: &Ink, at: Pos2, time: f64, real_time_factor: Option<f64>) {
             13.0,
             ink.faint,
         );
+    }
+}
+
+/// Writes `lines` one below the other, a twelfth of the height of a picture of this `size`: from
+/// fourteen times that height away they span twenty minutes of arc, four times what an eye just
+/// reads.
+fn from_afar(
+    ink: &Ink,
+    corner: Pos2,
+    size: bevy_egui::egui::Vec2,
+    lines: impl Iterator<Item = (String, Color32)>,
+) {
+    let font = FontId::proportional((size.y / 12.0).min(size.x / 8.0));
+    let mut at = corner;
+    for (text, colour) in lines {
+        let place = ink.grounded(at, Align2::LEFT_TOP, &text, font.clone(), colour, ink.veil);
+        at.y = place.bottom();
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::simulation::DrawnIn;
 use crate::view::camera::{HOME, OrbitCamera};
 use crate::view::colour::Scheme;
-use crate::view::framing::outline;
+use crate::view::framing::{grain_box, group_on_its_way, outline};
 use crate::view::halves::{beside, parts};
 use crate::view::shown_worlds::{ShownWorlds, layers};
 use crate::view::view_settings::{ProjectionKind, ViewSettings};
@@ -57,11 +57,35 @@ pub(super) struct Framed {
     looked_at: u64,
     /// The camera after fitting.
     camera: Option<OrbitCamera>,
+    /// The middle of the group that the picture goes with, where it was last.
+    group: Option<Vec3>,
+}
+
+impl Framed {
+    /// Goes with the grains of `world`, the middle of which was at `before`.
+    fn ride(&mut self, before: Vec3, world: &World, camera: &mut OrbitCamera) {
+        let Some((min, max)) = grain_box(world) else {
+            return;
+        };
+        let way = (0.5 * (min + max)).as_vec3() - before;
+        if way == Vec3::ZERO {
+            return;
+        }
+        self.group = Some(before + way);
+        for corner in &mut self.outline {
+            *corner += way;
+        }
+        let is_fitted = self.camera.as_ref() == Some(camera);
+        camera.focus += way;
+        if is_fitted {
+            self.camera = Some(camera.clone());
+        }
+    }
 }
 
 /// Carries out what was asked of the camera, and keeps the scene fitted until a person moves away.
 /// An unbounded scene is measured anew when a grain leaves the picture: then it fits where the grains
-/// are and are going.
+/// are and are going. Where grains are on a long way, the picture goes with them.
 pub(super) fn steer(
     mut settings: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
@@ -79,11 +103,20 @@ pub(super) fn steer(
         let of = Some((shape, walls, world.grains.len(), camera.requests()));
         if framed.of != of {
             camera.set_home(home(shape));
+            let group = group_on_its_way(world, shown.watched);
             *framed = Framed {
                 of,
                 outline: outline(world, shown.watched),
+                group: group
+                    .filter(|_| !shown.is_pair())
+                    .map(|(middle, _)| middle.as_vec3()),
                 ..Framed::default()
             };
+        }
+        if camera.fits
+            && let Some(group) = framed.group
+        {
+            framed.ride(group, world, &mut camera);
         }
         if camera.fits && framed.looked_at != world.clock.step && framed.camera.is_some() {
             framed.looked_at = world.clock.step;
@@ -268,5 +301,34 @@ mod tests {
         world.clock.step += 1000;
         world.grains.position[0].x += 0.7;
         assert!(!show(&mut app, &world));
+    }
+
+    #[test]
+    fn a_grain_that_slides_far_is_seen_large_all_the_way() {
+        let scene = Scene::open("slide-to-roll").unwrap();
+        let mut world = world::build(&scene, advise(&scene).time_step);
+        let mut app = App::new();
+        app.init_resource::<ViewSettings>()
+            .init_resource::<OrbitCamera>()
+            .init_resource::<ShownWorlds>()
+            .add_systems(Update, steer);
+        let mut places = Vec::new();
+        for _ in 0..30 {
+            let mut shown = app.world_mut().resource_mut::<ShownWorlds>();
+            shown.watched = 0.5 * scene.duration;
+            shown.show(Some(Arc::new(world.clone())));
+            app.update();
+            let camera = app.world().resource::<OrbitCamera>();
+            let grain = world.grains.position[0].as_vec3();
+            let (place, points_per_metre) = camera.project(grain).unwrap();
+            let across = 2.0 * world.grains.radius[0] as f32 * points_per_metre;
+            assert!(across > 60.0, "{across}");
+            places.push(place);
+            world.clock.step += 100;
+            world.grains.position[0].x += 0.01;
+        }
+        // A tenth of a point: single precision.
+        let moved = places.iter().map(|place| (*place - places[0]).length());
+        assert!(moved.fold(0.0, f32::max) < 0.1, "{places:?}");
     }
 }

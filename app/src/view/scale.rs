@@ -49,6 +49,9 @@ pub(super) fn length(metres: f64) -> String {
 /// Numbers below this take a smaller prefix.
 const LEAST: f64 = 0.15;
 
+/// Numbers below this are written as powers of ten.
+const SMALL: f64 = 1e-3;
+
 /// A unit whose numbers are of handy size.
 pub(super) struct Prefixed {
     pub(super) factor: f64,
@@ -59,7 +62,9 @@ impl Prefixed {
     /// For numbers up to `largest`: metres per second become mm/s, pascal kPa, joule nJ where that
     /// reads better.
     pub(super) fn new(largest: f64, unit: &str) -> Self {
-        let takes_one = !unit.is_empty() && !unit.starts_with("rad");
+        // Of a power a prefix would count as often: 1 µm²/s² is no millionth of 1 m²/s².
+        let is_power = unit.starts_with('m') && unit.contains(['²', '³']);
+        let takes_one = !unit.is_empty() && !unit.starts_with("rad") && !is_power;
         let (prefix, factor) = if takes_one {
             numeral::prefix_from(largest, LEAST)
         } else {
@@ -72,9 +77,17 @@ impl Prefixed {
     }
 }
 
-/// At most three digits, no trailing zeros.
+/// At most three digits, no trailing zeros; what is very small as a power of ten.
 pub(super) fn short_number(x: f64) -> String {
-    numeral::rounded(x, 3)
+    if x == 0.0 || x.abs() >= SMALL {
+        return numeral::rounded(x, 3);
+    }
+    let exponent = (x.abs() * (1.0 + 1e-9)).log10().floor() as i32;
+    let power = numeral::power_of_ten(exponent);
+    match numeral::rounded(x / 10_f64.powi(exponent), 2).as_str() {
+        "1" => power,
+        mantissa => format!("{mantissa}·{power}"),
+    }
 }
 
 /// A number with its unit, which takes a prefix where that reads better.
@@ -113,5 +126,10 @@ mod tests {
         assert_eq!(Prefixed::new(4e4, "Pa").unit, "kPa");
         assert_eq!(Prefixed::new(2e-8, "J").unit, "nJ");
         assert_eq!(Prefixed::new(0.0, "N").unit, "N");
+        // A millionth of a square metre is a square millimetre.
+        let squares = Prefixed::new(1e-6, "m²/s²");
+        assert_eq!((squares.factor, squares.unit.as_str()), (1.0, "m²/s²"));
+        let numbers = [1e-6, 2e-8, 0.0, 0.25].map(short_number);
+        assert_eq!(numbers, ["10⁻⁶", "2·10⁻⁸", "0", "0.25"]);
     }
 }

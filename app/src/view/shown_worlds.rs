@@ -32,6 +32,8 @@ pub struct ShownWorlds {
     halves: [Option<Arc<World>>; 2],
     /// How far their spheres have turned, where that is known.
     turned: [Option<Turned>; 2],
+    /// The states with which their runs began, where those are known.
+    starts: [Option<Arc<World>>; 2],
     /// How long grains that fly in the open are followed [s].
     pub(super) watched: f64,
 }
@@ -48,6 +50,12 @@ impl ShownWorlds {
         self.turned[Half::Left.index()] = Some(turned);
     }
 
+    /// Shows this world from now on, alone, of a run that began with `start`.
+    pub fn show_since(&mut self, start: Arc<World>, world: Arc<World>) {
+        self.replace([Some(world), None]);
+        self.starts[Half::Left.index()] = Some(start);
+    }
+
     /// Shows these two from now on, side by side.
     pub fn show_pair(&mut self, left: Arc<World>, right: Arc<World>) {
         self.replace([Some(left), Some(right)]);
@@ -57,6 +65,7 @@ impl ShownWorlds {
     fn replace(&mut self, halves: [Option<Arc<World>>; 2]) {
         let before = std::mem::replace(&mut self.halves, halves);
         self.turned = [None, None];
+        self.starts = [None, None];
         match AsyncComputeTaskPool::try_get() {
             Some(pool) => pool.spawn(async move { drop(before) }).detach(),
             None => drop(before),
@@ -76,6 +85,13 @@ impl ShownWorlds {
     /// How far the spheres of that world have turned since time zero, where that is known.
     pub fn turned(&self, half: Half) -> Option<&[Quat]> {
         self.turned[half.index()].as_deref()
+    }
+
+    /// The state with which the run of that world began; none where nothing is known of it, or where
+    /// it has another number of grains.
+    pub fn start(&self, half: Half) -> Option<&World> {
+        let (start, world) = (self.starts[half.index()].as_deref()?, self.half(half)?);
+        (start.grains.len() == world.grains.len()).then_some(start)
     }
 
     /// All worlds in the picture.
@@ -108,6 +124,8 @@ pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut
     if !Half::ALL.into_iter().all(is_shown) {
         shown.watched = WATCHED * simulation.scene().duration;
         shown.replace(newest.map(Option::<&Arc<World>>::cloned));
+        let right = (simulation.comparison()).and_then(|comparison| comparison.right.start());
+        shown.starts = [simulation.start(), right].map(Option::<&Arc<World>>::cloned);
         let right =
             (simulation.comparison()).and_then(|comparison| comparison.right.orientations());
         shown.turned = [simulation.orientations(), right].map(Option::<&Turned>::cloned);

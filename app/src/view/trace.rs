@@ -3,6 +3,8 @@
 //! In: the worlds shown, which grains are traced. Out: their trails and what is measured of the
 //! worlds, in the view's settings.
 
+use crate::simulation::Simulation;
+use crate::view::bed_marks::veil_legend;
 use crate::view::measured::Measured;
 use crate::view::shown_worlds::ShownWorlds;
 use crate::view::trail::Trail;
@@ -47,17 +49,41 @@ pub(super) fn follow(shown: Res<ShownWorlds>, mut settings: ResMut<ViewSettings>
     }
 }
 
-/// Measures the worlds that are shown, where that is to be seen.
-pub(super) fn measure(shown: Res<ShownWorlds>, mut settings: ResMut<ViewSettings>) {
-    let is_known = settings.measured != [const { Measured::NOTHING }; 2];
-    if !settings.show_measured {
-        if is_known {
-            settings.measured = [const { Measured::NOTHING }; 2];
-        }
-    } else if shown.is_changed() || !is_known {
-        let of = |half| shown.half(half).map_or(Measured::NOTHING, Measured::of);
-        settings.measured = Half::ALL.map(of);
+/// Measures the worlds that are shown, as far as that is to be seen, where they or what is to be
+/// seen have changed.
+pub(super) fn measure(
+    shown: Res<ShownWorlds>,
+    simulation: Option<Res<Simulation>>,
+    mut settings: ResMut<ViewSettings>,
+    mut was: Local<[bool; 3]>,
+) {
+    let switches = [
+        settings.show_measured,
+        settings.show_flow,
+        settings.show_temperature,
+    ];
+    if *was == switches && !shown.is_changed() {
+        return;
     }
+    *was = switches;
+    let [_, has_flow, has_temperature] = switches;
+    let of = |half: Half| {
+        let Some(world) = shown.half(half).filter(|_| switches.contains(&true)) else {
+            return Measured::NOTHING;
+        };
+        let run = simulation.as_ref().filter(|_| has_flow);
+        let flow = run.map(|simulation| simulation.half(half).mean_flow());
+        let measured = Measured::of(world).with_flow(flow);
+        if has_temperature {
+            measured.with_temperature(world)
+        } else {
+            measured
+        }
+    };
+    let measured = Half::ALL.map(of);
+    let maps = measured.iter().filter_map(|own| own.temperature.as_ref());
+    settings.veil = veil_legend(&maps.collect::<Vec<_>>(), settings.veil.as_ref());
+    settings.measured = measured;
 }
 
 #[cfg(test)]

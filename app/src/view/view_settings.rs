@@ -63,6 +63,10 @@ pub struct ViewSettings {
     pub show_overlay: bool,
     /// Whether what is measured is drawn where it is measured.
     pub show_measured: bool,
+    /// Whether the flowing layer is drawn on the bed.
+    pub show_flow: bool,
+    /// Whether the granular temperature lies over the bed as a veil.
+    pub show_temperature: bool,
     /// How depth is shown.
     pub projection: ProjectionKind,
     /// The background.
@@ -80,6 +84,8 @@ pub struct ViewSettings {
     pub smooth_edges: bool,
     /// Out: what the colours mean now. `None` while grains are coloured by species.
     pub legend: Option<Legend>,
+    /// Out: what the colours of the veil mean, where there is one.
+    pub veil: Option<Legend>,
     /// Out: what thickness and length of bars and arrows mean.
     pub link_scales: LinkScales,
     /// Out: where the traced grains have been.
@@ -116,6 +122,8 @@ impl Default for ViewSettings {
             container_opacity: 0.5,
             show_overlay: true,
             show_measured: true,
+            show_flow: false,
+            show_temperature: false,
             projection: ProjectionKind::Perspective,
             background: Background::Dark,
             camera_request: None,
@@ -124,6 +132,7 @@ impl Default for ViewSettings {
             pixels_per_point: 1.0,
             smooth_edges: true,
             legend: None,
+            veil: None,
             link_scales: LinkScales::default(),
             trails: Vec::new(),
             measured: [const { Measured::NOTHING }; 2],
@@ -156,13 +165,76 @@ pub enum ColourBy {
     Species,
     /// How much it has of this.
     Quantity(GrainQuantity),
+    /// Where it was when its run began: how grains mix.
+    Start(StartPlace),
+}
+
+/// Where a grain was when its run began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StartPlace {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+    /// Distance from the axis.
+    Distance,
+}
+
+impl StartPlace {
+    const ALL: [Self; 3] = [Self::X, Self::Y, Self::Distance];
+
+    /// What of the grains is looked at in the state with which the run began.
+    pub fn quantity(self) -> GrainQuantity {
+        match self {
+            Self::X => GrainQuantity::PositionX,
+            Self::Y => GrainQuantity::PositionY,
+            Self::Distance => GrainQuantity::AxisDistance,
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::X => "x at the start",
+            Self::Y => "y at the start",
+            Self::Distance => "Distance at the start",
+        }
+    }
+
+    fn key(self) -> &'static str {
+        match self {
+            Self::X => "start x",
+            Self::Y => "start y",
+            Self::Distance => "start distance",
+        }
+    }
 }
 
 impl ColourBy {
     /// All of them, in the order of a menu.
     pub fn all() -> impl Iterator<Item = Self> {
         let quantities = GrainQuantity::ALL.into_iter().map(Self::Quantity);
-        std::iter::once(Self::Species).chain(quantities)
+        let starts = StartPlace::ALL.into_iter().map(Self::Start);
+        std::iter::once(Self::Species)
+            .chain(quantities)
+            .chain(starts)
+    }
+
+    /// The number behind the colour; none of species.
+    pub fn quantity(self) -> Option<GrainQuantity> {
+        match self {
+            Self::Species => None,
+            Self::Quantity(quantity) => Some(quantity),
+            Self::Start(place) => Some(place.quantity()),
+        }
+    }
+
+    /// By what a file knows it; empty for species.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Species => "",
+            Self::Quantity(quantity) => quantity.quantity().key,
+            Self::Start(place) => place.key(),
+        }
     }
 
     /// What people call it.
@@ -170,23 +242,19 @@ impl ColourBy {
         match self {
             Self::Species => "Species",
             Self::Quantity(quantity) => quantity.name(),
+            Self::Start(place) => place.label(),
         }
     }
 
     /// SI unit of the number behind the colour; empty for a count and for species.
     pub fn unit(self) -> &'static str {
-        match self {
-            Self::Species => "",
-            Self::Quantity(quantity) => quantity.unit(),
-        }
+        self.quantity().map_or("", GrainQuantity::unit)
     }
 
     /// Whether grains of `world` have it.
     pub fn applies(self, world: &World) -> bool {
-        match self {
-            Self::Species => true,
-            Self::Quantity(quantity) => quantity.applies_to(world),
-        }
+        self.quantity()
+            .is_none_or(|quantity| quantity.applies_to(world))
     }
 }
 

@@ -4,6 +4,7 @@
 //! In: what the panels left free, the pointer. Out: the camera moved, a grain selected or traced,
 //! and the overlay drawn.
 
+use crate::view::bed_marks::{draw_flow, draw_veil};
 use crate::view::camera::{OrbitCamera, apply_response};
 use crate::view::halves::{beside, parts};
 use crate::view::ink::Ink;
@@ -11,6 +12,7 @@ use crate::view::measured_marks;
 use crate::view::overlay::{Caption, PicturePart, legend, legend_margin, overlay};
 use crate::view::pick::pick;
 use crate::view::ruler_marks::ruler_ui;
+use crate::view::sheet::{MarkKind, Sheet, under};
 use crate::view::view_settings::ViewSettings;
 use bevy::math::Vec2;
 use bevy_egui::egui::{Id, Response, Sense, Ui, WidgetInfo, WidgetType};
@@ -73,7 +75,7 @@ fn measured(
     settings: &mut ViewSettings,
     camera: &OrbitCamera,
 ) {
-    let Some(world) = caption.world.filter(|_| settings.show_measured) else {
+    let Some(world) = caption.world else {
         return;
     };
     let rect = response.rect;
@@ -83,20 +85,30 @@ fn measured(
         .with_clip_rect(rect);
     let ink = Ink::new(&painter, settings.background);
     let shown = &settings.measured[half.index()];
-    let marks = measured_marks::draw(&ink, rect, camera, (world, shown), settings.lit_by_plot);
+    let mut sheet = Sheet {
+        ink: &ink,
+        rect,
+        camera,
+        lit: settings.lit_by_plot,
+        marks: Vec::new(),
+    };
+    if let (Some(map), Some(legend)) = (&shown.temperature, &settings.veil) {
+        draw_veil(&sheet, world, map, legend);
+    }
+    if settings.show_flow
+        && let (Some(surface), Some(flow)) = (&shown.surface, &shown.flow)
+    {
+        draw_flow(&mut sheet, world, surface, flow);
+    }
+    if settings.show_measured {
+        measured_marks::draw(&mut sheet, world, shown);
+    }
     let pointer = response.hover_pos().filter(|_| !response.dragged());
-    let lit = pointer.and_then(|pointer| measured_marks::under(&marks, pointer));
-    if let Some(measure) = lit {
-        settings.lit_by_picture = lit;
-        let quantity = measure.quantity();
-        let text = [
-            quantity.label(),
-            quantity.explanation(),
-            quantity.equation.into(),
-        ];
-        let text = text.into_iter().filter(|line| !line.is_empty());
-        let text = text.collect::<Vec<String>>().join("\n");
-        response.clone().on_hover_text_at_pointer(text);
+    if let Some(kind) = pointer.and_then(|pointer| under(&sheet.marks, pointer)) {
+        if let MarkKind::Measure(measure) = kind {
+            settings.lit_by_picture = Some(measure);
+        }
+        response.clone().on_hover_text_at_pointer(kind.in_words());
     }
 }
 

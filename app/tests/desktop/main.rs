@@ -15,6 +15,7 @@ mod played;
 mod polyhedra;
 mod recording;
 mod rescue;
+mod seen;
 mod session;
 mod sweep;
 mod timeline;

@@ -85,11 +85,23 @@ fn caption(world: &Grains) -> Caption<'_> {
         real_time_factor: None,
         title: None,
         has_clock: true,
+        is_for_afar: false,
     }
 }
 
 /// Pictures of `world` from the front, its grains small and what is measured drawn, then not.
 fn with_and_without(world: &Arc<Grains>) -> [Photograph; 2] {
+    let set = |drawn| move |view: &mut ViewSettings| view.show_measured = drawn;
+    pictures(world, "measured", [&set(true), &set(false)]).0
+}
+
+/// Pictures of `world` from the front, its grains small, with each of these settings, and what the
+/// settings became.
+pub fn pictures(
+    world: &Arc<Grains>,
+    name: &str,
+    settings: [&dyn Fn(&mut ViewSettings); 2],
+) -> ([Photograph; 2], [ViewSettings; 2]) {
     let mut app = App::new();
     app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
         .add_plugins(EguiPlugin::default())
@@ -121,10 +133,15 @@ fn with_and_without(world: &Arc<Grains>) -> [Photograph; 2] {
     });
     (app.world_mut().resource_mut::<ShownWorlds>()).show(Some(world.clone()));
     make_ready(&mut app);
-    [true, false].map(|drawn| {
-        app.world_mut().resource_mut::<ViewSettings>().show_measured = drawn;
-        photographed(&mut app, &format!("measured-{drawn}"))
-    })
+    let mut shown = Vec::new();
+    let taken = [0, 1].map(|i| {
+        settings[i](&mut app.world_mut().resource_mut::<ViewSettings>());
+        let taken = photographed(&mut app, &format!("{name}-{i}"));
+        shown.push(app.world().resource::<ViewSettings>().clone());
+        taken
+    });
+    let second = shown.pop().unwrap();
+    (taken, [shown.pop().unwrap(), second])
 }
 
 /// Slope of the straight line through what one picture has and the other has not, near the line
@@ -186,10 +203,19 @@ fn the_line_in_the_picture_has_the_slope_that_its_number_states() {
 
 /// A window's picture alone, with the pointer at `pointer`.
 fn pointed_at(world: &Arc<Grains>, pointer: egui::Pos2) -> Harness<'static, ViewSettings> {
-    let mut settings = ViewSettings {
+    let settings = ViewSettings {
         measured: [Measured::of(world), Measured::NOTHING],
         ..ViewSettings::default()
     };
+    pointed_with(settings, world, pointer)
+}
+
+/// The same with these `settings`.
+pub fn pointed_with(
+    mut settings: ViewSettings,
+    world: &Arc<Grains>,
+    pointer: egui::Pos2,
+) -> Harness<'static, ViewSettings> {
     settings.show_overlay = false;
     let (world, mut camera) = (world.clone(), camera());
     let mut harness = Harness::builder().with_size([640.0, 360.0]).build_ui_state(
@@ -205,7 +231,7 @@ fn pointed_at(world: &Arc<Grains>, pointer: egui::Pos2) -> Harness<'static, View
 }
 
 /// From the front, as high as the drum.
-fn camera() -> OrbitCamera {
+pub fn camera() -> OrbitCamera {
     let mut camera = OrbitCamera::default();
     camera.projection = ProjectionKind::Orthographic;
     (camera.viewport, camera.height) = (Vec2::new(640.0, 360.0), 0.13);

@@ -6,13 +6,14 @@ use bevy::MinimalPlugins;
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
 use grainfall::lab::{DriverKind, Options, Status};
-use grainfall::measure::GrainQuantity;
 use grainfall::run::Command;
 use grainfall::scene::Scene;
 use grainfall::world::StateHash;
 use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{Dock, DockPlugin, FilmState, Request, Requests, ScreenshotOrders};
-use grainfall_app::view::{ColourBy, Cut, OrbitCamera, ViewSettings};
+use grainfall_app::ui::{
+    Dock, DockPlugin, FilmState, Rearrangement, Request, Requests, ScreenshotOrders,
+};
+use grainfall_app::view::{ColourBy, Cut, OrbitCamera, StartPlace, ViewSettings};
 use std::path::Path;
 
 /// The app of three grains at time zero, with everything but pictures.
@@ -237,16 +238,21 @@ fn a_session_looks_as_it_did() {
     work(&mut app);
     let chosen = |app: &App| {
         let view = app.world().resource::<ViewSettings>();
-        let marks = (view.show_axes, view.show_measured);
+        let marks = (view.show_axes, view.show_measured, view.show_temperature);
         let shown = (view.colour_by, view.cut, marks, view.selected);
-        (shown, app.world().resource::<OrbitCamera>().pose())
+        let panels = app.world().resource::<Dock>().arrangement();
+        (shown, app.world().resource::<OrbitCamera>().pose(), panels)
     };
     let first = chosen(&app);
     let mut view = app.world_mut().resource_mut::<ViewSettings>();
-    view.colour_by = ColourBy::Quantity(GrainQuantity::Spin);
+    view.colour_by = ColourBy::Start(StartPlace::Y);
     view.cut = Some(Cut::Quarter { x: 0.01, z: 0.0 });
     (view.show_axes, view.show_measured) = (true, false);
     view.selected = Some(2);
+    view.show_temperature = true;
+    let mut dock = app.world_mut().resource_mut::<Dock>();
+    dock.rearrange(Rearrangement::Across("Solver"), None);
+    dock.rearrange(Rearrangement::Close("Energy"), None);
     let mut camera = app.world_mut().resource_mut::<OrbitCamera>();
     camera.orbit(Vec2::new(40.0, 10.0));
     camera.zoom(120.0, Vec2::ZERO);
@@ -257,6 +263,7 @@ fn a_session_looks_as_it_did() {
     update_until(&mut app, |s| s.world().is_some());
     app.insert_resource(OrbitCamera::default());
     app.insert_resource(ViewSettings::default());
+    app.insert_resource(Dock::default());
     assert_eq!(chosen(&app), first);
     ask(&mut app, Request::Open(path.display().to_string()));
     update_until(&mut app, |s| {

@@ -95,6 +95,8 @@ pub struct Window {
     pub simulation: Simulation,
     pub view: ViewSettings,
     pub asked: Vec<Request>,
+    /// What was left for the picture in the last frame.
+    pub free: egui::Rect,
 }
 
 impl Window {
@@ -104,6 +106,7 @@ impl Window {
             simulation,
             view: ViewSettings::default(),
             asked: Vec::new(),
+            free: egui::Rect::NOTHING,
         };
         let mut installed = false;
         let mut harness = Harness::builder()
@@ -117,6 +120,7 @@ impl Window {
                     window
                         .dock
                         .ui(ui, simulation, &mut window.view, &mut window.asked);
+                    window.free = ui.available_rect_before_wrap();
                 },
                 window,
             );

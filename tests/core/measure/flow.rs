@@ -4,8 +4,8 @@
 use super::*;
 use glam::DVec2;
 use grainfall::measure::{
-    FlowHistory, MIDDLE_SHARE, Measure, capillary_number, drop_ratio_law, drum_torque,
-    galilei_number, mean_velocity, sample, sample_and_surface, surface_line,
+    FlowDepth, FlowHistory, MIDDLE_SHARE, MeanFlow, Measure, capillary_number, drop_ratio_law,
+    drum_torque, galilei_number, mean_velocity, sample, sample_and_surface, surface_line,
 };
 use grainfall::physics::LIQUID_CASES;
 
@@ -139,4 +139,28 @@ fn numbers_of_the_liquid_are_the_papers() {
     for (case, expected) in LIQUID_CASES.iter().zip(law) {
         assert_close(drop_ratio_law(case.viscosity), expected, 1e-3);
     }
+}
+
+#[test]
+fn the_flowing_layer_ends_where_grains_go_up_with_the_drum() {
+    let of = |velocities: &[f64]| {
+        let depths = velocities
+            .iter()
+            .enumerate()
+            .map(|(k, velocity)| FlowDepth {
+                depth: 0.002 * k as f64,
+                velocity: *velocity,
+                error: None,
+                samples: u32::from(velocity.is_finite()),
+            });
+        let depths = depths.collect();
+        MeanFlow { depths }.layer_depth()
+    };
+    // 9 mm/s down in 4 mm, 3 mm/s up in 6 mm: three quarters of the way.
+    let depth = of(&[-0.1, -0.05, -0.009, 0.003, 0.004]).unwrap();
+    assert_close(depth, 0.0055, 1e-15);
+    // A layer that flows to the other side; depths without samples are left out.
+    assert_close(of(&[0.1, f64::NAN, -0.1]).unwrap(), 0.002, 1e-15);
+    assert_eq!(of(&[-0.1, -0.05, -0.01]), None, "it flows all the way down");
+    assert_eq!(of(&[]), None);
 }

@@ -106,3 +106,24 @@ fn overlap_is_in_radii_of_the_grain_and_velocities_keep_their_sign() {
     assert_eq!(of_second(GrainQuantity::Radius), 0.002);
     assert_eq!(of_second(GrainQuantity::Number), 1.0);
 }
+
+#[test]
+fn positions_are_counted_from_the_axis_that_the_container_has() {
+    let mut world = drum(0.0605, 0.022, 0.0);
+    push(&mut world, DVec3::new(0.03, -0.04, 0.005), 0.001);
+    assert_eq!(values(GrainQuantity::PositionX, &world), [0.03]);
+    assert_eq!(values(GrainQuantity::PositionY, &world), [-0.04]);
+    let [distance] = values(GrainQuantity::AxisDistance, &world)[..] else {
+        panic!("one grain");
+    };
+    assert_close(distance, 0.05, 1e-15);
+    world.container.shape = Shape::Column {
+        radius: 0.1,
+        height: 0.1,
+    };
+    let [distance] = values(GrainQuantity::AxisDistance, &world)[..] else {
+        panic!("one grain");
+    };
+    assert_close(distance, 0.03_f64.hypot(0.005), 1e-15);
+    assert!(!GrainQuantity::AxisDistance.applies_to(&on_floor()));
+}

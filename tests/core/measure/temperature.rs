@@ -3,6 +3,7 @@
 use super::*;
 use grainfall::measure::{
     Regime, RunQuantity, Series, granular_temperatures, results, rotation_temperature, sample,
+    temperature_map,
 };
 
 /// 0.5 rpm.
@@ -181,4 +182,30 @@ fn grain_without_neighbours_does_not_count() {
     world.grains.velocity[2] = DVec3::Y * 100.0;
     // U = 0.3 m/s for the first two; the third is left out.
     assert_close(granular_temperatures(&world).laboratory, 0.03, 1e-15);
+}
+
+#[test]
+fn a_cell_has_the_temperature_of_the_grains_in_it() {
+    let (r, d, v) = (0.003, 0.0065, 0.02);
+    let mut world = drum(0.0605, 0.022, SPEED);
+    // Three in a row along the axis, in one cell of 12 mm; the same elsewhere; and two only.
+    for (x, count) in [(0.003, 3), (-0.021, 3), (0.027, 2)] {
+        for k in 0..count {
+            let z = d * (f64::from(k) - 1.0);
+            push(&mut world, DVec3::new(x, -0.03, z), r);
+        }
+    }
+    turn_rigidly(&mut world, SPEED);
+    world.grains.velocity[0] += v * DVec3::Z;
+    let map = temperature_map(&world).unwrap();
+    assert_eq!(map.spacing, 4.0 * r);
+    let [(left, still), (right, moved)] = map.cells().collect::<Vec<_>>()[..] else {
+        panic!("two cells of three grains: {map:?}");
+    };
+    assert!(left.x <= -0.021 && -0.021 < left.x + map.spacing, "{left}");
+    assert!(right.x <= 0.003 && 0.003 < right.x + map.spacing, "{right}");
+    assert!(still < 1e-30, "rotation is none: {still}");
+    // U is v of the first, −v/2 of the middle one, 0 of the third: Σ|U|²/3 = 5 v²/12, over three.
+    assert_close(moved / (5.0 * v * v / 36.0), 1.0, 1e-12);
+    assert_eq!(temperature_map(&drum(0.0605, 0.022, SPEED)), None);
 }

@@ -1,14 +1,15 @@
 //! The menu bar: files, undo and redo, the comparison of two runs, the view, help.
 //!
-//! In: the simulation, the files opened last, which sides are shown. Out: requests; an entry that
+//! In: the simulation, the files opened last, which sides and panels are shown. Out: requests; an entry that
 //! cannot act now says why. What an entry does is not decided here.
 
 use crate::simulation::Simulation;
-use crate::ui::bars::sides::{OpenSides, why_not_both};
+use crate::ui::arrangement::{OpenSides, Rearrangement, why_not_both};
 use crate::ui::bars::time_slider::why_no_undo;
 use crate::ui::panels::picture_settings::MEASURED_HINT;
 use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::SHORTCUTS;
+use crate::ui::text_size;
 use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::words::number;
 use crate::view::{Background, CameraRequest, ProjectionKind, StandardView, ViewSettings};
@@ -21,18 +22,27 @@ use grainfall::scene::built_in;
 /// Width of the View menu, in points: its longest entry fits.
 const VIEW_WIDTH: f32 = 250.0;
 
+/// What the menus say of what is shown.
+pub struct Shown<'a> {
+    /// Files opened last.
+    pub recent: &'a [String],
+    /// Which sides are shown.
+    pub sides: &'a mut OpenSides,
+    /// The panels that this simulation has, by their titles, and whether each is shown.
+    pub panels: Vec<(&'static str, bool)>,
+}
+
 /// Draws the menu bar; `rest` is drawn at its right end, from right to left.
 pub fn menu_ui(
     ui: &mut egui::Ui,
     simulation: Option<&Simulation>,
-    recent: &[String],
-    shown: &mut OpenSides,
+    shown: &mut Shown,
     view: &mut ViewSettings,
     out: &mut Vec<Request>,
     rest: impl FnOnce(&mut egui::Ui),
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_ui(ui, simulation, recent, out));
+        ui.menu_button("File", |ui| file_ui(ui, simulation, shown.recent, out));
         ui.menu_button("Edit", |ui| edit_ui(ui, simulation, out));
         ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
         ui.menu_button("Help", |ui| {
@@ -105,12 +115,7 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
     }
 }
 
-fn view_ui(
-    ui: &mut egui::Ui,
-    shown: &mut OpenSides,
-    view: &mut ViewSettings,
-    out: &mut Vec<Request>,
-) {
+fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &mut Vec<Request>) {
     ui.set_width(VIEW_WIDTH);
     item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
     item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
@@ -146,15 +151,34 @@ fn view_ui(
     ui.checkbox(&mut view.show_measured, "Show what is measured")
         .on_hover_text(MEASURED_HINT);
     ui.separator();
-    ui.checkbox(&mut shown.left, "Controls on the left");
-    ui.checkbox(&mut shown.right, "Plots and results on the right");
+    item_ui(ui, "Present", Request::Present, out);
+    item_ui(ui, "Full screen", Request::FullScreen, out);
+    ui.checkbox(&mut shown.sides.left, "Controls on the left");
+    ui.checkbox(&mut shown.sides.right, "Plots and results on the right");
     if let Some(reason) = why_not_both(ui.ctx().content_rect().width()) {
         // Menus spread their text over the whole width.
         ui.vertical(|ui| ui.weak(reason));
     }
+    ui.menu_button("Panels", |ui| panels_ui(ui, &shown.panels, out));
     ui.separator();
-    ui.weak("Text and controls");
-    egui::gui_zoom::zoom_menu_buttons(ui);
+    text_size::menu_ui(ui);
+}
+
+/// Which panels are shown; their places are changed in the menus at their titles.
+fn panels_ui(ui: &mut egui::Ui, panels: &[(&'static str, bool)], out: &mut Vec<Request>) {
+    for (title, is_shown) in panels {
+        let mut shows = *is_shown;
+        if ui.checkbox(&mut shows, *title).changed() {
+            out.push(Request::Arrange(if shows {
+                Rearrangement::Show(title)
+            } else {
+                Rearrangement::Close(title)
+            }));
+        }
+    }
+    ui.separator();
+    let at_first = Request::Arrange(Rearrangement::AsAtFirst);
+    item_ui(ui, "All as at first", at_first, out);
 }
 
 /// An entry that asks for `request`, with its shortcut.

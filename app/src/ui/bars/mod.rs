@@ -4,7 +4,6 @@
 pub mod badge;
 pub mod film_bar;
 pub mod menu;
-pub mod sides;
 pub mod time_marks;
 pub mod time_slider;
 pub mod transport;

@@ -3,7 +3,7 @@
 //! In: the view's settings. Out: the same settings changed, and requests to the camera.
 
 use crate::simulation::Simulation;
-use crate::ui::panel::Panel;
+use crate::ui::panel::{Panel, has_bed};
 use crate::ui::request::Request;
 use crate::ui::widgets::combo::combo_ui;
 use crate::ui::widgets::field::{Field, slip_ui};
@@ -24,6 +24,13 @@ const LOOK_BETWEEN: f32 = 0.4;
 /// What is drawn as measured.
 pub const MEASURED_HINT: &str = "The line whose slope is the surface angle θ; the front R and the height H of a heap. Each is \
                                  drawn where it is measured, with the number that goes into the plot.";
+
+/// What is drawn of the flowing layer.
+const FLOW_HINT: &str = "The mean velocity over the depth below the middle of the surface, and the depth at which it changes its \
+                         sign, averaged over the samples in which the bed flows";
+/// What the veil shows.
+const VEIL_HINT: &str = "Tg of the grains in each cell of the cross-section, in the drum's frame: where grains move past each \
+                         other now";
 
 /// The panel of the picture's settings.
 #[derive(Default)]
@@ -60,6 +67,12 @@ impl Panel for PictureSettings {
         ui.checkbox(&mut view.show_overlay, "Scale bar, clock and legend");
         ui.checkbox(&mut view.show_measured, "What is measured")
             .on_hover_text(MEASURED_HINT);
+        if has_bed(simulation) {
+            ui.checkbox(&mut view.show_flow, "Flowing layer")
+                .on_hover_text(FLOW_HINT);
+            ui.checkbox(&mut view.show_temperature, "Granular temperature as a veil")
+                .on_hover_text(VEIL_HINT);
+        }
         ui.checkbox(&mut view.show_axes, "Axes");
         choices_ui(
             ui,
@@ -146,8 +159,8 @@ fn percentiles_ui(ui: &mut egui::Ui, view: &mut ViewSettings, low: f64, high: f6
 fn fixed_ui(ui: &mut egui::Ui, view: &mut ViewSettings, mut low: f64, mut high: f64) {
     let speed = 0.005 * (high - low).abs().max(1e-6);
     let unit = view.colour_by.unit();
-    let least = match view.colour_by {
-        ColourBy::Quantity(quantity) if quantity.is_signed() => f64::NEG_INFINITY,
+    let least = match view.colour_by.quantity() {
+        Some(quantity) if quantity.is_signed() => f64::NEG_INFINITY,
         _ => 0.0,
     };
     ends_ui(

@@ -10,4 +10,5 @@ mod parameters;
 mod picture;
 mod plots;
 mod remembered;
+mod room;
 mod start_values;

@@ -92,6 +92,7 @@ fn what_the_colours_mean_stands_beside_the_picture() {
                     real_time_factor: None,
                     title: None,
                     has_clock: false,
+                    is_for_afar: false,
                 };
                 viewport_ui(ui, &[caption], settings, camera);
             },
@@ -128,6 +129,7 @@ fn a_click_on_the_picture_picks_the_grain_under_it() {
                 real_time_factor: None,
                 title: None,
                 has_clock: true,
+                is_for_afar: false,
             };
             viewport_ui(ui, &[caption], settings, camera);
         },

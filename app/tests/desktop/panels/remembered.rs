@@ -78,7 +78,7 @@ fn the_look_is_as_it_was_the_last_time() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("remembered.json");
     let look = Look {
-        scale: 1.25,
+        scale: Some(1.25),
         background: Background::Light,
     };
     UserMemory::at(path.clone()).keep_look(look);
@@ -95,10 +95,17 @@ fn the_look_is_as_it_was_the_last_time() {
         look,
         "nobody changed it"
     );
-    harness.ctx.set_zoom_factor(1.5);
-    harness.run_steps(2);
-    let look = Look { scale: 1.5, ..look };
-    assert_eq!(UserMemory::at(path).look(), look);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Plus);
+    harness.run_steps(3);
+    let scale = Some(1.4);
+    assert_eq!(harness.ctx.zoom_factor(), 1.4);
+    assert_eq!(UserMemory::at(path.clone()).look(), Look { scale, ..look });
+    // The window's size decides again.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Num0);
+    harness.run_steps(3);
+    let scale = None;
+    assert_eq!(harness.ctx.zoom_factor(), 1.0);
+    assert_eq!(UserMemory::at(path).look(), Look { scale, ..look });
 }
 
 #[test]
