@@ -254,7 +254,7 @@ pub fn check_digests<'a>(
         if !is_name_below(name, deep) {
             found
                 .altered
-                .push(format!("{name:?} is no name of a file below the folder"));
+                .push(format!("{name:?} is no name of a run's file"));
         } else if !path.exists() {
             found.missing.push(name.clone());
         } else if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
