@@ -9,7 +9,7 @@ use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
 use crate::ui::panels::lesson::show_look;
 use crate::ui::playback::first_speed;
-use crate::ui::request::{LessonAct, Request, Requests};
+use crate::ui::request::{LessonAct, Request, Requests, SweepAct};
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
 use crate::ui::session_look::SessionLook;
 use crate::ui::sweep_desk::SweepDesk;
@@ -147,14 +147,7 @@ fn fulfil(
             opener.view.camera_request = Some(request);
         }
         (Request::Compare(parameter), _) => dock.compare(parameter.as_ref()),
-        (Request::AskSweep(parameter), _) => dock.ask_sweep(parameter.as_ref()),
-        (Request::StartSweep(question), _) => {
-            dock.sweeps.start(*question, opener.options.0.beds.clone());
-        }
-        (Request::StopSweep, _) => dock.sweeps.stop(),
-        (Request::ChooseSweepFolder, _) => dock.path_dialog.ask(Purpose::SweepFolder),
-        (Request::SweepFolder(folder), _) => dock.sweeps.settle_in(folder),
-        (Request::OpenCase(case), _) => opener.open_case(*case, dock),
+        (Request::Sweep(act), _) => act_on_sweep(act, dock, opener),
         (Request::ShowScenes, _) => dock.show_scenes(),
         (Request::Show(sheet), _) => dock.show_sheet(sheet),
         (Request::Arrange(asked), run) => dock.rearrange(asked, run.as_deref()),
@@ -198,6 +191,18 @@ fn fulfil(
             None,
         )
         | (Request::SaveThen(_) | Request::Leave(_) | Request::Anyway(_), _) => {}
+    }
+}
+
+/// Does what is asked of parameter sweeps.
+fn act_on_sweep(act: SweepAct, dock: &mut Dock, opener: &mut Opener) {
+    match act {
+        SweepAct::Ask(parameter) => dock.ask_sweep(parameter.as_ref()),
+        SweepAct::Start(question) => dock.sweeps.start(*question, opener.options.0.beds.clone()),
+        SweepAct::Stop => dock.sweeps.stop(),
+        SweepAct::ChooseFolder => dock.path_dialog.ask(Purpose::SweepFolder),
+        SweepAct::Folder(folder) => dock.sweeps.settle_in(folder),
+        SweepAct::Open(case) => opener.open_case(*case, dock),
     }
 }
 
@@ -271,7 +276,7 @@ fn without_loss(request: Request, unsaved: bool, dock: &mut Dock) -> Option<Requ
         Request::Open(_)
         | Request::OpenLeft(_)
         | Request::Start(_)
-        | Request::OpenCase(_)
+        | Request::Sweep(SweepAct::Open(_))
         | Request::Quit
             if unsaved =>
         {

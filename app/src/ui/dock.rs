@@ -292,7 +292,9 @@ impl Dock {
 
     /// The panels as they are at first, where this person wants them.
     fn renew_panels(&mut self) {
-        self.sides = self.sides.renewed([left(&self.sweeps), right()], self.memory.panels());
+        self.sides = self
+            .sides
+            .renewed([left(&self.sweeps), right()], self.memory.panels());
         self.transport = Transport::default();
     }
 

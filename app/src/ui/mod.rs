@@ -97,7 +97,7 @@ pub use plot_export::Export;
 pub use plots::run_curves::{Curves, KeptRun};
 pub use plugin::{DockPlugin, UiPlugin};
 pub use repeat::Repeat;
-pub use request::{LessonAct, Request, Requests, Sheet};
+pub use request::{LessonAct, Request, Requests, Sheet, SweepAct};
 pub use rescue::RescuePlugin;
 pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
 pub use session_look::SessionLook;

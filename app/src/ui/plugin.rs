@@ -97,8 +97,7 @@ fn draw_panels(
     mut view: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
     mut requests: ResMut<Requests>,
-    orders: Res<ScreenshotOrders>,
-    simulation: Option<Res<Simulation>>,
+    (orders, simulation): (Res<ScreenshotOrders>, Option<Res<Simulation>>),
     window: Option<Single<&Camera, With<PrimaryEguiContext>>>,
 ) -> Result {
     let size = window.and_then(|camera| camera.logical_target_size());

@@ -21,18 +21,8 @@ pub enum Request {
     Command(Command),
     /// Show the panel where two values are compared: of this parameter, where one is given.
     Compare(Option<Parameter>),
-    /// Show the panel of parameter sweeps: of this parameter, where one is given.
-    AskSweep(Option<Parameter>),
-    /// Run the sweep that answers this, or go on with it, in the background.
-    StartSweep(Box<Question>),
-    /// Stop the sweep; what is done is kept.
-    StopSweep,
-    /// Let the person choose the folder of sweeps.
-    ChooseSweepFolder,
-    /// Put the sweeps that follow into this folder.
-    SweepFolder(PathBuf),
-    /// Start afresh with this case of a sweep in place of the present run.
-    OpenCase(Box<Case>),
+    /// Something about a parameter sweep.
+    Sweep(SweepAct),
     /// Begin a run beside the present one, with another value of a parameter.
     StartComparison(Parameter, Value),
     /// Another value of a parameter in one of two runs.
@@ -139,6 +129,23 @@ impl Request {
             _ => false,
         }
     }
+}
+
+/// What is asked of parameter sweeps.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SweepAct {
+    /// Show their panel: of this parameter, where one is given.
+    Ask(Option<Parameter>),
+    /// Run the sweep that answers this, or go on with it, in the background.
+    Start(Box<Question>),
+    /// Stop the sweep; what is done is kept.
+    Stop,
+    /// Let the person choose the folder of sweeps.
+    ChooseFolder,
+    /// Put the sweeps that follow into this folder.
+    Folder(PathBuf),
+    /// Start afresh with this case of a sweep in place of the present run.
+    Open(Box<Case>),
 }
 
 /// What is asked of the lesson that is followed.

@@ -182,7 +182,7 @@ fn grains_keep_the_colour_of_where_they_began_wherever_they_are() {
     }
     // Later they stand the other way round.
     let mut later = start.clone();
-    for position in later.grains.position.iter_mut() {
+    for position in &mut later.grains.position {
         position.x = -position.x;
     }
     let picture = photograph_of(

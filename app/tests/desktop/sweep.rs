@@ -15,7 +15,7 @@ use grainfall::runner::{Part, Verdict};
 use grainfall::scene::Scene;
 use grainfall::sweep::{self, CaseResult, Question, StatedSweep, Sweep, SweepEnding, ValueRange};
 use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{Dock, DockPlugin, Request, Requests, SweepDesk, SweepSeen};
+use grainfall_app::ui::{Dock, DockPlugin, Request, Requests, SweepAct, SweepDesk, SweepSeen};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -99,7 +99,10 @@ fn a_sweep_is_asked_for_beside_a_parameter_and_answers_as_it_does_without_a_wind
     simulation.send(set(Parameter::Gravity, 5.0));
     let mut harness = Window::of(simulation);
     press(&mut harness, "Run over values of friction glass – glass…");
-    assert_eq!(asked(&mut harness), [Request::AskSweep(Some(friction()))]);
+    assert_eq!(
+        asked(&mut harness),
+        [Request::Sweep(SweepAct::Ask(Some(friction())))]
+    );
     harness
         .state_mut()
         .dock
@@ -113,7 +116,7 @@ fn a_sweep_is_asked_for_beside_a_parameter_and_answers_as_it_does_without_a_wind
     harness.get_by_label("0.1, 0.2, 0.3");
     harness.get_by_label_contains("3 runs, ");
     press(&mut harness, "Start the sweep");
-    let wanted = Request::StartSweep(Box::new(question()));
+    let wanted = Request::Sweep(SweepAct::Start(Box::new(question())));
     assert_eq!(asked(&mut harness), [wanted], "as the scene is now");
 
     let desk = harness.state().dock.sweeps.clone();
@@ -263,14 +266,23 @@ fn desk(app: &App) -> SweepDesk {
 fn a_sweep_outlives_its_scene_and_each_of_its_runs_opens() {
     let folder = tempfile::tempdir().unwrap();
     let mut app = app();
-    ask(&mut app, Request::SweepFolder(folder.path().into()));
-    ask(&mut app, Request::StartSweep(Box::new(question())));
+    ask(
+        &mut app,
+        Request::Sweep(SweepAct::Folder(folder.path().into())),
+    );
+    ask(
+        &mut app,
+        Request::Sweep(SweepAct::Start(Box::new(question()))),
+    );
     ask(&mut app, Request::Open("bouncing-grain".into()));
     let seen = ended(&desk(&app));
     assert_eq!(seen.standing.ending, Some(Ok(SweepEnding::Done)));
     let case = seen.standing.outcomes[1].case.clone();
     let friction_there = case.values[0].parse::<f64>().unwrap();
-    ask(&mut app, Request::OpenCase(Box::new(case.clone())));
+    ask(
+        &mut app,
+        Request::Sweep(SweepAct::Open(Box::new(case.clone()))),
+    );
     update_until(&mut app, |app| {
         let simulation = app.world().resource::<Simulation>();
         *simulation.scene() == case.scene
@@ -287,12 +299,15 @@ fn a_sweep_outlives_its_scene_and_each_of_its_runs_opens() {
 fn leaving_while_a_sweep_runs_is_asked_about_and_keeps_its_checkpoints() {
     let folder = tempfile::tempdir().unwrap();
     let mut app = app();
-    ask(&mut app, Request::SweepFolder(folder.path().into()));
+    ask(
+        &mut app,
+        Request::Sweep(SweepAct::Folder(folder.path().into())),
+    );
     let long = Question {
         duration: 600.0,
         ..question()
     };
-    ask(&mut app, Request::StartSweep(Box::new(long)));
+    ask(&mut app, Request::Sweep(SweepAct::Start(Box::new(long))));
     update_until(&mut app, |app| {
         let begun = |part: &Part| matches!(part, Part::Running(_));
         desk(app)

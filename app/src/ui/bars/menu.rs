@@ -7,7 +7,7 @@ use crate::simulation::Simulation;
 use crate::ui::arrangement::{OpenSides, Rearrangement, why_not_both};
 use crate::ui::bars::time_slider::why_no_undo;
 use crate::ui::panels::picture_settings::MEASURED_HINT;
-use crate::ui::request::{Request, Sheet};
+use crate::ui::request::{Request, Sheet, SweepAct};
 use crate::ui::shortcuts::SHORTCUTS;
 use crate::ui::text_size;
 use crate::ui::widgets::button::button_unless_ui;
@@ -106,7 +106,7 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
     let why_not = simulation.is_none().then_some("There is no run to compare");
     let compare = Request::Compare(None);
     item_unless_ui(ui, "Compare two values…", compare, why_not, out);
-    let sweep = Request::AskSweep(None);
+    let sweep = Request::Sweep(SweepAct::Ask(None));
     item_unless_ui(ui, "Run over values…", sweep, why_not, out);
     let why_not = comparison.is_none().then_some("There is one run only");
     for half in Half::ALL {

@@ -7,7 +7,7 @@
 //! portal). Then the field appears, and also when the person asks again before the dialog has
 //! answered. Nothing here waits.
 
-use crate::ui::request::Request;
+use crate::ui::request::{Request, SweepAct};
 use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
@@ -148,7 +148,7 @@ impl Purpose {
             Self::Changes => Request::SaveChanges(file),
             Self::Plot => Request::SavePlot(file),
             Self::Film => Request::Screenshot(ScreenshotOrder::Film(file)),
-            Self::SweepFolder => Request::SweepFolder(file),
+            Self::SweepFolder => Request::Sweep(SweepAct::Folder(file)),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::simulation::Simulation;
 use crate::ui::detail::{Detail, is_basic};
 use crate::ui::panel::Panel;
 use crate::ui::panels::start_values::StartValues;
-use crate::ui::request::Request;
+use crate::ui::request::{Request, SweepAct};
 use crate::ui::widgets::row_button::{row_button_ui, sweep_button_ui};
 use crate::ui::widgets::touch;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
@@ -212,7 +212,7 @@ fn group_ui(
             out.extend(row.inner.map(|value| Request::Command(set(info, value))));
             let about = || Some(info.parameter.clone());
             out.extend(compared.then(|| Request::Compare(about())));
-            out.extend(swept.then(|| Request::AskSweep(about())));
+            out.extend(swept.then(|| Request::Sweep(SweepAct::Ask(about()))));
             continue;
         }
         for half in Half::ALL {

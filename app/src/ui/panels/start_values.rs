@@ -5,7 +5,7 @@
 //! a changed scene.
 
 use crate::simulation::Simulation;
-use crate::ui::request::Request;
+use crate::ui::request::{Request, SweepAct};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::row_button::sweep_button_ui;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
@@ -62,7 +62,7 @@ impl StartValues {
                 let is_seed = info.parameter == Parameter::Seed;
                 swept = !is_seed && sweep_button_ui(ui, &info.label);
             });
-            out.extend(swept.then(|| Request::AskSweep(Some(info.parameter.clone()))));
+            out.extend(swept.then(|| Request::Sweep(SweepAct::Ask(Some(info.parameter.clone())))));
             if let Some(wanted) = wanted {
                 let mut changed = draft.clone();
                 let stated = info.parameter.stated(simulation.original());

@@ -6,7 +6,7 @@
 use crate::simulation::Simulation;
 use crate::ui::panels::averages::Averages;
 use crate::ui::plots::chart_plot::{PresentRun, chart_ui};
-use crate::ui::request::Request;
+use crate::ui::request::{Request, SweepAct};
 use crate::ui::sweep_desk::SweepSeen;
 use crate::ui::widgets::combo::combo_ui;
 use bevy_egui::egui::{self, RichText};
@@ -137,7 +137,9 @@ impl Answer {
                 let button = ui.small_button("Open this run");
                 let hint = "From time zero in this window, as it was run in the sweep";
                 if button.on_hover_text(hint).clicked() {
-                    out.push(Request::OpenCase(Box::new(outcome.case.clone())));
+                    out.push(Request::Sweep(SweepAct::Open(Box::new(
+                        outcome.case.clone(),
+                    ))));
                 }
             });
         }

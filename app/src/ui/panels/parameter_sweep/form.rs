@@ -5,7 +5,7 @@
 
 use crate::simulation::Simulation;
 use crate::ui::detail::is_basic;
-use crate::ui::request::Request;
+use crate::ui::request::{Request, SweepAct};
 use crate::ui::sweep_desk::SweepDesk;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
@@ -175,7 +175,7 @@ impl Form {
                         "Choose the folder in which each sweep has a folder of its own",
                     );
                     if choose.clicked() {
-                        out.push(Request::ChooseSweepFolder);
+                        out.push(Request::Sweep(SweepAct::ChooseFolder));
                     }
                     let folder = RichText::new(told.folder.display().to_string());
                     ui.add(egui::Label::new(folder.small().weak()).truncate());
@@ -197,7 +197,9 @@ impl Form {
         let button = button_unless_ui(ui, why_not, button)
             .on_hover_text("What the folder holds of it already is kept and gone on with");
         if button.clicked() {
-            out.push(Request::StartSweep(Box::new(outlook.question.clone())));
+            out.push(Request::Sweep(SweepAct::Start(Box::new(
+                outlook.question.clone(),
+            ))));
         }
     }
 }

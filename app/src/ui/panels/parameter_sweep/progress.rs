@@ -2,7 +2,7 @@
 //!
 //! In: the sweep as it stands. Out: drawings, and requests to stop it or to go on.
 
-use crate::ui::request::Request;
+use crate::ui::request::{Request, SweepAct};
 use crate::ui::sweep_desk::SweepSeen;
 use crate::ui::theme::Palette;
 use bevy_egui::egui::{self, RichText, Sense, WidgetInfo, WidgetType};
@@ -60,7 +60,7 @@ fn running_ui(ui: &mut egui::Ui, seen: &SweepSeen, out: &mut Vec<Request>) {
         let button =
             button.on_hover_text("What is done is kept; the same question goes on from there");
         if button.clicked() {
-            out.push(Request::StopSweep);
+            out.push(Request::Sweep(SweepAct::Stop));
         }
         if seen.is_stopping {
             ui.weak("stopping: what is computed is being written");
@@ -117,7 +117,9 @@ fn parts_in_words(parts: &[Part]) -> String {
 fn go_on_ui(ui: &mut egui::Ui, seen: &SweepSeen, out: &mut Vec<Request>) {
     let button = ui.button("Go on with the sweep");
     if button.on_hover_text("From what its folder holds").clicked() {
-        out.push(Request::StartSweep(Box::new(seen.question.clone())));
+        out.push(Request::Sweep(SweepAct::Start(Box::new(
+            seen.question.clone(),
+        ))));
     }
 }
 
