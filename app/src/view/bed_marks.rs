@@ -3,7 +3,6 @@
 //!
 //! In: the mean flow and the temperatures of the world shown. Out: egui shapes over the picture.
 
-use crate::view::colour::round_up;
 use crate::view::measured_marks::front_plane;
 use crate::view::scale::length;
 use crate::view::sheet::{Mark, MarkKind, Sheet, WIDTHS};
@@ -22,11 +21,6 @@ const ARROW_STEP: usize = 4;
 /// Opacity of what fills the layer, and of the veil.
 const FILLED: f32 = 0.16;
 const VEILED: f32 = 0.62;
-/// Largest over smallest temperature of the veil's colours.
-const DECADES: f64 = 1e4;
-/// Least temperature at the end of the veil's colours [m²/s²]: below, a bed is rigid, and noise is not
-/// shown as heat.
-const COOL: f64 = 1e-7;
 /// The veil's colours: none of grains.
 const MAP: ColourMap = ColourMap::Magma;
 
@@ -96,28 +90,6 @@ pub(super) fn draw_flow(sheet: &mut Sheet, world: &World, surface: &SurfaceLine,
     // At the lower end, where the bed has room below it.
     let end = if left.y < right.y { left } else { right };
     sheet.label(end, (Align2::CENTER_TOP, -6.0), &text, ink.measured);
-}
-
-/// What the colours of the veil mean, the same over all `maps`; it stays as it was `before` while it
-/// suits. None of no temperature above zero.
-pub(super) fn veil_legend(maps: &[&TemperatureMap], before: Option<&Legend>) -> Option<Legend> {
-    let cells = maps.iter().flat_map(|map| map.cells());
-    let hottest = cells.fold(0.0_f64, |most, (_, temperature)| most.max(temperature));
-    if hottest <= 0.0 {
-        return None;
-    }
-    let suits = |before: &&Legend| (0.2 * before.max..=before.max).contains(&hottest);
-    let hottest = hottest.max(COOL);
-    let max = before
-        .filter(suits)
-        .map_or_else(|| round_up(hottest), |before| before.max);
-    Some(Legend {
-        title: "Tg",
-        min: max / DECADES,
-        max,
-        unit: "m²/s²",
-        is_log: true,
-    })
 }
 
 /// The colours of the veil.

@@ -5,7 +5,7 @@
 
 use crate::view::view_settings::{Background, ColourBy, ColourMap, ColourRange, Legend};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
-use grainfall::measure::GrainQuantity;
+use grainfall::measure::{GrainQuantity, TemperatureMap};
 use grainfall::world::World;
 
 /// The colours of species in order of their index, readable side by side on a projector and by
@@ -123,6 +123,31 @@ pub fn legend(
 
 /// Largest over smallest number of an automatic range whose steps are factors.
 const DECADES: f64 = 1e4;
+/// Least temperature at the end of the veil's colours [m²/s²]: below, a bed is rigid, and noise is not
+/// shown as heat.
+const COOL: f64 = 1e-7;
+
+/// What the colours of the veil mean, the same over all `maps`; it stays as it was `before` while it
+/// suits. None of no temperature above zero.
+pub(super) fn veil_legend(maps: &[&TemperatureMap], before: Option<&Legend>) -> Option<Legend> {
+    let cells = maps.iter().flat_map(|map| map.cells());
+    let hottest = cells.fold(0.0_f64, |most, (_, temperature)| most.max(temperature));
+    if hottest <= 0.0 {
+        return None;
+    }
+    let suits = |before: &&Legend| (0.2 * before.max..=before.max).contains(&hottest);
+    let hottest = hottest.max(COOL);
+    let max = before
+        .filter(suits)
+        .map_or_else(|| round_up(hottest), |before| before.max);
+    Some(Legend {
+        title: "Tg",
+        min: max / DECADES,
+        max,
+        unit: "m²/s²",
+        is_log: true,
+    })
+}
 
 /// Calls `paint` with the linear colour of each grain in turn, whose numbers are those of `world`.
 pub fn colours(

@@ -29,8 +29,9 @@
 //! | `occlusion` | the soft shadow in the gaps between grains |
 //! | `quads` | what spheres and links are drawn on |
 //! | `framing` | what of a scene a picture should hold |
+//! | `sheet` | lines and labels in space |
 //! | `camera` | the orbiting eye, without Bevy's entities |
-//! | `sheet`, `ink` | lines and labels in space; text and lines into the picture |
+//! | `ink` | text and lines into the picture |
 //! | `colour` | every colour, the legend |
 //! | `shown_worlds` | the worlds in the picture |
 //! | `view_settings` | what a person chose to see |

@@ -4,7 +4,7 @@
 //! worlds, in the view's settings.
 
 use crate::simulation::Simulation;
-use crate::view::bed_marks::veil_legend;
+use crate::view::colour::veil_legend;
 use crate::view::measured::Measured;
 use crate::view::shown_worlds::ShownWorlds;
 use crate::view::trail::Trail;

@@ -142,8 +142,14 @@ fn the_veil_has_the_colour_of_each_cell_s_temperature() {
     assert_eq!(last.veil, None);
     let hottest = map.cells().fold(0.0_f64, |most, (_, t)| most.max(t));
     assert!(hottest > NON_RIGID_TEMPERATURE && legend.max >= hottest);
+    let mut looked_at = 0;
     for (corner, temperature) in map.cells() {
         let middle = (corner + 0.5 * map.spacing).extend(0.011).as_vec3();
+        // The veil ends where the drum does.
+        if middle.truncate().length() > 0.06 {
+            continue;
+        }
+        looked_at += 1;
         let (at, _) = with.camera.project(middle).unwrap();
         let colour = ColourMap::Magma.colour(legend.share(temperature));
         let [before, after] = [&without, &with].map(|picture| apart(picture.at(at), colour));
@@ -153,7 +159,8 @@ fn the_veil_has_the_colour_of_each_cell_s_temperature() {
             "{temperature}: {before} {after} {colour:?}"
         );
     }
-    // The hottest cell is light, and beside the bed is no veil.
+    assert!(looked_at > 10, "{looked_at}");
+    // Beside the bed is no veil.
     let beside = Vec2::new(20.0, 20.0);
     assert_eq!(with.at(beside), without.at(beside));
 }

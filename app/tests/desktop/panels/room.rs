@@ -83,6 +83,7 @@ fn the_picture_has_its_share_of_every_window_and_nothing_sticks_out() {
 fn text_is_twice_as_large_in_a_window_of_four_times_the_pixels() {
     let mut harness = Window::of(prepared());
     for (size, scale) in [([1440.0, 900.0], 1.0), ([3840.0, 2160.0], 2.0)] {
+        harness.set_size(Vec2::from(size));
         harness.state_mut().dock.window = Some(Vec2::from(size));
         harness.run_steps(3);
         assert_eq!(harness.ctx.zoom_factor(), scale);
