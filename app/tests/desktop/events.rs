@@ -202,7 +202,7 @@ fn the_histogram_and_the_curve_of_a_grain_show_its_speed() {
         (speed / (9.81 * world.time()) - 1.0).abs() < 1e-9,
         "{speed}"
     );
-    let shown = format!("{:.1}", 1e3 * speed);
+    let shown = format!("{:.2}", 1e3 * speed);
     let mut harness = Window::of(simulation);
     harness.state_mut().show_panel("Grains");
     harness.state_mut().view.selected = Some(1);
