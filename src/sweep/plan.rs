@@ -145,7 +145,10 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
         .partition(|setting| is_for_wet_cases(setting));
     let mut dry_or_wet = scene.clone();
     apply_settings(&mut dry_or_wet, &of_all)?;
-    let stays_dry = dry_or_wet.liquid.is_none() && !of_wet.iter().any(|setting| pours(setting));
+    // Where no liquid is asked for by its case a volume pours one; a case that is dry stays so.
+    let is_chosen = |setting: &&String| key_of(setting) == Parameter::Liquid.row().key;
+    let is_poured = of_wet.iter().any(|setting| pours(setting)) && !settings.iter().any(is_chosen);
+    let stays_dry = dry_or_wet.liquid.is_none() && !is_poured;
     let skipped = if stays_dry { of_wet } else { Vec::new() };
     let settings: Vec<&String> = settings
         .into_iter()
