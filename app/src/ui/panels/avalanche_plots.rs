@@ -211,12 +211,10 @@ impl AvalanchePlots {
     fn choice_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
             self.window.choice_ui(ui);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.checkbox(&mut self.logarithmic, "log")
-                    .on_hover_text("Powers of ten for the granular temperature");
-                ui.checkbox(&mut self.corotating, "seen from the drum")
-                    .on_hover_text(FRAMES);
-            });
+            ui.checkbox(&mut self.corotating, "seen from the drum")
+                .on_hover_text(FRAMES);
+            ui.checkbox(&mut self.logarithmic, "log")
+                .on_hover_text("Powers of ten for the granular temperature");
         });
     }
 }
