@@ -56,13 +56,13 @@ impl Transport {
             play_ui(ui, simulation, !self.was_played, out);
             buttons_ui(ui, simulation, out);
             speed_ui(ui, simulation.speed(), out);
-            repeat_ui(ui, simulation, &self.repeat, out);
             if !self.was_played {
                 scenes_ui(ui, out);
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 self.shows_time = clock_ui(ui, simulation, out);
                 warnings_ui(ui, simulation.warnings());
+                repeat_ui(ui, simulation, &self.repeat, out);
             });
         });
         let can_undo = simulation.undo_and_redo()[0].is_some();
