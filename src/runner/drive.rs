@@ -369,9 +369,6 @@ fn find(
             if let Some(missing) = kept.written.missing(folder.path()) {
                 return refuse(format!("its file {missing} is missing"));
             }
-            if let Err(reason) = kept.checkpoint.check(&job.scene) {
-                return refuse(format!("its checkpoint cannot be used: {reason}"));
-            }
             let world = kept.checkpoint.world();
             if world.time() > job.scene.duration + world.clock.time_step {
                 return refuse(format!(

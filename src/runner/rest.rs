@@ -1,8 +1,8 @@
 //! A run that ends when its column is at rest.
 //!
 //! In: the samples so far. Out: whether the run ends here. It is asked at the end of each output
-//! interval, whether states are written or not, and no more depends on than the samples: a run that
-//! was stopped and goes on ends at the same step. Such a run forgets none of them.
+//! interval, whether states are written or not, and depends on the samples and the tube alone: a run
+//! that was stopped and goes on ends at the same step. Such a run forgets no sample.
 
 use super::Job;
 use crate::measure::{Collapse, Series};
