@@ -11,9 +11,9 @@ use grainfall::lesson::Lesson;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
 use grainfall::recording::Recording;
-use grainfall::run::{Estimate, ScriptedCommand};
 #[cfg(feature = "desktop")]
-use grainfall::run::{OPENING_SCENE, Session, opening};
+use grainfall::run::opening;
+use grainfall::run::{Estimate, ScriptedCommand};
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
 use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
@@ -50,18 +50,16 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         return carry_out_task(task, &allowed);
     }
     let what = arguments.what;
-    #[cfg(feature = "desktop")]
-    if let Some(session) = opening_session(&what, &arguments.picture, arguments.no_render) {
-        let options = window_options(&what, Vec::new());
-        let name = OPENING_SCENE.to_owned();
-        return open_window(
-            name,
-            Opened::Shipped(session.into()),
-            options,
-            arguments.picture,
-        );
-    }
     let name = what.scene.clone().unwrap_or_else(first_scene);
+    #[cfg(feature = "desktop")]
+    if opens_on_its_way(&what, &arguments.picture, arguments.no_render)
+        && !Kept::is_at(&name)
+        && let Some(session) = opening(&name)
+    {
+        let options = window_options(&what, Vec::new());
+        let shipped = Opened::Shipped(session.into());
+        return open_window(name, shipped, options, arguments.picture);
+    }
     #[cfg(feature = "desktop")]
     if Kept::is_at(&name) && !arguments.no_render {
         let opened = unchanged(&name, &what)?;
@@ -155,7 +153,7 @@ fn film_folder(name: &str, what: &What, film: &FilmJob, report: Report) -> Resul
 fn carry_out_task(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
     match task {
         Task::Bed { scene, out } => headless::write_bed(&scene, allowed, &out),
-        Task::Opening { out } => headless::write_opening(&out),
+        Task::Opening { out } => headless::write_openings(&out),
         Task::Verify { file, threads } => {
             let threads = checked_threads(threads, Report::Text)?;
             headless::confirm(&file, threads, allowed, &*interruption()?)
@@ -263,21 +261,13 @@ fn changed_scene(name: &str, what: &What) -> Result<(Scene, Vec<ScriptedCommand>
     Ok((scene, script))
 }
 
-/// The run that the window opens with where nothing is asked for but a window.
+/// Whether a scene opens at the moment that is shipped, if one is: in a window, and where nothing is
+/// asked of its run.
 #[cfg(feature = "desktop")]
-fn opening_session(what: &What, picture: &PictureArguments, no_render: bool) -> Option<Session> {
-    let values = [
-        &what.scene,
-        &what.duration,
-        &what.output_interval,
-        &what.sample_interval,
-        &what.time_step,
-        &what.seed,
-        &picture.compare,
-    ];
-    let asks = values.into_iter().any(Option::is_some) || !what.set.is_empty();
-    let takes_files = what.commands.is_some() || picture.screenshot.is_some();
-    (!asks && !takes_files && !no_render).then(opening)?
+fn opens_on_its_way(what: &What, picture: &PictureArguments, no_render: bool) -> bool {
+    let is_asked = is_changed(what) || what.sample_interval.is_some();
+    let takes_pictures = picture.compare.is_some() || picture.screenshot.is_some();
+    !is_asked && !takes_pictures && !no_render
 }
 
 /// The session or the recording called `name`, which opens as it was.

@@ -8,7 +8,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `opening` | the run that the window opens with |
+//! | `opening` | the moments at which scenes open in a window |
 //! | `session` | all branches of a run in one file |
 //! | `session_tail` | what later layouts of that file added |
 //! | `timeline` | all branches of a run: seek, branch, undo |
@@ -93,7 +93,7 @@ pub use history::{History, Moment};
 pub use measured::{Measured, Stored};
 pub use meetings::{MOST_MEETINGS, Meeting, MeetingKind};
 pub use method::method;
-pub use opening::{OPENING_SCENE, OpeningError, make_opening, opening};
+pub use opening::{Opening, OpeningError, opening, openings};
 pub use orientations::Turned;
 pub use past::Past;
 pub use pieces::Pieces;

@@ -4,8 +4,8 @@
 //! In: a timeline. Out: a file, and from it the same timeline. Its first line names program,
 //! layout, version and the checksum of the rest; its second line is the [`RunRecord`] of the moment
 //! shown, as JSON that people and `grainfall verify` read; then come states and samples, the grains
-//! that the scene takes from a file, and how the window looked. A file of another version is refused:
-//! another version may compute other bits.
+//! that the scene takes from a file, and how the window looked, packed in those that are shipped. A
+//! file of another version is refused: another version may compute other bits.
 
 use super::archive::Archive;
 use super::record::{RunRecord, VERSION};
@@ -15,15 +15,24 @@ use super::timeline::Timeline;
 use crate::files::{open_regular, read_whole, write_whole};
 use crate::geometry::Rounded;
 use crate::scene::{HeldCells, Scene, StoredCells, within_folders};
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::io::{self, Read};
+use std::borrow::Cow;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What the first line begins with.
 const MARK: &str = "grainfall session";
 /// Largest file that is read [bytes]: a day of a drum with all its branches has less.
 const LARGEST_FILE: u64 = 4 << 30;
+/// What follows the layout of a file whose states and samples are packed.
+const PACKED: &str = "-packed";
+/// Most that they are unpacked to [bytes]: only what is shipped is packed, and a small file must not
+/// fill the memory.
+const LARGEST_UNPACKED: u64 = 64 << 20;
 
 /// Extension of a session's file.
 pub const SESSION_EXTENSION: &str = "grainfall";
@@ -153,9 +162,31 @@ impl Session {
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
+        self.write_as(path, LAYOUT, |rest| Ok(rest.into()))
+    }
+
+    /// The same with states and samples packed: in two thirds of the room, and slowly.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write_packed(&self, path: &Path) -> io::Result<()> {
+        self.write_as(path, &format!("{LAYOUT}{PACKED}"), |rest| {
+            let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
+            packed.write_all(rest)?;
+            packed.finish().map(Cow::Owned)
+        })
+    }
+
+    /// Writes it in this `layout`, where what follows the second line is turned by `laid`.
+    fn write_as(
+        &self,
+        path: &Path,
+        layout: &str,
+        laid: impl FnOnce(&[u8]) -> io::Result<Cow<[u8]>>,
+    ) -> io::Result<()> {
         self.record.check_fingerprint()?;
-        let mut body = serde_json::to_vec(&self.record)?;
-        body.push(b'\n');
+        let mut second = serde_json::to_vec(&self.record)?;
+        second.push(b'\n');
         let rest = Rest {
             archive: &self.archive,
             cells: self.record.scene.stored_cells().map(StoredCells::grains),
@@ -166,12 +197,15 @@ impl Session {
                 .transpose()?,
         };
         let tail = Tail::of(&self.archive, &self.look);
-        let body = postcard::to_extend(&rest, body).map_err(io::Error::other)?;
-        let body = postcard::to_extend(&tail, body).map_err(io::Error::other)?;
+        let rest = postcard::to_stdvec(&rest).map_err(io::Error::other)?;
+        let rest = postcard::to_extend(&tail, rest).map_err(io::Error::other)?;
+        let rest = laid(&rest)?;
         write_whole(path, |file| {
-            let checksum = blake3::hash(&body).to_hex();
-            writeln!(file, "{MARK} {LAYOUT} {VERSION} {checksum}")?;
-            file.write_all(&body)
+            let mut hasher = blake3::Hasher::new();
+            let checksum = hasher.update(&second).update(&rest).finalize().to_hex();
+            writeln!(file, "{MARK} {layout} {VERSION} {checksum}")?;
+            file.write_all(&second)?;
+            file.write_all(&rest)
         })
     }
 
@@ -202,6 +236,10 @@ impl Session {
         else {
             return Err(Reason::Damaged("its first line is not whole"));
         };
+        let (layout, is_packed) = match layout.strip_suffix(PACKED) {
+            Some(layout) => (layout, true),
+            None => (layout, false),
+        };
         if !is_known(layout) || version != VERSION {
             let build = if version == VERSION {
                 " of another build"
@@ -217,9 +255,15 @@ impl Session {
         }
         let foreign = "its contents are those of another build of this version";
         let (second, rest) = first_line(body).ok_or(Reason::Damaged(foreign))?;
+        let rest = if is_packed {
+            unpacked(rest)?.into()
+        } else {
+            Cow::Borrowed(rest)
+        };
         // A value that no parameter takes stands in the list of changes too, where it has a name.
-        let (rest, tail): (Rest<Archive, Vec<Rounded>>, &[u8]) = postcard::take_from_bytes(rest)
-            .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
+        let (rest, tail): (Rest<Archive, Vec<Rounded>>, &[u8]) =
+            postcard::take_from_bytes(&rest)
+                .map_err(|_| unsuited(second).unwrap_or(Reason::Damaged(foreign)))?;
         let tail = Tail::read(tail, layout).map_err(|_| Reason::Damaged(foreign))?;
         let _held = rest.cells.and_then(HeldCells::hold);
         // The grains of its scene are in it: no other file is opened.
@@ -247,6 +291,16 @@ impl Session {
             original,
             look,
         })
+    }
+}
+
+/// What the bytes `packed` in a file are.
+fn unpacked(packed: &[u8]) -> Result<Vec<u8>, Reason> {
+    let mut bytes = Vec::new();
+    let mut unpacking = ZlibDecoder::new(packed).take(LARGEST_UNPACKED);
+    match unpacking.read_to_end(&mut bytes) {
+        Ok(_) if unpacking.limit() > 0 => Ok(bytes),
+        _ => Err(Reason::Damaged("its states cannot be unpacked")),
     }
 }
 

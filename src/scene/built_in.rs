@@ -1,5 +1,7 @@
 //! The scenes that come with the program, so that it can open them wherever it runs.
 
+use std::path::Path;
+
 /// A scene that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BuiltIn {
@@ -45,4 +47,14 @@ const SCENES: &[BuiltIn] = built_in![
 /// Every scene that comes with the program; the first is the one to open when none is asked for.
 pub fn built_in() -> &'static [BuiltIn] {
     SCENES
+}
+
+/// The scene that comes with the program and that a person calls `name`, by its name or its path;
+/// none where there is a file of that name. A folder of a scene's name is where its results are.
+pub fn built_in_called(name: &str) -> Option<&'static BuiltIn> {
+    let wanted = name.strip_suffix(".ron").unwrap_or(name);
+    let mut known = built_in().iter();
+    known
+        .find(|scene| scene.name == wanted || scene.path == name)
+        .filter(|_| !Path::new(name).is_file())
 }

@@ -24,7 +24,7 @@ mod stored_cells;
 mod syntax;
 mod text;
 
-pub use built_in::{BuiltIn, built_in};
+pub use built_in::{BuiltIn, built_in, built_in_called};
 pub use container::{SceneContainer, ScenePlane, SceneTube};
 pub use description::{SAMPLE_INTERVAL, Scene, TimeStep, Until};
 pub(crate) use error::{Problem, one_of, suggestion};

@@ -1,6 +1,6 @@
 //! From a file, a built-in scene or a text to a checked [`Scene`].
 
-use super::built_in::built_in;
+use super::built_in::{built_in, built_in_called};
 use super::description::Scene;
 use super::error::{self, SceneError};
 use super::file::{KIND, SceneFile};
@@ -58,15 +58,13 @@ impl Scene {
     pub fn open(name: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = name.as_ref();
         let name = path.display().to_string();
-        let wanted = name.strip_suffix(".ron").unwrap_or(&name);
-        let mut known = built_in().iter();
-        let known = known.find(|scene| scene.name == wanted || scene.path == name);
-        // A folder of a scene's name is where its results are, not the scene.
-        match known {
-            Some(scene) if !path.is_file() => return Self::parse(scene.path, scene.text),
-            _ if path.exists() => return Self::load(path),
-            _ => {}
+        if let Some(scene) = built_in_called(&name) {
+            return Self::parse(scene.path, scene.text);
         }
+        if path.exists() {
+            return Self::load(path);
+        }
+        let wanted = name.strip_suffix(".ron").unwrap_or(&name);
         let names: Vec<&str> = built_in().iter().map(|scene| scene.name).collect();
         Err(SceneError::unreadable(
             &name,

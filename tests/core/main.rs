@@ -15,6 +15,7 @@ mod lesson;
 mod measure;
 #[path = "../common/meshes.rs"]
 mod meshes;
+mod opening;
 mod packages;
 mod paper;
 mod parameters;

@@ -3,14 +3,15 @@
 
 use crate::runs::{bits, prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use grainfall::lab::{DriverKind, Lab, LabCommand, Options, Status};
-use grainfall::measure::Measure;
 use grainfall::run::{BedStore, Command, Parameter, RunRecord, Session, Timeline, VERSION};
-use grainfall::run::{OPENING_SCENE, method, opening};
 use grainfall::runner::Verdict;
 use grainfall::scene::{Scene, StoredCells};
 use grainfall::world::Packing;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::TempDir;
@@ -362,30 +363,30 @@ fn run_that_is_still_prepared_has_nothing_to_save_yet_and_waits() {
     );
 }
 
-/// The bits of the whole way are confirmed by `grainfall verify assets/opening.grainfall`.
 #[test]
-fn the_run_that_the_window_opens_with_is_of_this_program_and_began_at_time_zero() {
-    let make = "`grainfall opening --out assets/opening.grainfall` makes it anew";
-    let session = opening().expect(make);
-    assert_eq!(session.look(), format!("method {}", method()), "{make}");
-    let record = session.record().clone();
-    assert_eq!(record.scene, Scene::open(OPENING_SCENE).unwrap());
-    assert!(record.commands.is_empty() && (record.time - 9.0).abs() < 1e-4);
-    let timeline = session.into_timeline(1, 0);
-    let run = timeline.run();
-    // Its samples are those of the whole run, and its spheres have turned since time zero.
-    assert_eq!(run.series().time()[0], 0.0);
-    assert_eq!(run.bed().clock.step, 0);
-    let turned = run.orientations().expect("they are stored with it");
-    let angle = turned.iter().map(|turn| 2.0 * turn.w.abs().min(1.0).acos());
-    let mean = f64::from(angle.sum::<f32>()) / turned.len() as f64;
-    // As the bed has turned with the drum by 27°, grains that rolled by more.
-    assert!((0.4..1.2).contains(&mean), "{mean}");
-    // A second before the first avalanche the bed is steep and has not slid yet.
-    let angles = run.series().column(Measure::SurfaceAngle);
-    let [steepest, last] = [
-        angles.iter().copied().fold(0.0, f64::max),
-        *angles.last().unwrap(),
-    ];
-    assert!(last.to_degrees() > 25.0 && last > steepest - 0.01);
+fn packed_session_reopens_to_the_same_bits_and_a_bomb_is_refused() {
+    let (_folder, path) = place();
+    let timeline = explored(&column_lab());
+    let session = Session::of("packed", &timeline).looking("a look".into());
+    session.write(&path).unwrap();
+    let plain = fs::metadata(&path).unwrap().len();
+    session.write_packed(&path).unwrap();
+    assert!(fs::metadata(&path).unwrap().len() < plain);
+    assert_eq!(Session::read(&path).unwrap().look(), "a look");
+    let same = reopened(&path, PLENTY);
+    assert_eq!(hash(&same), hash(&timeline));
+    assert_eq!(bits(&same.branch().series), bits(&timeline.branch().series));
+
+    // States that would fill the memory, in a file whose checksum is right.
+    let bytes = fs::read(&path).unwrap();
+    let lines: Vec<&[u8]> = bytes.splitn(3, |byte| *byte == b'\n').collect();
+    let mut bomb = ZlibEncoder::new(Vec::new(), Compression::best());
+    bomb.write_all(&vec![0; 65 << 20]).unwrap();
+    let body = [lines[1], b"\n", &bomb.finish().unwrap()].concat();
+    let first = String::from_utf8(lines[0].to_vec()).unwrap();
+    let known = first.rsplit_once(' ').unwrap().0;
+    let first = format!("{known} {}\n", blake3::hash(&body).to_hex());
+    fs::write(&path, [first.as_bytes(), &body].concat()).unwrap();
+    let refusal = Session::read(&path).err().unwrap().to_string();
+    assert!(refusal.contains("cannot be unpacked"), "{refusal}");
 }

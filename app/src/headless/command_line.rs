@@ -234,11 +234,11 @@ pub enum Task {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Compute the run that the window opens with and write it to a file
+    /// Compute the moments at which scenes open in a window, each into a file of its own
     #[command(hide = true)]
     Opening {
-        /// The file
-        #[arg(long, value_name = "FILE")]
+        /// The folder; what is in it and is what this program makes stays
+        #[arg(long, value_name = "FOLDER")]
         out: PathBuf,
     },
 }

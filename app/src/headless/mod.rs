@@ -26,7 +26,7 @@ pub use export::hand_over;
 pub use import::ImportTask;
 pub use interruption::{check_threads, heard, interruption};
 pub use named_scene::{named_scene, short_name};
-pub use pack::{write_bed, write_opening, write_packing};
+pub use pack::{write_bed, write_openings, write_packing};
 pub use paper_task::PaperTask;
 pub use program::{RunInApp, finish, run};
 pub use progress::Progress;

@@ -22,7 +22,7 @@ use grainfall::engines::sound_scene_from;
 use grainfall::lab::{Half, Kept, LabCommand, Options, SavedFile};
 use grainfall::lesson::Lesson;
 use grainfall::parameters::{Parameter, Value};
-use grainfall::run::{Command, CommandError, Estimate, RunRecord, ScriptedCommand};
+use grainfall::run::{Command, CommandError, Estimate, RunRecord, ScriptedCommand, opening};
 use grainfall::scene::Scene;
 use grainfall::sweep::Case;
 use std::fmt::Display;
@@ -418,6 +418,11 @@ impl Opener<'_, '_> {
         }
         if Lesson::is_at(&name) {
             return self.open_lesson(&name, dock);
+        }
+        if let Some(session) = opening(&name) {
+            let options = self.options_for(session.record().scene.duration);
+            self.show(Simulation::resume(session, options));
+            return dock.scene_opened(&name);
         }
         match Scene::open(&name) {
             Ok(scene) => {

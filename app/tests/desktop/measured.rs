@@ -34,7 +34,7 @@ fn slope([from, to]: [Vec3; 2]) -> f64 {
 #[test]
 fn the_line_has_the_angle_of_the_samples_at_every_moment() {
     // On its way to an avalanche: steep.
-    let mut simulation = ready(Simulation::resume(opening().unwrap(), standing()));
+    let mut simulation = ready(Simulation::resume(opening("dry-r3").unwrap(), standing()));
     let mut steepest = 0.0_f64;
     for moment in 1..6 {
         simulation = after(simulation, 9.0 + 0.02 * f64::from(moment));

@@ -13,6 +13,7 @@ use bevy_egui::egui::{
     UiBuilder, WidgetInfo, WidgetType, vec2,
 };
 use grainfall::lesson::{BuiltInLesson, Lesson, built_in_lessons};
+use grainfall::run::openings;
 use grainfall::scene::{BuiltIn, Scene, SceneContainer, built_in};
 use grainfall::solver::advise;
 
@@ -111,6 +112,8 @@ struct Card {
     title: String,
     look_for: String,
     grains: usize,
+    /// The moment at which it opens [s], where that is not its start.
+    moment: Option<f64>,
     /// Grain steps per simulated second [1/s]: what the time to compute it goes with.
     load: f64,
     /// Polyhedra take another time than spheres do.
@@ -220,6 +223,9 @@ impl Card {
             name: scene.name,
             kind: Kind::of(scene.name, scene.path, &opened),
             grains,
+            moment: (openings().iter())
+                .find(|opening| opening.scene == scene.name)
+                .map(|opening| opening.moment),
             load: grains as f64 / advise(&opened).time_step,
             is_polyhedral: opened.is_polyhedral(),
             picture: picture(scene.name)
@@ -237,6 +243,7 @@ impl Card {
             name: own.name,
             kind: Kind::Lesson,
             grains,
+            moment: None,
             load: grains as f64 / advise(&scene).time_step,
             is_polyhedral: scene.is_polyhedral(),
             picture: picture(own.picture)
@@ -280,7 +287,11 @@ impl Card {
                 ui.label(RichText::new(&self.title).strong());
                 ui.label(RichText::new(&self.look_for).small());
                 let grains = if self.grains == 1 { "grain" } else { "grains" };
-                let size = format!("{} {grains} · {speed}", self.grains);
+                let opens = self
+                    .moment
+                    .map(|moment| format!("opens after {moment} s · "));
+                let opens = opens.unwrap_or_default();
+                let size = format!("{} {grains} · {opens}{speed}", self.grains);
                 ui.label(RichText::new(size).small().weak());
             });
         });
