@@ -29,6 +29,15 @@ pub enum Request {
     SetIn(Half, Parameter, Value),
     /// Go on with one of two runs, and keep the other as a branch of it.
     EndComparison(Half),
+    /// Call a run by this name, or by what differs in it where the name is empty.
+    NameRun {
+        /// In whose list of runs it is.
+        half: Half,
+        /// Its number there.
+        number: u32,
+        /// The name.
+        name: String,
+    },
     /// Mark the moment shown as an end of the part that is played again and again; the third time
     /// play on without that.
     Repeat,
@@ -121,6 +130,7 @@ impl Request {
             | Self::StartComparison(..)
             | Self::SetIn(..)
             | Self::EndComparison(_)
+            | Self::NameRun { .. }
             | Self::Save
             | Self::ChooseSession
             | Self::SaveSession(_)
