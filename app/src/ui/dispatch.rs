@@ -134,7 +134,7 @@ fn fulfil(
         (Request::OpenLeft(path), _) => opener.open_left(path, dock),
         (Request::DiscardLeft(path), _) => discard(&path, dock),
         (Request::ChooseFile, _) => dock.path_dialog.ask(Purpose::Open),
-        (Request::ChoosePicture, _) => dock.path_dialog.ask(Purpose::Picture),
+        (Request::ChoosePicture(of), _) => dock.path_dialog.ask(Purpose::Picture(of)),
         (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
         (Request::ChooseChanges, _) => dock.path_dialog.ask(Purpose::Changes),
         (Request::ChooseFilm, _) if opener.screenshots.film != FilmState::Idle => {

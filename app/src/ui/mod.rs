@@ -101,7 +101,7 @@ pub use plugin::{DockPlugin, UiPlugin};
 pub use repeat::Repeat;
 pub use request::{LessonAct, Request, Requests, Sheet, SweepAct};
 pub use rescue::RescuePlugin;
-pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
+pub use screenshot_orders::{FilmState, PictureOf, ScreenshotOrder, ScreenshotOrders};
 pub use session_look::SessionLook;
 pub use sweep_desk::{SweepDesk, SweepSeen};
 pub use user_memory::{Look, UserMemory};

@@ -3,7 +3,7 @@
 
 use crate::ui::arrangement::Rearrangement;
 use crate::ui::plot_export::Export;
-use crate::ui::screenshot_orders::ScreenshotOrder;
+use crate::ui::screenshot_orders::{PictureOf, ScreenshotOrder};
 use crate::view::CameraRequest;
 use bevy::prelude::*;
 use grainfall::lab::Half;
@@ -87,8 +87,8 @@ pub enum Request {
     ChooseChanges,
     /// Write the changes of the present run to this file.
     SaveChanges(PathBuf),
-    /// Let the person choose where the picture of the window goes.
-    ChoosePicture,
+    /// Let the person choose where a picture of this goes.
+    ChoosePicture(PictureOf),
     /// Let the person choose where this plot goes.
     ExportPlot(Box<Export>),
     /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.

@@ -12,7 +12,7 @@ use grainfall::run::{Command, Parameter};
 use grainfall::runner;
 use grainfall::scene::Scene;
 use grainfall_app::simulation::Simulation;
-use grainfall_app::ui::{Dock, FilmState, Request, ScreenshotOrder, ScreenshotOrders};
+use grainfall_app::ui::{Dock, FilmState, PictureOf, Request, ScreenshotOrder, ScreenshotOrders};
 use grainfall_app::window::{PictureJob, ScreenshotPlugin, WindowJob, run};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -137,7 +137,7 @@ fn the_last_state_of_a_recording_is_drawn() {
             at: 1.0,
             size: UVec2::new(1280, 720),
             offscreen: true,
-            plain: true,
+            of: PictureOf::Grains,
         }),
     };
     run(job).unwrap();
