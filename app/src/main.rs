@@ -301,6 +301,7 @@ fn open_window(
     options: Options,
     picture: PictureArguments,
 ) -> Result<u8, RunnerError> {
+    use grainfall_app::ui::PictureOf;
     use grainfall_app::window::{PictureJob, WindowJob, run};
     let compared = picture.compare.as_deref().map(compared_value).transpose()?;
     let picture = picture.screenshot.map(|path| PictureJob {
@@ -308,7 +309,11 @@ fn open_window(
         at: picture.at,
         size: picture.size.into(),
         offscreen: picture.offscreen,
-        plain: picture.plain,
+        of: match (picture.transparent, picture.plain) {
+            (true, _) => PictureOf::CutOut,
+            (false, true) => PictureOf::Grains,
+            (false, false) => PictureOf::Window,
+        },
     });
     let job = WindowJob {
         name,

@@ -404,7 +404,7 @@ fn a_recording_shows_what_happened_in_its_run() {
         let job = Job {
             threads: 1,
             beds: shared_beds(),
-            ..Job::new(name, scene, &home.path().join(name))
+            ..Job::new(name, scene, home.path().join(name))
         };
         let (_, run) = runner::run(&job, &mut (), &|| false).unwrap();
         let (events, said) = recorded(&job.out);

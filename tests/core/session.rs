@@ -142,7 +142,7 @@ fn file_that_is_no_session_is_refused_with_what_to_do() {
         bytes.extend_from_slice(whole.strip_prefix(from.as_bytes()).unwrap());
         bytes
     };
-    let other = format!("grainfall session 6 {VERSION}");
+    let other = format!("grainfall session 7 {VERSION}");
     let cases: [(Vec<u8>, [&str; 2]); 8] = [
         (
             whole[..whole.len() - 1].to_vec(),

@@ -69,6 +69,9 @@ pub struct PictureArguments {
     /// Take the picture, or the film, of the grains alone, without panels, clock and scale bar
     #[arg(long, requires = "pictured")]
     pub plain: bool,
+    /// Take the picture of the grains alone and without a background: a PNG file with an alpha channel
+    #[arg(long, requires = "screenshot")]
+    pub transparent: bool,
     /// Width and height of the picture, or of the film, in pixels
     #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "pictured", value_parser = size)]
     pub size: (u32, u32),

@@ -7,47 +7,21 @@
 use crate::simulation::Simulation;
 use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
+use crate::ui::opener::Opener;
 use crate::ui::panels::lesson::show_look;
-use crate::ui::playback::first_speed;
 use crate::ui::request::{LessonAct, Request, Requests, SweepAct};
-use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
-use crate::ui::session_look::SessionLook;
+use crate::ui::screenshot_orders::FilmState;
 use crate::ui::sweep_desk::SweepDesk;
-use crate::view::{CameraRequest, OrbitCamera, Ruler, ViewSettings};
-use bevy::ecs::system::SystemParam;
+use crate::view::{CameraRequest, ViewSettings};
 use bevy::prelude::*;
-use bevy::tasks::futures::check_ready;
-use bevy::tasks::{IoTaskPool, Task};
-use grainfall::engines::sound_scene_from;
-use grainfall::lab::{Half, Kept, LabCommand, Options, SavedFile};
+use grainfall::lab::{Half, Kept, LabCommand, SavedFile};
 use grainfall::lesson::Lesson;
 use grainfall::parameters::{Parameter, Value};
-use grainfall::run::{Command, CommandError, Estimate, RunRecord, ScriptedCommand, opening};
+use grainfall::run::{CommandError, Estimate, RunRecord};
 use grainfall::scene::Scene;
-use grainfall::sweep::Case;
 use std::fmt::Display;
 use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
-/// How scenes that a person opens are run.
-#[derive(Resource, Clone, Debug)]
-pub struct OpenWith(pub(super) Options);
-
-/// What is being read: a session or a recording.
-#[derive(Resource, Default)]
-pub struct Opening(Option<(String, Task<Result<Kept, String>>)>);
-
-/// What opening a scene or a session changes.
-#[derive(SystemParam)]
-pub struct Opener<'w, 's> {
-    opening: ResMut<'w, Opening>,
-    options: Res<'w, OpenWith>,
-    view: ResMut<'w, ViewSettings>,
-    camera: Option<ResMut<'w, OrbitCamera>>,
-    screenshots: ResMut<'w, ScreenshotOrders>,
-    commands: Commands<'w, 's>,
-}
+use std::path::Path;
 
 /// Fulfils every request in the order in which it was made.
 pub fn fulfil_requests(
@@ -117,6 +91,9 @@ fn fulfil(
                 value,
             });
         }
+        (Request::NameRun { half, number, name }, Some(simulation)) => {
+            simulation.send(LabCommand::NameBranch { half, number, name });
+        }
         (Request::EndComparison(half), Some(simulation)) => {
             end_comparison(simulation, half, dock, &mut opener.view);
         }
@@ -155,13 +132,9 @@ fn fulfil(
         (Request::FullScreen, _) => dock.is_full_screen ^= true,
         (Request::Open(name), _) => opener.open(name, dock),
         (Request::OpenLeft(path), _) => opener.open_left(path, dock),
-        (Request::DiscardLeft(path), _) => {
-            if let Err(error) = grainfall::files::remove_file(&path) {
-                dock.notify(format!("{} cannot be removed: {error}", path.display()));
-            }
-        }
+        (Request::DiscardLeft(path), _) => discard(&path, dock),
         (Request::ChooseFile, _) => dock.path_dialog.ask(Purpose::Open),
-        (Request::ChoosePicture, _) => dock.path_dialog.ask(Purpose::Picture),
+        (Request::ChoosePicture(of), _) => dock.path_dialog.ask(Purpose::Picture(of)),
         (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
         (Request::ChooseChanges, _) => dock.path_dialog.ask(Purpose::Changes),
         (Request::ChooseFilm, _) if opener.screenshots.film != FilmState::Idle => {
@@ -181,6 +154,7 @@ fn fulfil(
             | Request::StartComparison(..)
             | Request::SetIn(..)
             | Request::EndComparison(_)
+            | Request::NameRun { .. }
             | Request::RunAnew
             | Request::RunOn
             | Request::MeasureFlow
@@ -191,6 +165,13 @@ fn fulfil(
             None,
         )
         | (Request::SaveThen(_) | Request::Leave(_) | Request::Anyway(_), _) => {}
+    }
+}
+
+/// Removes the session that an earlier window left.
+fn discard(path: &Path, dock: &mut Dock) {
+    if let Err(error) = grainfall::files::remove_file(path) {
+        dock.notify(format!("{} cannot be removed: {error}", path.display()));
     }
 }
 
@@ -325,17 +306,6 @@ fn no_scene(name: &str) -> Option<String> {
     scene.err().map(|error| error.to_string())
 }
 
-/// The script that gives a new run the present values of the live parameters at its start.
-fn present(simulation: &Simulation) -> Vec<ScriptedCommand> {
-    let at_the_start = |(parameter, value)| ScriptedCommand {
-        step: Some(0),
-        time: None,
-        command: Command::Set { parameter, value },
-    };
-    let changed = simulation.changed_values().into_iter();
-    changed.map(at_the_start).collect()
-}
-
 /// Reports whether the session was saved; returns the request that waited for it, where it was.
 fn tell_saved(simulation: &mut Simulation, dock: &mut Dock) -> Option<Request> {
     let mut next = None;
@@ -348,185 +318,6 @@ fn tell_saved(simulation: &mut Simulation, dock: &mut Dock) -> Option<Request> {
         dock.notify(said("The session", &path, outcome));
     }
     next
-}
-
-/// Opens what has been read. Where it cannot be read the present run goes on.
-pub fn finish_opening(mut dock: ResMut<Dock>, mut opener: Opener) {
-    let Some((name, task)) = &mut opener.opening.0 else {
-        return;
-    };
-    let Some(read) = check_ready(task) else {
-        return;
-    };
-    let name = std::mem::take(name);
-    opener.opening.0 = None;
-    let duration = read.as_ref().map_or(1.0, |kept| kept.scene().duration);
-    let options = opener.options_for(duration);
-    match read {
-        Ok(Kept::Session(session)) => {
-            let (look, scene) = (session.look().to_owned(), session.record().scene.clone());
-            opener.show(Simulation::resume(*session, options));
-            dock.session_opened(&name);
-            opener.take_up(&look, &scene, &mut dock);
-        }
-        Ok(Kept::Recording(recording)) => {
-            opener.show(Simulation::play_back(*recording, options));
-            dock.scene_opened(&name);
-        }
-        Err(error) => dock.show_open_error(error),
-    }
-}
-
-impl Opener<'_, '_> {
-    /// How the window looks, in its own words.
-    fn look(&self, dock: &Dock) -> String {
-        SessionLook::of(&self.view, self.camera.as_deref(), dock).in_words()
-    }
-
-    /// Looks as the session did whose `look` this is; one that is not known changes nothing.
-    fn take_up(&mut self, look: &str, scene: &Scene, dock: &mut Dock) {
-        if let Some(look) = SessionLook::read(look) {
-            look.restore(&mut self.view, self.camera.as_deref_mut(), dock, scene);
-        }
-    }
-
-    /// How something of this `duration` [s] is run or played.
-    fn options_for(&self, duration: f64) -> Options {
-        Options {
-            speed: first_speed(duration),
-            ..self.options.0.clone()
-        }
-    }
-
-    /// Draws the trail of the selected grain, or no longer.
-    fn trace_selected(&mut self) {
-        if let Some(grain) = self.view.selected {
-            self.view.trace(grain);
-        }
-    }
-
-    /// Opens the scene, the lesson, the session or the recording called `name`; one that cannot be
-    /// opened leaves the present one running.
-    fn open(&mut self, name: String, dock: &mut Dock) {
-        self.opening.0 = None;
-        if Kept::is_at(&name) {
-            dock.notify(format!("Reading {name}"));
-            let path = PathBuf::from(&name);
-            let read = IoTaskPool::get().spawn(async move { Kept::read(&path) });
-            self.opening.0 = Some((name, read));
-            return;
-        }
-        if Lesson::is_at(&name) {
-            return self.open_lesson(&name, dock);
-        }
-        if let Some(session) = opening(&name) {
-            let options = self.options_for(session.record().scene.duration);
-            self.show(Simulation::resume(session, options));
-            return dock.scene_opened(&name);
-        }
-        match Scene::open(&name) {
-            Ok(scene) => {
-                // A script belongs to the scene it was given with.
-                let speed = first_speed(scene.duration);
-                self.start(scene, Vec::new(), None, speed);
-                dock.scene_opened(&name);
-            }
-            Err(error) => dock.show_open_error(error.to_string()),
-        }
-    }
-
-    /// Opens the session that an earlier window left at `path`, as work that is in no file.
-    fn open_left(&mut self, path: PathBuf, dock: &mut Dock) {
-        match Kept::read(&path) {
-            Ok(Kept::Session(session)) => {
-                let (look, scene) = (session.look().to_owned(), session.record().scene.clone());
-                let options = self.options_for(scene.duration);
-                self.show(Simulation::resume(*session, options).unsaved());
-                dock.scene_changed();
-                self.take_up(&look, &scene, dock);
-                dock.taken_up = Some(path);
-            }
-            Ok(Kept::Recording(_)) => {}
-            Err(error) => dock.show_open_error(error),
-        }
-    }
-
-    /// Opens the lesson called `name` at its first step.
-    fn open_lesson(&mut self, name: &str, dock: &mut Dock) {
-        match Lesson::open(name) {
-            Ok((lesson, scene)) => {
-                let speed = first_speed(scene.duration);
-                self.start(scene, Vec::new(), None, speed);
-                show_look(&lesson.look, &mut self.view);
-                dock.lesson_opened(name, lesson);
-            }
-            Err(error) => dock.show_open_error(error.to_string()),
-        }
-    }
-
-    /// Starts a run of `scene`, made from that of `simulation`, with the values that were changed
-    /// there.
-    fn start_again(&mut self, scene: Scene, simulation: Option<&Simulation>, dock: &mut Dock) {
-        let script = simulation.map_or_else(Vec::new, present);
-        let original = simulation.map(|simulation| simulation.original().clone());
-        let speed = simulation.map_or(1.0, |simulation| simulation.speed());
-        self.start(scene, script, original, speed);
-        dock.scene_changed();
-    }
-
-    /// Starts the run of a `case` of a sweep.
-    fn open_case(&mut self, case: Case, dock: &mut Dock) {
-        let speed = first_speed(case.scene.duration);
-        self.start(case.scene, case.script, None, speed);
-        dock.scene_changed();
-    }
-
-    /// Starts a run with the grains of `recording` as they are at the moment shown, or says why not.
-    fn run_on(&mut self, recording: &Simulation, dock: &mut Dock) {
-        let Some(world) = recording.world() else {
-            return;
-        };
-        match sound_scene_from(recording.scene(), world) {
-            Ok(scene) => {
-                let (script, speed) = (present(recording), recording.speed());
-                self.start(scene, script, None, speed);
-                dock.scene_changed();
-            }
-            Err(reason) => dock.notify(reason),
-        }
-    }
-
-    /// Starts a run of `scene`, made from the `original`, with `script`, at this `speed`.
-    fn start(
-        &mut self,
-        scene: Scene,
-        script: Vec<ScriptedCommand>,
-        original: Option<Arc<Scene>>,
-        speed: f64,
-    ) {
-        let options = Options {
-            speed,
-            script,
-            ..self.options.0.clone()
-        };
-        let simulation = Simulation::open(scene, options);
-        self.show(match original {
-            Some(original) => simulation.made_of(original),
-            None => simulation,
-        });
-    }
-
-    /// Shows `simulation` with nothing cut, selected or traced, from the scene's first view.
-    fn show(&mut self, simulation: Simulation) {
-        self.commands.insert_resource(simulation);
-        self.view.cut = None;
-        (self.view.selected, self.view.beside) = (None, None);
-        self.view.follows_selected = false;
-        self.view.traced.clear();
-        self.view.ruler = Ruler::default();
-        self.view.focus = Half::Left;
-        self.view.camera_request = Some(CameraRequest::Home);
-    }
 }
 
 /// Writes the plot that was asked for to `path`.

@@ -42,7 +42,7 @@ use crate::ui::sweep_desk::SweepDesk;
 use crate::ui::theme::Palette;
 use crate::ui::user_memory::{Look, UserMemory};
 use crate::ui::widgets::focus::focus_ui;
-use crate::ui::words::run_names::title_in_words;
+use crate::ui::words::names::title_in_words;
 use crate::ui::{shortcuts, text_size, theme};
 use crate::view::ViewSettings;
 use bevy::prelude::Resource;

@@ -12,6 +12,7 @@
 //! | `plugin` | when panels are drawn, as systems of Bevy |
 //! | `rescue` | work that is in no file, kept for the case that the program ends unasked |
 //! | `dispatch` | what each request does |
+//! | `opener` | scenes, lessons, sessions and recordings in the place of what is shown |
 //! | `session_look` | how a window looked, as a session keeps it |
 //! | `dock` | the register of panels, what stands round the picture and lies over it |
 //! | `sides`, `sections` | both sides of panels; one side of them |
@@ -44,6 +45,7 @@ mod dock;
 mod event_kinds;
 mod keyboard;
 mod notice;
+mod opener;
 mod panel;
 mod panels;
 mod playback;
@@ -94,13 +96,14 @@ pub use panels::results::Results;
 pub use panels::solver_profile::{SolverProfile, advice_ui, profile_ui};
 pub(crate) use playback::first_speed;
 pub use plot_export::Export;
-pub use plots::run_curves::{Curves, KeptRun};
+pub use plots::run_curves::Curves;
 pub use plugin::{DockPlugin, UiPlugin};
 pub use repeat::Repeat;
 pub use request::{LessonAct, Request, Requests, Sheet, SweepAct};
 pub use rescue::RescuePlugin;
-pub use screenshot_orders::{FilmState, ScreenshotOrder, ScreenshotOrders};
+pub use screenshot_orders::{FilmState, PictureOf, ScreenshotOrder, ScreenshotOrders};
 pub use session_look::SessionLook;
 pub use sweep_desk::{SweepDesk, SweepSeen};
 pub use user_memory::{Look, UserMemory};
-pub(crate) use words::run_names::title_in_words;
+pub(crate) use words::names::title_in_words;
+pub use words::run_names::{KeptRun, RunNames};

@@ -5,8 +5,9 @@
 
 use crate::simulation::Simulation;
 use crate::ui::bars::film_bar::film_bar_ui;
-use crate::ui::dispatch::{OpenWith, Opening, finish_opening, fulfil_requests};
+use crate::ui::dispatch::fulfil_requests;
 use crate::ui::dock::Dock;
+use crate::ui::opener::{OpenWith, Opening, finish_opening};
 use grainfall::lab::{Half, Options, RunView, Status};
 
 use crate::ui::request::{Request, Requests};

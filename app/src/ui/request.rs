@@ -3,7 +3,7 @@
 
 use crate::ui::arrangement::Rearrangement;
 use crate::ui::plot_export::Export;
-use crate::ui::screenshot_orders::ScreenshotOrder;
+use crate::ui::screenshot_orders::{PictureOf, ScreenshotOrder};
 use crate::view::CameraRequest;
 use bevy::prelude::*;
 use grainfall::lab::Half;
@@ -29,6 +29,15 @@ pub enum Request {
     SetIn(Half, Parameter, Value),
     /// Go on with one of two runs, and keep the other as a branch of it.
     EndComparison(Half),
+    /// Call a run by this name, or by what differs in it where the name is empty.
+    NameRun {
+        /// In whose list of runs it is.
+        half: Half,
+        /// Its number there.
+        number: u32,
+        /// The name.
+        name: String,
+    },
     /// Mark the moment shown as an end of the part that is played again and again; the third time
     /// play on without that.
     Repeat,
@@ -78,8 +87,8 @@ pub enum Request {
     ChooseChanges,
     /// Write the changes of the present run to this file.
     SaveChanges(PathBuf),
-    /// Let the person choose where the picture of the window goes.
-    ChoosePicture,
+    /// Let the person choose where a picture of this goes.
+    ChoosePicture(PictureOf),
     /// Let the person choose where this plot goes.
     ExportPlot(Box<Export>),
     /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.
@@ -121,6 +130,7 @@ impl Request {
             | Self::StartComparison(..)
             | Self::SetIn(..)
             | Self::EndComparison(_)
+            | Self::NameRun { .. }
             | Self::Save
             | Self::ChooseSession
             | Self::SaveSession(_)

@@ -18,11 +18,23 @@ pub struct ScreenshotOrders {
     pub film: FilmState,
 }
 
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureOf {
+    /// The window with its panels.
+    #[default]
+    Window,
+    /// The grains alone, without panels, clock and marks, over all of the window.
+    Grains,
+    /// The same without a background.
+    CutOut,
+}
+
 /// What a person can ask for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScreenshotOrder {
-    /// One picture of the whole window as it is now, into this PNG file.
-    Picture(PathBuf),
+    /// One picture as it is now, into this PNG file.
+    Picture(PathBuf, PictureOf),
     /// A film of the picture without panels from now on, into this file or folder.
     Film(PathBuf),
     /// End the film and write it.

@@ -10,6 +10,7 @@ use crate::ui::playback::{
     Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche, to_event,
 };
 use crate::ui::request::{LessonAct, Request, Sheet};
+use crate::ui::screenshot_orders::PictureOf;
 use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
 use grainfall::lab::Half;
@@ -249,7 +250,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         keys: &[ctrl(Key::P)],
         name: "Save a picture of the window",
-        action: KeyAction::Ask(Request::ChoosePicture),
+        action: KeyAction::Ask(Request::ChoosePicture(PictureOf::Window)),
     },
     Shortcut {
         keys: &[ctrl(Key::R)],

@@ -38,11 +38,13 @@
 //! | `trail`, `measured`, `ruler` | the ways of chosen grains; what is measured of a world; a ruler |
 //! | `halves`, `scale` | the picture in parts; lengths and numbers in it |
 //! | `film`, `png` | films and pictures as files |
+//! | `cut_out` | a picture without its ground |
 
 mod bed_marks;
 mod camera;
 mod colour;
 mod container_walls;
+mod cut_out;
 mod facets;
 mod film;
 mod framing;
@@ -81,13 +83,14 @@ pub use camera::{CameraPose, OrbitCamera, apply_response};
 pub(crate) use colour::contrast;
 pub(crate) use colour::{MEASURED_ON_DARK, MEASURED_ON_LIGHT, round_up};
 pub use colour::{species_colour, trail_colour};
+pub use cut_out::{Ground, cut_out};
 pub use film::{FILM_RATE, FilmKind, FilmWriter};
 pub use grain_buffer::GrainBuffer;
 pub use measured::Measured;
 pub use measured_marks::Protractor;
 pub use overlay::Caption;
 pub use plugin::ViewPlugin;
-pub use png::{save_drawing, save_png};
+pub use png::{save_cut_out, save_drawing, save_png};
 pub use polyhedron_meshes::Meshing;
 pub use rig::WorldCamera;
 pub use ruler::{Reading, Ruler, RulerEnd};

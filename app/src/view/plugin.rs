@@ -3,6 +3,7 @@
 //! In: Bevy's app. Out: its systems.
 
 use crate::view::camera::OrbitCamera;
+use crate::view::cut_out::Ground;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, take_newest};
 use crate::view::view_settings::ViewSettings;
 use crate::view::{container_walls, grain_buffer, links, polyhedron_meshes, rig, spheres, trace};
@@ -25,6 +26,7 @@ impl Plugin for ViewPlugin {
             Shader::from_wgsl
         );
         app.init_resource::<ViewSettings>()
+            .init_resource::<Ground>()
             .init_resource::<OrbitCamera>()
             .init_resource::<ShownWorlds>()
             .configure_sets(

@@ -3,6 +3,7 @@
 //! In: what the view drew, or the text of an SVG drawing. Out: a PNG file with where it came from
 //! in its text chunks (`iTXt`), whole or not at all; missing folders are made.
 
+use crate::view::cut_out::cut_out;
 use bevy::image::Image;
 use bevy::math::UVec2;
 use bevy_egui::egui::FontDefinitions;
@@ -23,9 +24,36 @@ const DRAWING_SCALE: u32 = 3;
 /// # Errors
 /// Where it cannot be encoded or written.
 pub fn save_png(image: &Image, from: Option<&Provenance>, path: &Path) -> io::Result<()> {
+    let (size, pixels) = pixels(image)?;
+    write(size, (&pixels, png::ColorType::Rgb), from, path)
+}
+
+/// Writes what is in the picture of which `grounds` are the ones on black and on white, without a
+/// ground, to the file at `path`.
+///
+/// # Errors
+/// Where the two are not of one size, or cannot be encoded or written.
+pub fn save_cut_out(
+    grounds: [&Image; 2],
+    from: Option<&Provenance>,
+    path: &Path,
+) -> io::Result<()> {
+    let [black, white] = grounds.map(pixels);
+    let ((size, black), (other, white)) = (black?, white?);
+    if size != other {
+        return Err(io::Error::other(
+            "the window has changed its size meanwhile",
+        ));
+    }
+    let pixels = cut_out(&black, &white);
+    write(size, (&pixels, png::ColorType::Rgba), from, path)
+}
+
+/// The size of `image`, and red, green and blue of its pixels.
+fn pixels(image: &Image) -> io::Result<(UVec2, Vec<u8>)> {
     let pixels = image.clone().try_into_dynamic();
     let pixels = pixels.map_err(io::Error::other)?.into_rgb8();
-    write(UVec2::from(pixels.dimensions()), &pixels, from, path)
+    Ok((UVec2::from(pixels.dimensions()), pixels.into_raw()))
 }
 
 /// Writes the drawing `svg`, which covers all of its ground, to the file at `path`.
@@ -45,7 +73,7 @@ pub fn save_drawing(svg: &str, from: &Provenance, path: &Path) -> io::Result<()>
         .iter()
         .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
         .collect();
-    write(size, &pixels, Some(from), path)
+    write(size, (&pixels, png::ColorType::Rgb), Some(from), path)
 }
 
 /// The drawing that `svg` states, its text in the fonts of the window.
@@ -62,11 +90,16 @@ fn drawing(svg: &str) -> Result<usvg::Tree, usvg::Error> {
     usvg::Tree::from_str(svg, &options)
 }
 
-/// Writes a picture of this size, whose `pixels` have red, green and blue each.
-fn write(size: UVec2, pixels: &[u8], from: Option<&Provenance>, path: &Path) -> io::Result<()> {
+/// Writes a picture of this size, whose pixels have these channels.
+fn write(
+    size: UVec2,
+    (pixels, channels): (&[u8], png::ColorType),
+    from: Option<&Provenance>,
+    path: &Path,
+) -> io::Result<()> {
     write_whole(path, |file| {
         let mut encoder = png::Encoder::new(file, size.x, size.y);
-        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_color(channels);
         encoder.set_depth(png::BitDepth::Eight);
         for (name, value) in from.map_or_else(Vec::new, Provenance::entries) {
             encoder.add_itxt_chunk(name.to_owned(), value)?;

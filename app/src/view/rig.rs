@@ -4,6 +4,7 @@
 use crate::simulation::DrawnIn;
 use crate::view::camera::{HOME, OrbitCamera};
 use crate::view::colour::Scheme;
+use crate::view::cut_out::Ground;
 use crate::view::framing::{grain_box, group_on_its_way, outline};
 use crate::view::halves::{beside, parts};
 use crate::view::shown_worlds::{ShownWorlds, layers};
@@ -162,6 +163,7 @@ fn home(shape: Shape) -> (f32, f32) {
 /// Moves Bevy's cameras to where [`OrbitCamera`] is, each with its part of the picture.
 pub(super) fn follow(
     settings: Res<ViewSettings>,
+    ground: Res<Ground>,
     shown: Res<ShownWorlds>,
     mut orbit: ResMut<OrbitCamera>,
     mut cameras: Query<(&DrawnIn, &mut Camera, &mut Transform, &mut Projection), With<WorldCamera>>,
@@ -171,8 +173,8 @@ pub(super) fn follow(
         (cameras.iter()).any(|(&DrawnIn(half), camera, ..)| half == Half::Left && camera.is_active);
     for (&DrawnIn(half), mut camera, mut transform, mut projection) in &mut cameras {
         if half == Half::Left {
-            let background = Scheme::of(settings.background).background;
-            camera.clear_color = ClearColorConfig::Custom(background);
+            let chosen = Scheme::of(settings.background).background;
+            camera.clear_color = ClearColorConfig::Custom(ground.colour(chosen));
         } else {
             camera.clear_color = ClearColorConfig::None;
             camera.is_active = draws && shown.is_pair();

@@ -6,7 +6,8 @@
 use crate::headless::heard;
 use crate::simulation::{Simulation, SimulationPlugin};
 use crate::ui::{
-    Dock, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, show_look, title_in_words,
+    Dock, PictureOf, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, show_look,
+    title_in_words,
 };
 use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
@@ -73,7 +74,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         )),
         picture => app.add_plugins(window_plugins(title, picture.as_ref())),
     };
-    let is_plain = job.picture.as_ref().is_some_and(|picture| picture.plain);
+    let is_plain = (job.picture.as_ref()).is_some_and(|picture| picture.of != PictureOf::Window);
     // Several samples a pixel are the processor's work where there is no graphics card.
     let smooth_edges = !software || job.picture.is_some();
     app.add_plugins(ScreenshotPlugin);

@@ -14,11 +14,13 @@
 //! picture is the [`ScreenshotSubject`]'s business.
 
 use crate::simulation::Simulation;
-use crate::ui::{Dock, FilmState, ScreenshotOrder, ScreenshotOrders, said};
-use crate::view::{GrainBuffer, Meshing, ViewSettings};
+use crate::ui::{Dock, FilmState, PictureOf, ScreenshotOrder, ScreenshotOrders, said};
+use crate::view::{GrainBuffer, Ground, Meshing, ViewSettings};
 use crate::window::canvas::{Canvas, screenshot};
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
-use crate::window::screenshot_subject::{FilmReel, Following, ScreenshotSubject, SinglePicture};
+use crate::window::screenshot_subject::{
+    Before, FilmReel, Following, ScreenshotSubject, SinglePicture,
+};
 use crate::window::window_job::{PictureJob, WindowError};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -46,7 +48,7 @@ impl ScreenshotJobs {
     /// One picture for the command line, after which the app ends; why there is none is told to
     /// `failure`.
     pub(super) fn add_for_command_line(&mut self, picture: &PictureJob, failure: Failure) {
-        let subject = SinglePicture::at(picture.path.clone(), picture.at);
+        let subject = SinglePicture::at(picture.path.clone(), picture.of, picture.at);
         let mut job = ScreenshotJob::of(ScreenshotSubject::Picture(subject));
         job.ends_app = Some(failure);
         self.0.push(job);
@@ -106,7 +108,8 @@ enum JobStage {
 /// What it takes to take a picture.
 #[derive(SystemParam)]
 struct Studio<'w, 's> {
-    settings: Res<'w, ViewSettings>,
+    settings: ResMut<'w, ViewSettings>,
+    ground: Option<ResMut<'w, Ground>>,
     canvas: Option<Res<'w, Canvas>>,
     comparison: Option<Res<'w, OpeningComparison>>,
     meshing: Option<Res<'w, Meshing>>,
@@ -135,6 +138,47 @@ impl Studio<'_, '_> {
             .as_ref()
             .is_none_or(|meshing| meshing.is_whole())
             && self.grains.as_ref().is_none_or(|grains| grains.is_whole())
+    }
+
+    /// Puts away what does not belong into the picture of `subject`.
+    fn arrange(&mut self, subject: &mut ScreenshotSubject) {
+        let ScreenshotSubject::Picture(picture) = subject else {
+            return;
+        };
+        let Some(wanted) = picture.ground() else {
+            return;
+        };
+        let is_hidden = self.dock.as_ref().is_some_and(|dock| dock.is_hidden);
+        picture.before.get_or_insert(Before {
+            is_hidden,
+            show_overlay: self.settings.show_overlay,
+            show_measured: self.settings.show_measured,
+        });
+        (self.settings.show_overlay, self.settings.show_measured) = (false, false);
+        if let Some(dock) = &mut self.dock {
+            dock.is_hidden = true;
+        }
+        if let Some(ground) = &mut self.ground {
+            **ground = wanted;
+        }
+    }
+
+    /// Puts back what was put away for the picture of `subject`.
+    fn put_back(&mut self, subject: &mut ScreenshotSubject) {
+        let ScreenshotSubject::Picture(picture) = subject else {
+            return;
+        };
+        let Some(before) = picture.before.take() else {
+            return;
+        };
+        self.settings.show_overlay = before.show_overlay;
+        self.settings.show_measured = before.show_measured;
+        if let Some(dock) = &mut self.dock {
+            dock.is_hidden = before.is_hidden;
+        }
+        if let Some(ground) = &mut self.ground {
+            **ground = Ground::Chosen;
+        }
     }
 
     /// Why the state of a picture will never come, where that is so.
@@ -203,8 +247,13 @@ fn end_film(reel: &mut FilmReel, stage: &mut JobStage, simulation: &mut Simulati
 impl ScreenshotJobs {
     fn obey(&mut self, order: ScreenshotOrder, simulation: &mut Simulation, studio: &mut Studio) {
         match order {
-            ScreenshotOrder::Picture(path) => {
-                let subject = ScreenshotSubject::Picture(SinglePicture::now(path));
+            ScreenshotOrder::Picture(_, PictureOf::Grains | PictureOf::CutOut)
+                if self.film().is_some() =>
+            {
+                studio.say("A film is being recorded: stop it first".to_owned());
+            }
+            ScreenshotOrder::Picture(path, of) => {
+                let subject = ScreenshotSubject::Picture(SinglePicture::now(path, of));
                 self.0.push(ScreenshotJob::of(subject));
             }
             ScreenshotOrder::Film(_) if self.film().is_some() => {
@@ -258,6 +307,7 @@ impl ScreenshotJob {
             && self.subject.has_come(simulation, studio.awaits_pair())
         {
             self.stage = JobStage::Drawing(frames);
+            studio.arrange(&mut self.subject);
             if frames > 0 {
                 return;
             }
@@ -293,7 +343,7 @@ impl ScreenshotJob {
     }
 
     /// Puts the picture away if it has come.
-    fn put_away(&mut self, simulation: &mut Simulation, studio: &Studio) -> JobStage {
+    fn put_away(&mut self, simulation: &mut Simulation, studio: &mut Studio) -> JobStage {
         let mut inbox = self.inbox.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(image) = inbox.take() else {
             return JobStage::Taking;
@@ -301,7 +351,10 @@ impl ScreenshotJob {
         drop(inbox);
         match self.subject.put_away(image, &studio.settings, simulation) {
             Following::Next => JobStage::Waiting,
-            Following::End => JobStage::Ending,
+            Following::End => {
+                studio.put_back(&mut self.subject);
+                JobStage::Ending
+            }
         }
     }
 

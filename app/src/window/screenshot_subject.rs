@@ -5,7 +5,8 @@
 //! the picture is taken is the job's business.
 
 use crate::simulation::Simulation;
-use crate::view::{FILM_RATE, FilmKind, FilmWriter, ViewSettings, save_png};
+use crate::ui::PictureOf;
+use crate::view::{FILM_RATE, FilmKind, FilmWriter, Ground, ViewSettings, save_cut_out, save_png};
 use crate::window::canvas::WARM_UP;
 use bevy::math::URect;
 use bevy::prelude::*;
@@ -20,18 +21,32 @@ pub(super) const UNTIL_DRAWN: u32 = 2;
 
 /// What screenshots are taken of.
 pub(super) enum ScreenshotSubject {
-    /// The whole window, once.
+    /// The window, or the grains alone, once.
     Picture(SinglePicture),
     /// The part of it that panels leave free, at regular simulated times.
     Film(FilmReel),
 }
 
-/// One picture of the whole window.
+/// One picture.
 pub(super) struct SinglePicture {
     path: PathBuf,
+    of: PictureOf,
     moment: PictureMoment,
+    /// Whether the run was told to hold for it.
+    holds: bool,
+    /// How the window looked before what does not belong into it was put away.
+    pub(super) before: Option<Before>,
+    /// The picture on black, where another one on white is still to come.
+    on_black: Option<Box<Image>>,
     from: Option<Provenance>,
     saved: Option<io::Result<()>>,
+}
+
+/// What is put away for a picture, as it was before.
+pub(super) struct Before {
+    pub(super) is_hidden: bool,
+    pub(super) show_overlay: bool,
+    pub(super) show_measured: bool,
 }
 
 /// Which moment a picture shows.
@@ -77,8 +92,8 @@ impl ScreenshotSubject {
     pub(super) fn frames(&self) -> u32 {
         match self {
             Self::Picture(picture) => match picture.moment {
-                PictureMoment::Now => 0,
-                PictureMoment::At(..) => WARM_UP,
+                PictureMoment::Now if picture.of == PictureOf::Window => 0,
+                PictureMoment::Now | PictureMoment::At(..) => WARM_UP,
             },
             Self::Film(_) => UNTIL_DRAWN,
         }
@@ -95,7 +110,8 @@ impl ScreenshotSubject {
                 let holds = simulation.has_answered() && *simulation.status() == Status::Paused;
                 holds && is_whole
             }
-            Self::Picture(_) | Self::Film(_) => true,
+            Self::Picture(picture) => is_whole || picture.of == PictureOf::Window,
+            Self::Film(_) => true,
         }
     }
 
@@ -114,11 +130,7 @@ impl ScreenshotSubject {
         simulation: &mut Simulation,
     ) -> Following {
         match self {
-            Self::Picture(picture) => {
-                let saved = save_png(&image, picture.from.as_ref(), &picture.path);
-                picture.saved = Some(saved);
-                Following::End
-            }
+            Self::Picture(picture) => picture.put_away(image, simulation),
             Self::Film(reel) => {
                 reel.add(image, settings, simulation);
                 Following::Next
@@ -144,26 +156,73 @@ impl ScreenshotSubject {
 }
 
 impl SinglePicture {
-    /// A picture of the window as it is.
-    pub(super) fn now(path: PathBuf) -> Self {
-        Self::of(path, PictureMoment::Now)
+    /// A picture as it is now.
+    pub(super) fn now(path: PathBuf, of: PictureOf) -> Self {
+        Self::new(path, of, PictureMoment::Now)
     }
 
-    /// A picture of the window when the run is at `time` [s].
-    pub(super) fn at(path: PathBuf, time: f64) -> Self {
-        Self::of(path, PictureMoment::At(time, None))
+    /// A picture when the run is at `time` [s].
+    pub(super) fn at(path: PathBuf, of: PictureOf, time: f64) -> Self {
+        Self::new(path, of, PictureMoment::At(time, None))
     }
 
-    fn of(path: PathBuf, moment: PictureMoment) -> Self {
+    fn new(path: PathBuf, of: PictureOf, moment: PictureMoment) -> Self {
         Self {
             path,
+            of,
             moment,
+            holds: false,
+            before: None,
+            on_black: None,
             from: None,
             saved: None,
         }
     }
 
+    /// On which ground its next shot is taken; none of the window as it is.
+    pub(super) fn ground(&self) -> Option<Ground> {
+        match self.of {
+            PictureOf::Window => None,
+            PictureOf::Grains => Some(Ground::Chosen),
+            PictureOf::CutOut if self.on_black.is_none() => Some(Ground::Black),
+            PictureOf::CutOut => Some(Ground::White),
+        }
+    }
+
+    /// Saves the `image`, or waits for the one on the other ground.
+    fn put_away(&mut self, image: Image, simulation: &mut Simulation) -> Following {
+        let from = self.from.as_ref();
+        self.saved = match (self.of, self.on_black.take()) {
+            (PictureOf::CutOut, None) => {
+                self.on_black = Some(Box::new(image));
+                return Following::Next;
+            }
+            (PictureOf::CutOut, Some(black)) => {
+                Some(save_cut_out([&black, &image], from, &self.path))
+            }
+            (PictureOf::Window | PictureOf::Grains, _) => Some(save_png(&image, from, &self.path)),
+        };
+        if std::mem::take(&mut self.holds) {
+            simulation.send(LabCommand::Hold(None));
+        }
+        Following::End
+    }
+
+    /// Lets a run that goes on hold where it is, so that all shots are of one state; whether it
+    /// does.
+    fn is_held(&mut self, simulation: &mut Simulation) -> bool {
+        if self.of == PictureOf::CutOut && !std::mem::replace(&mut self.holds, true) {
+            let step = simulation.world().map_or(0, |world| world.clock.step);
+            simulation.send(LabCommand::Hold(Some(step)));
+            return false;
+        }
+        simulation.has_answered()
+    }
+
     fn has_come(&mut self, simulation: &mut Simulation) -> bool {
+        if matches!(self.moment, PictureMoment::Now) {
+            return self.of != PictureOf::CutOut || self.is_held(simulation);
+        }
         let PictureMoment::At(time, aim) = &mut self.moment else {
             return true;
         };

@@ -4,6 +4,7 @@
 //! codes.
 
 use crate::simulation::Simulation;
+use crate::ui::PictureOf;
 use crate::window::environment::Missing;
 use bevy::math::UVec2;
 use grainfall::lab::{Kept, Options};
@@ -100,8 +101,8 @@ pub struct PictureJob {
     pub at: f64,
     /// Its size and the window's [pixels].
     pub size: UVec2,
-    /// Whether it shows the grains alone, without panels.
-    pub plain: bool,
+    /// What it shows.
+    pub of: PictureOf,
     /// Whether it is taken without a display.
     pub offscreen: bool,
 }

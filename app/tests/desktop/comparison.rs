@@ -100,8 +100,10 @@ fn each_half_has_its_own_row_and_the_comparison_its_ends() {
         [Request::SetIn(Half::Left, friction(), 0.2.into())]
     );
     open_panel(&mut harness);
-    harness.get_by_label("Left: friction glass – glass 0.4");
-    harness.get_by_label("Right: friction glass – glass 0.9");
+    // Beside the plots and in the panel.
+    for name in ["Left: μ 0.4", "Right: μ 0.9"] {
+        assert_eq!(harness.get_all_by_label(name).count(), 2, "{name}");
+    }
     harness.get_by_label("End it, keep the left run").click();
     assert_eq!(asked(&mut harness), [Request::EndComparison(Half::Left)]);
     harness.get_by_label("End it, keep the right run").click();

@@ -79,7 +79,8 @@ fn write_picture(
     Ok(())
 }
 
-fn caption(world: &Grains) -> Caption<'_> {
+/// A picture of `world`, with a clock.
+pub fn caption(world: &Grains) -> Caption<'_> {
     Caption {
         world: Some(world),
         real_time_factor: None,

@@ -3,18 +3,16 @@
 
 use crate::view::{laboratory, studio};
 use crate::window_of_panels::standing;
-use bevy::MinimalPlugins;
+use crate::windowless::{ask, simulation, until, update_until, without_scene};
 use bevy::math::UVec2;
 use bevy::prelude::*;
-use grainfall::lab::{DriverKind, Options, Status};
+use grainfall::lab::{Options, Status};
 use grainfall::recording::Recording;
 use grainfall::run::{Command, Parameter};
 use grainfall::runner;
 use grainfall::scene::Scene;
-use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{
-    Dock, DockPlugin, FilmState, Request, Requests, ScreenshotOrder, ScreenshotOrders,
-};
+use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::{Dock, FilmState, PictureOf, Request, ScreenshotOrder, ScreenshotOrders};
 use grainfall_app::window::{PictureJob, ScreenshotPlugin, WindowJob, run};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -33,39 +31,10 @@ fn recorded() -> (TempDir, PathBuf) {
 
 /// The app with everything but pictures, in which `name` was opened.
 fn app(name: &Path) -> App {
-    let options = Options {
-        driver: DriverKind::Thread,
-        ..standing()
-    };
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, SimulationPlugin))
-        .add_plugins(DockPlugin { options });
+    let mut app = without_scene();
     ask(&mut app, Request::Open(name.display().to_string()));
-    until(&mut app, |app| {
-        let simulation = app.world().get_resource::<Simulation>();
-        simulation.is_some_and(|simulation| simulation.world().is_some())
-    });
+    update_until(&mut app, |simulation| simulation.world().is_some());
     app
-}
-
-fn simulation(app: &App) -> &Simulation {
-    app.world().resource::<Simulation>()
-}
-
-fn until(app: &mut App, done: impl Fn(&App) -> bool) {
-    for _ in 0..20_000 {
-        app.update();
-        if done(app) {
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    panic!("it does not come to an end");
-}
-
-fn ask(app: &mut App, request: Request) {
-    app.world_mut().resource_mut::<Requests>().ask(request);
-    app.update();
 }
 
 #[test]
@@ -168,7 +137,7 @@ fn the_last_state_of_a_recording_is_drawn() {
             at: 1.0,
             size: UVec2::new(1280, 720),
             offscreen: true,
-            plain: true,
+            of: PictureOf::Grains,
         }),
     };
     run(job).unwrap();

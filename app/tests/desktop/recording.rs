@@ -8,8 +8,8 @@ use bevy::prelude::*;
 use grainfall::parameters::Parameter;
 use grainfall::run::Command;
 use grainfall_app::simulation::Simulation;
-use grainfall_app::ui::{FilmState, ScreenshotOrder, ScreenshotOrders};
-use grainfall_app::view::FILM_RATE;
+use grainfall_app::ui::{FilmState, PictureOf, ScreenshotOrder, ScreenshotOrders};
+use grainfall_app::view::{FILM_RATE, Ground, ViewSettings};
 use grainfall_app::window::ScreenshotPlugin;
 use std::path::Path;
 
@@ -168,7 +168,10 @@ fn picture_is_taken_beside_a_film_and_shows_the_state_that_it_names() {
     let [film, picture] = ["film.gif", "picture.png"].map(|name| folder.path().join(name));
     let mut app = studio_with_camera();
     record(&mut app, &film, 2);
-    order(&mut app, ScreenshotOrder::Picture(picture.clone()));
+    order(
+        &mut app,
+        ScreenshotOrder::Picture(picture.clone(), PictureOf::Window),
+    );
     until(&mut app, |_| picture.exists());
     let size = image::open(&picture).unwrap().to_rgb8().dimensions();
     assert_eq!(size, (160, 120));
@@ -176,4 +179,41 @@ fn picture_is_taken_beside_a_film_and_shows_the_state_that_it_names() {
     order(&mut app, ScreenshotOrder::EndFilm);
     until(&mut app, |app| state(app) == FilmState::Idle);
     assert!(film.exists());
+}
+
+#[test]
+fn grains_without_a_background_are_taken_of_a_window_that_looks_as_before() {
+    let Some(_studio) =
+        studio("grains_without_a_background_are_taken_of_a_window_that_looks_as_before")
+    else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [film, picture] = ["film.gif", "picture.png"].map(|name| folder.path().join(name));
+    let mut app = studio_with_camera();
+    let before = app.world().resource::<ViewSettings>().clone();
+    order(
+        &mut app,
+        ScreenshotOrder::Picture(picture.clone(), PictureOf::CutOut),
+    );
+    until(&mut app, |_| picture.exists());
+    app.update();
+    let image = image::open(&picture).unwrap().to_rgba8();
+    assert!(image.pixels().any(|pixel| pixel[3] == 0) && image.pixels().any(|p| p[3] == 255));
+    let after = app.world().resource::<ViewSettings>();
+    assert_eq!(
+        (after.show_overlay, after.show_measured),
+        (before.show_overlay, before.show_measured)
+    );
+    assert_eq!(*app.world().resource::<Ground>(), Ground::Chosen);
+    // A film has the window for itself.
+    record(&mut app, &film, 1);
+    let second = folder.path().join("second.png");
+    order(
+        &mut app,
+        ScreenshotOrder::Picture(second.clone(), PictureOf::CutOut),
+    );
+    let taken = pictures(&app);
+    until(&mut app, |app| pictures(app) > taken + 2);
+    assert!(!second.exists());
 }

@@ -1,57 +1,16 @@
 //! Claims about saving, leaving and opening in the app as a whole: requests go in as panels make
 //! them, and nothing is drawn.
 
-use crate::window_of_panels::{friction, prepared, set, standing};
-use bevy::MinimalPlugins;
+use crate::window_of_panels::{friction, set};
+use crate::windowless::{app, ask, simulation, update_until};
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, WindowCloseRequested};
-use grainfall::lab::{DriverKind, Options, Status};
+use grainfall::lab::Status;
 use grainfall::run::Command;
-use grainfall::scene::Scene;
 use grainfall::world::StateHash;
-use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{
-    Dock, DockPlugin, FilmState, Rearrangement, Request, Requests, ScreenshotOrders,
-};
+use grainfall_app::ui::{Dock, FilmState, Rearrangement, Request, ScreenshotOrders};
 use grainfall_app::view::{ColourBy, Cut, OrbitCamera, StartPlace, ViewSettings};
 use std::path::Path;
-
-/// The app of three grains at time zero, with everything but pictures.
-fn app() -> App {
-    let options = Options {
-        driver: DriverKind::Thread,
-        ..standing()
-    };
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, SimulationPlugin))
-        .add_plugins(DockPlugin {
-            options: options.clone(),
-        });
-    let scene: Scene = prepared().scene().clone();
-    app.insert_resource(Simulation::open(scene, options));
-    update_until(&mut app, |s| s.world().is_some());
-    app
-}
-
-fn simulation(app: &App) -> &Simulation {
-    app.world().resource::<Simulation>()
-}
-
-fn update_until(app: &mut App, done: impl Fn(&Simulation) -> bool) {
-    for _ in 0..20_000 {
-        app.update();
-        if done(simulation(app)) {
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    panic!("still {:?}", simulation(app).status());
-}
-
-fn ask(app: &mut App, request: Request) {
-    app.world_mut().resource_mut::<Requests>().ask(request);
-    app.update();
-}
 
 /// Asks for `command` and waits until it has been carried out.
 fn command(app: &mut App, command: Command) {

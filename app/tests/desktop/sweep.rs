@@ -1,21 +1,19 @@
 //! Claims about parameter sweeps in the window: asked for beside a parameter, run in the background,
 //! looked at as they go, stopped and gone on with.
 
-use crate::window_of_panels::{Window, friction, prepared, press, set, standing, type_number};
-use bevy::MinimalPlugins;
+use crate::window_of_panels::{Window, friction, prepared, press, set, type_number};
+use crate::windowless::{app, ask, until};
 use bevy::prelude::*;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use grainfall::lab::{DriverKind, Options};
 use grainfall::measure::{Measure, ResultKey};
 use grainfall::output::CHECKPOINT;
 use grainfall::parameters::Parameter;
 use grainfall::run::{BedStore, RunRecord};
 use grainfall::runner::{Part, Verdict};
-use grainfall::scene::Scene;
 use grainfall::sweep::{self, CaseResult, Question, StatedSweep, Sweep, SweepEnding, ValueRange};
-use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{Dock, DockPlugin, Request, Requests, SweepAct, SweepDesk, SweepSeen};
+use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::{Dock, Request, SweepAct, SweepDesk, SweepSeen};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -221,43 +219,6 @@ fn why_a_sweep_cannot_be_is_said_in_the_panel() {
     assert_eq!(std::fs::read(sweep.out.join("mine.txt")).unwrap(), b"mine");
 }
 
-/// The app of three grains at time zero, with everything but pictures.
-fn app() -> App {
-    let options = Options {
-        driver: DriverKind::Thread,
-        ..standing()
-    };
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, SimulationPlugin))
-        .add_plugins(DockPlugin {
-            options: options.clone(),
-        });
-    let scene: Scene = prepared().scene().clone();
-    app.insert_resource(Simulation::open(scene, options));
-    update_until(&mut app, world_is_there);
-    app
-}
-
-fn world_is_there(app: &App) -> bool {
-    app.world().resource::<Simulation>().world().is_some()
-}
-
-fn update_until(app: &mut App, done: impl Fn(&App) -> bool) {
-    for _ in 0..20_000 {
-        app.update();
-        if done(app) {
-            return;
-        }
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    panic!("it does not get there");
-}
-
-fn ask(app: &mut App, request: Request) {
-    app.world_mut().resource_mut::<Requests>().ask(request);
-    app.update();
-}
-
 fn desk(app: &App) -> SweepDesk {
     app.world().resource::<Dock>().sweeps.clone()
 }
@@ -283,7 +244,7 @@ fn a_sweep_outlives_its_scene_and_each_of_its_runs_opens() {
         &mut app,
         Request::Sweep(SweepAct::Open(Box::new(case.clone()))),
     );
-    update_until(&mut app, |app| {
+    until(&mut app, |app| {
         let simulation = app.world().resource::<Simulation>();
         *simulation.scene() == case.scene
             && simulation
@@ -308,7 +269,7 @@ fn leaving_while_a_sweep_runs_is_asked_about_and_keeps_its_checkpoints() {
         ..question()
     };
     ask(&mut app, Request::Sweep(SweepAct::Start(Box::new(long))));
-    update_until(&mut app, |app| {
+    until(&mut app, |app| {
         let begun = |part: &Part| matches!(part, Part::Running(_));
         desk(app)
             .seen()

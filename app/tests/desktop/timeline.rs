@@ -203,9 +203,9 @@ fn runs_that_were_left_can_be_taken_up_and_forgotten() {
     }
     assert_eq!(simulation.past().kept.len(), 1);
     let mut harness = Window::of(simulation);
-    harness.get_by_label("Show run 1").click();
+    harness.get_by_label_contains("Show μ 0.25 from ").click();
     assert_eq!(asked(&mut harness), [Command::Return(0)]);
-    harness.get_by_label("Forget run 1").click();
+    harness.get_by_label_contains("Forget μ 0.25 from ").click();
     assert_eq!(asked(&mut harness), [Command::Forget(0)]);
 }
 
@@ -235,7 +235,7 @@ fn clickable_plots() -> Harness<'static, Vec<f64>> {
         series: Arc::new(measured),
         ..Branch::default()
     };
-    let kept = [("Run 1".to_owned(), Arc::new(left))];
+    let kept = [("μ 0.4".to_owned(), Arc::new(left))];
     let mut plots = AvalanchePlots::default();
     Harness::builder().with_size([600.0, 500.0]).build_ui_state(
         move |ui, clicked: &mut Vec<f64>| {

@@ -9,6 +9,7 @@ use grainfall::lab::{DriverKind, Options};
 use grainfall::run::Command;
 use grainfall::scene::Scene;
 use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::PictureOf;
 use grainfall_app::window::{PictureJob, WindowError, WindowJob, run};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -27,7 +28,7 @@ fn job(path: &Path) -> WindowJob {
             at: 0.05,
             size: UVec2::new(1280, 720),
             offscreen: true,
-            plain: false,
+            of: PictureOf::Window,
         }),
     }
 }
@@ -89,6 +90,55 @@ fn laboratory_draws_itself_without_a_display() {
             bright > 300,
             "{bright} bright pixels in columns {columns:?}"
         );
+    }
+}
+
+/// `front` laid on `ground`, as browsers do.
+fn laid(front: image::Rgba<u8>, ground: [u8; 3]) -> [u8; 3] {
+    let alpha = f64::from(front[3]) / 255.0;
+    [0, 1, 2].map(|channel| {
+        let [front, ground] = [front[channel], ground[channel]].map(f64::from);
+        (alpha * front + (1.0 - alpha) * ground).round() as u8
+    })
+}
+
+#[test]
+fn grains_without_a_background_look_the_same_on_another_one() {
+    let Some(_studio) = studio("grains_without_a_background_look_the_same_on_another_one") else {
+        return;
+    };
+    let taken = |name: &str, of: PictureOf| {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let mut job = job(&path);
+        if let Some(picture) = &mut job.picture {
+            (picture.of, picture.size) = (of, UVec2::new(640, 480));
+        }
+        run(job).unwrap();
+        image::open(&path).unwrap()
+    };
+    let whole = taken("grains.png", PictureOf::Grains);
+    assert!(!whole.color().has_alpha());
+    let cut_out = taken("cut-out.png", PictureOf::CutOut);
+    assert!(cut_out.color().has_alpha());
+    let (whole, cut_out) = (whole.to_rgb8(), cut_out.to_rgba8());
+    assert_eq!(whole.dimensions(), cut_out.dimensions());
+    // The corner is ground alone, the middle of the grain hides it, its edge does in part.
+    let ground = whole.get_pixel(1, 1).0;
+    assert_eq!(cut_out.get_pixel(1, 1)[3], 0);
+    let alphas = || cut_out.pixels().map(|pixel| pixel[3]);
+    assert!(alphas().filter(|alpha| *alpha == 255).count() > 300);
+    let edges = alphas().filter(|alpha| (20..235).contains(alpha)).count();
+    assert!(edges > 30, "{edges} pixels at edges");
+    // Laid on that ground it is the picture: the renderer blends light, a browser its sRGB numbers,
+    // which are apart by less than 50 of 255 at half a pixel, and nowhere else.
+    let differences = whole.pixels().zip(cut_out.pixels()).map(|(seen, front)| {
+        let laid = laid(*front, ground);
+        let channels = laid.iter().zip(seen.0).map(|(a, b)| a.abs_diff(b));
+        (channels.max().unwrap_or(0), front[3])
+    });
+    for (difference, alpha) in differences {
+        let most = if matches!(alpha, 0 | 255) { 3 } else { 50 };
+        assert!(difference <= most, "{difference} at alpha {alpha}");
     }
 }
 

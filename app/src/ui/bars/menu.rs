@@ -8,6 +8,7 @@ use crate::ui::arrangement::{OpenSides, Rearrangement, why_not_both};
 use crate::ui::bars::time_slider::why_no_undo;
 use crate::ui::panels::picture_settings::MEASURED_HINT;
 use crate::ui::request::{Request, Sheet, SweepAct};
+use crate::ui::screenshot_orders::PictureOf;
 use crate::ui::shortcuts::SHORTCUTS;
 use crate::ui::text_size;
 use crate::ui::widgets::button::button_unless_ui;
@@ -85,7 +86,13 @@ fn file_ui(
     item_unless_ui(ui, "Save the session", Request::Save, why_not, out);
     item_unless_ui(ui, "Save the session as…", as_another, why_not, out);
     item_ui(ui, "Save the list of changes…", Request::ChooseChanges, out);
-    item_ui(ui, "Screenshot…", Request::ChoosePicture, out);
+    for (name, of) in [
+        ("Screenshot…", PictureOf::Window),
+        ("Picture of the grains…", PictureOf::Grains),
+        ("Picture without a background…", PictureOf::CutOut),
+    ] {
+        item_ui(ui, name, Request::ChoosePicture(of), out);
+    }
     ui.add_enabled_ui(simulation.is_some(), |ui| {
         item_ui(ui, "Record a film…", Request::ChooseFilm, out);
     });

@@ -10,9 +10,11 @@ use crate::ui::playback::allows;
 use crate::ui::repeat::Repeat;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
+use crate::ui::words::names::parameter_name;
 use crate::ui::words::number;
-use crate::ui::words::run_names::parameter_name;
+use crate::ui::words::run_names::RunNames;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType, vec2};
+use grainfall::lab::Half;
 use grainfall::recording::{RecordingFacts, RunProgress};
 use grainfall::run::{Changed, Command};
 
@@ -174,12 +176,21 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, repeat: &Repeat, out: &mu
         }
     }
     marks_ui(ui, response.rect, simulation, end.time, repeat);
-    response.on_hover_text(match simulation.recording() {
-        Some(_) => "Drag to see any state of the recording.",
-        None => {
-            "Drag to see any moment of the run. Change something there to begin another run from it."
-        }
-    });
+    response.on_hover_text(line_in_words(simulation));
+}
+
+/// What the line is, and of which run where there are several.
+fn line_in_words(simulation: &Simulation) -> String {
+    if simulation.recording().is_some() {
+        return "Drag to see any state of the recording.".to_owned();
+    }
+    let hint =
+        "Drag to see any moment of the run. Change something there to begin another run from it.";
+    if simulation.past().kept.is_empty() {
+        return hint.to_owned();
+    }
+    let names = RunNames::of(simulation);
+    format!("{}\n{hint}", names.present(Half::Left))
 }
 
 /// Shows the newest state of the run.

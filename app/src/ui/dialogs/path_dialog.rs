@@ -8,7 +8,7 @@
 //! answered. Nothing here waits.
 
 use crate::ui::request::{Request, SweepAct};
-use crate::ui::screenshot_orders::ScreenshotOrder;
+use crate::ui::screenshot_orders::{PictureOf, ScreenshotOrder};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
 use bevy::tasks::futures::check_ready;
@@ -33,8 +33,8 @@ pub enum Purpose {
     Open,
     /// Where the whole session goes.
     Session,
-    /// Where a picture of the window goes.
-    Picture,
+    /// Where a picture goes, and of what it is.
+    Picture(PictureOf),
     /// Where the list of changes goes.
     Changes,
     /// Where a plot goes.
@@ -51,7 +51,7 @@ impl Purpose {
         match self {
             Self::Open => "ron",
             Self::Session => SESSION_EXTENSION,
-            Self::Picture => "png",
+            Self::Picture(_) => "png",
             Self::Changes => "json",
             Self::Plot => "svg",
             Self::Film => "gif",
@@ -93,7 +93,9 @@ impl Purpose {
         match self {
             Self::Open => "Open a scene, a lesson, a session or a recording",
             Self::Session => "Save the session",
-            Self::Picture => "Save a picture of the window",
+            Self::Picture(PictureOf::Window) => "Save a picture of the window",
+            Self::Picture(PictureOf::Grains) => "Save a picture of the grains",
+            Self::Picture(PictureOf::CutOut) => "Save the grains without a background",
             Self::Changes => "Save the list of changes",
             Self::Plot => "Export the plot",
             Self::Film => "Record a film of the picture",
@@ -107,7 +109,7 @@ impl Purpose {
                 "Path of a file or of a run's folder, or name of a built-in scene or lesson"
             }
             Self::Session => "Path of the session's file",
-            Self::Picture => "Path of the PNG file",
+            Self::Picture(_) => "Path of the PNG file",
             Self::Changes => "Path of the JSON file",
             Self::Plot => "Path; it ends in .svg or .png for a picture, in .csv for all samples",
             Self::Film => {
@@ -121,7 +123,7 @@ impl Purpose {
         match self {
             Self::Open | Self::SweepFolder => String::new(),
             Self::Session => free_name("session", self.extension()),
-            Self::Picture => free_name("grainfall", self.extension()),
+            Self::Picture(_) => free_name("grainfall", self.extension()),
             Self::Changes => free_name("changes", self.extension()),
             Self::Plot => free_name("plot", self.extension()),
             Self::Film => free_name("film", self.extension()),
@@ -135,7 +137,7 @@ impl Purpose {
         match self {
             Self::Open | Self::Film | Self::SweepFolder => path.to_owned(),
             Self::Plot if path.extension().is_some() => path.to_owned(),
-            Self::Session | Self::Picture | Self::Changes | Self::Plot => ended(),
+            Self::Session | Self::Picture(_) | Self::Changes | Self::Plot => ended(),
         }
     }
 
@@ -144,7 +146,7 @@ impl Purpose {
         match self {
             Self::Open => Request::Open(file.display().to_string()),
             Self::Session => Request::SaveSession(file),
-            Self::Picture => Request::Screenshot(ScreenshotOrder::Picture(file)),
+            Self::Picture(of) => Request::Screenshot(ScreenshotOrder::Picture(file, of)),
             Self::Changes => Request::SaveChanges(file),
             Self::Plot => Request::SavePlot(file),
             Self::Film => Request::Screenshot(ScreenshotOrder::Film(file)),
@@ -277,7 +279,7 @@ async fn ask_system(purpose: Purpose) -> DialogAnswer {
             let name = format!("session.{SESSION_EXTENSION}");
             dialog.set_file_name(name).save_file().await
         }
-        Purpose::Picture => {
+        Purpose::Picture(_) => {
             let dialog = dialog.add_filter("Pictures", &["png"]);
             dialog.set_file_name("grainfall.png").save_file().await
         }
@@ -339,7 +341,7 @@ fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath) -> Option<FieldAnswer> {
         ui.horizontal(|ui| {
             let verb = match typed.purpose {
                 Purpose::Open => "Open",
-                Purpose::Session | Purpose::Picture | Purpose::Changes | Purpose::Plot => "Save",
+                Purpose::Session | Purpose::Picture(_) | Purpose::Changes | Purpose::Plot => "Save",
                 Purpose::Film => "Record",
                 Purpose::SweepFolder => "Choose",
             };

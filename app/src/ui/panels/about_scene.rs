@@ -3,7 +3,7 @@
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::request::Request;
-use crate::ui::words::run_names::{title_in_words, value_in_words};
+use crate::ui::words::names::{title_in_words, value_in_words};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
 use grainfall::parameters::Parameter;

@@ -10,12 +10,13 @@ use crate::simulation::Simulation;
 use crate::ui::panel::{Panel, has_bed};
 use crate::ui::playback::{Way, seek, to_avalanche};
 use crate::ui::plots::axes::height_of;
-use crate::ui::plots::run_curves::{Curves, change_times, halves_ui, kept_runs};
+use crate::ui::plots::run_curves::{Curves, change_times, halves_ui};
 use crate::ui::plots::time_plot::{TimePlot, moment_ui, size_of_plots};
 use crate::ui::plots::time_window::{TimeWindow, clicked_time, near_start, per_point};
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
+use crate::ui::words::run_names::RunNames;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Align2, RichText, Stroke, WidgetInfo, WidgetType};
 use egui_plot::{HLine, LineStyle, MarkerShape, PlotPoint, PlotUi, Points, Text, VLine};
@@ -99,7 +100,7 @@ impl Panel for AvalanchePlots {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let (changes, kept) = (change_times(simulation), kept_runs(simulation));
+        let (changes, kept) = (change_times(simulation), RunNames::of(simulation).kept);
         let curves = Curves::of(simulation, &changes, &kept);
         halves_ui(ui, simulation);
         avalanches_ui(ui, simulation, out);

@@ -1,20 +1,18 @@
-//! What was changed and when, and the runs that were left for others.
+//! What was changed and when, and below it the runs that there are.
 //!
-//! In: the simulation. Out: requests to show a moment, to take up or to forget a run, to save the
-//! list.
+//! In: the simulation. Out: requests to show a moment, to save the list, and those about runs.
 
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
-use crate::ui::plots::run_curves::line_sample_ui;
+use crate::ui::panels::run_list::RunList;
 use crate::ui::request::Request;
-use crate::ui::theme::{Palette, dash};
+use crate::ui::words::names::setting_in_words;
 use crate::ui::words::number;
-use crate::ui::words::run_names::{parameter_name, setting_in_words, value_in_words};
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, ScrollArea};
 use grainfall::lab::{Half, RunView};
 use grainfall::parameters::Parameter;
-use grainfall::run::{Branch, Command, changes};
+use grainfall::run::{Command, changes};
 
 /// Height of the list of changes before it scrolls, in points.
 const LIST_HEIGHT: f32 = 170.0;
@@ -25,6 +23,7 @@ pub struct ChangeList {
     rows: Vec<ChangeRow>,
     /// The revision of the commands of both runs that the rows were made of.
     revision: [u64; 2],
+    runs: RunList,
 }
 
 /// One change in words.
@@ -62,7 +61,7 @@ impl Panel for ChangeList {
                 out.push(Request::ChooseChanges);
             }
         }
-        kept_runs_ui(ui, simulation, out);
+        self.runs.ui(ui, simulation, out);
     }
 }
 
@@ -130,59 +129,3 @@ fn rows_of(simulation: &RunView, listed: impl Fn(&Parameter) -> bool) -> Vec<Cha
     });
     rows.filter(|row| !row.text.is_empty()).collect()
 }
-
-/// The runs that were left for others.
-fn kept_runs_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let past = simulation.past();
-    if past.kept.is_empty() {
-        return;
-    }
-    ui.add_space(4.0);
-    ui.label(RichText::new(format!("Beside the present run, run {}", past.number)).strong());
-    let palette = Palette::of(ui.visuals());
-    for (index, record) in past.kept.iter().enumerate() {
-        ui.horizontal(|ui| {
-            let stroke = egui::Stroke::new(1.6, palette.kept);
-            line_sample_ui(ui, Some(dash(index)), stroke);
-            let name = format!("Run {}", record.number);
-            ui.label(&name).on_hover_text(describe(record, simulation));
-            ui.weak(format!("to {}", number::moment(record.end.time)));
-            let buttons = [
-                ("Show", "Take this run up again", Command::Return(index)),
-                ("Forget", "Keep this run no longer", Command::Forget(index)),
-            ];
-            for (verb, hint, command) in buttons {
-                let enabled = simulation.comparison().is_none() || verb == "Forget";
-                let button = egui::Button::new(verb).small();
-                let response = ui.add_enabled(enabled, button).on_hover_text(hint);
-                let response = response.on_disabled_hover_text(OF_ONE_RUN);
-                let label = format!("{verb} {}", name.to_lowercase());
-                response.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, &label)
-                });
-                if response.clicked() {
-                    out.push(Request::Command(command));
-                }
-            }
-        });
-    }
-}
-
-/// The last change of a kept run, which tells it from the others.
-fn describe(branch: &Branch, simulation: &RunView) -> String {
-    let last = branch.history.commands().last();
-    let Some((stamped, Command::Set { parameter, value })) =
-        last.map(|stamped| (stamped, &stamped.command))
-    else {
-        return "Nothing was changed in it.".into();
-    };
-    format!(
-        "Its last change: {} {} at {}",
-        parameter_name(parameter, simulation),
-        value_in_words(parameter, *value),
-        number::moment(stamped.time)
-    )
-}
-
-/// Why kept runs have to wait.
-pub const OF_ONE_RUN: &str = "Two runs stand side by side, and it would take the place of one of them: end the comparison first";

@@ -8,12 +8,13 @@ use crate::simulation::Simulation;
 use crate::ui::panel::{Panel, is_column};
 use crate::ui::playback::seek;
 use crate::ui::plots::axes::height_of;
-use crate::ui::plots::run_curves::{Curves, change_times, halves_ui, kept_runs};
+use crate::ui::plots::run_curves::{Curves, change_times, halves_ui};
 use crate::ui::plots::time_plot::{TimePlot, moment_ui, size_of_plots};
 use crate::ui::plots::time_window::{TimeWindow, clicked_time};
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
+use crate::ui::words::run_names::RunNames;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, Stroke};
 use egui_plot::{LineStyle, PlotUi, VLine};
@@ -58,7 +59,7 @@ impl Panel for CollapsePlots {
         view: &mut ViewSettings,
         out: &mut Vec<Request>,
     ) {
-        let (changes, kept) = (change_times(simulation), kept_runs(simulation));
+        let (changes, kept) = (change_times(simulation), RunNames::of(simulation).kept);
         let all = Curves::of(simulation, &changes, &kept);
         halves_ui(ui, simulation);
         ui.horizontal_wrapped(|ui| self.window.choice_ui(ui));

@@ -10,14 +10,14 @@ use crate::ui::playback::{moment_shown, seek};
 use crate::ui::plot_export::{Export, ExportedRun, PlotAxis};
 use crate::ui::plots::axes::{fitting_plot, height_of};
 use crate::ui::plots::decimate::decimate;
-use crate::ui::plots::run_curves::{compared_line, halves_ui, kept_runs};
+use crate::ui::plots::run_curves::{compared_line, halves_ui};
 use crate::ui::plots::time_plot::moment_ui;
 use crate::ui::plots::time_window::near_start;
 use crate::ui::request::Request;
 use crate::ui::theme::{Palette, dash};
 use crate::ui::widgets::combo::combo_ui;
 use crate::ui::words::number;
-use crate::ui::words::run_names::half_title;
+use crate::ui::words::run_names::RunNames;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, Stroke, WidgetInfo, WidgetType};
 use egui_plot::{HoverPosition, Line, LineStyle, Plot, PlotItem, VLine};
@@ -139,23 +139,21 @@ impl Explorer {
 
     /// The lines of all runs, in the order in which they are drawn.
     fn lines(&self, simulation: &Simulation, columns: usize, palette: Palette) -> Vec<Line<'_>> {
-        let kept = kept_runs(simulation).into_iter().enumerate();
+        let names = RunNames::of(simulation);
+        let own = Line::new(
+            names.present(Half::Left),
+            self.points(simulation.series(), columns),
+        );
+        let compared = simulation.comparison().map(|comparison| {
+            let points = self.points(comparison.right.series(), columns);
+            compared_line(names.present(Half::Right), points, palette)
+        });
+        let kept = names.kept.into_iter().enumerate();
         let kept = kept.map(|(index, (name, record))| {
             let length = dash(index);
             Line::new(name, self.points(&record.series, columns))
                 .color(palette.kept)
                 .style(LineStyle::Dashed { length })
-        });
-        let comparison = simulation.comparison();
-        let name = if comparison.is_some() {
-            "left"
-        } else {
-            "this run"
-        };
-        let own = Line::new(name, self.points(simulation.series(), columns));
-        let compared = comparison.map(|comparison| {
-            let points = self.points(comparison.right.series(), columns);
-            compared_line("right", points, palette)
         });
         kept.chain([own.color(palette.angle).width(1.7)])
             .chain(compared)
@@ -218,17 +216,19 @@ impl Explorer {
                 .map(|(x, y)| [*x, *y])
                 .collect(),
         };
-        let mut runs = match simulation.comparison() {
-            None => vec![run("this run".to_owned(), simulation.series())],
-            Some(_) => Half::ALL
-                .map(|half| {
-                    let name = format!("{}: {}", half.label(), half_title(simulation, half));
-                    run(name, simulation.half(half).series())
-                })
-                .into(),
+        let names = RunNames::of(simulation);
+        let own = |half| {
+            run(
+                names.present(half).to_owned(),
+                simulation.half(half).series(),
+            )
         };
-        let kept = kept_runs(simulation).into_iter();
-        runs.extend(kept.map(|(name, record)| run(name.to_lowercase(), &record.series)));
+        let mut runs = match simulation.comparison() {
+            None => vec![own(Half::Left)],
+            Some(_) => Half::ALL.map(own).into(),
+        };
+        let kept = names.kept.into_iter();
+        runs.extend(kept.map(|(name, record)| run(name, &record.series)));
         let from = simulation
             .provenance()
             .unwrap_or_else(|| Provenance::of_scene(simulation.scene()));

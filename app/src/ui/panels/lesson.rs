@@ -10,7 +10,7 @@ use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::widgets::field;
 use crate::ui::widgets::touch;
-use crate::ui::words::run_names::{parameter_name, value_in_words};
+use crate::ui::words::names::{parameter_name, value_in_words};
 use crate::view::{CameraRequest, ColourBy, StandardView, ViewSettings};
 use bevy_egui::egui::{self, Key, RichText, ScrollArea, WidgetInfo, WidgetType};
 use grainfall::lesson::{

@@ -1,6 +1,6 @@
 //! The panels on both sides of the picture: one file, one struct, one function `ui` each. None of
 //! them knows another; what two of them share stands in a file of its own (`averages`,
-//! `beside_paper`, `start_values`) or in a lower folder.
+//! `beside_paper`, `run_list`, `start_values`) or in a lower folder.
 
 pub mod about_scene;
 pub mod avalanche_plots;
@@ -22,5 +22,6 @@ pub mod parameter_sweep;
 pub mod parameters;
 pub mod picture_settings;
 pub mod results;
+pub mod run_list;
 pub mod solver_profile;
 pub mod start_values;

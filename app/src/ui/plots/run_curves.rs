@@ -9,14 +9,12 @@ use crate::ui::playback::moment_shown;
 use crate::ui::plots::decimate::decimate;
 use crate::ui::theme::{COMPARED_DASH, Palette};
 use crate::ui::words::number;
-use crate::ui::words::run_names::half_title;
+use crate::ui::words::run_names::{KeptRun, RunNames};
 use bevy_egui::egui::{self, Stroke};
 use egui_plot::{Line, LineStyle};
 use grainfall::lab::{Half, RunView};
 use grainfall::measure::{Avalanche, Series};
-use grainfall::run::Branch;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 
 /// What the plots over time draw.
 #[derive(Clone, Copy)]
@@ -34,9 +32,6 @@ pub struct Curves<'a> {
     /// The moment shown [s], where it is not the newest.
     pub shown: Option<f64>,
 }
-
-/// A branch beside the present run, with its name.
-pub type KeptRun = (String, Arc<Branch>);
 
 /// The lines of one plot.
 pub struct Lines {
@@ -107,20 +102,6 @@ impl Lines {
     }
 }
 
-/// The branches beside the runs of `simulation`.
-pub fn kept_runs(simulation: &Simulation) -> Vec<KeptRun> {
-    let of = |run: &RunView, beside: &str| -> Vec<KeptRun> {
-        let named =
-            |branch: &Arc<Branch>| (format!("Run {}{beside}", branch.number), branch.clone());
-        run.past().kept.iter().map(named).collect()
-    };
-    let mut kept = of(simulation, "");
-    if let Some(comparison) = simulation.comparison() {
-        kept.extend(of(comparison.right, ", right"));
-    }
-    kept
-}
-
 /// Times at which parameters were changed [s], ascending. One drag of a slider is one change.
 pub fn change_times(run: &RunView) -> Vec<f64> {
     let commands = run.commands();
@@ -133,6 +114,7 @@ pub fn halves_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     if simulation.comparison().is_none() {
         return;
     }
+    let names = RunNames::of(simulation);
     let palette = Palette::of(ui.visuals());
     let lines = [
         (Half::Left, ui.visuals().text_color(), None),
@@ -141,8 +123,8 @@ pub fn halves_ui(ui: &mut egui::Ui, simulation: &Simulation) {
     for (half, colour, dash) in lines {
         ui.horizontal(|ui| {
             line_sample_ui(ui, dash, Stroke::new(1.8, colour));
-            let title = number::capitalised(&half_title(simulation, half));
-            ui.label(format!("{}: {title}", number::capitalised(half.label())));
+            let side = number::capitalised(half.label());
+            ui.label(format!("{side}: {}", names.present(half)));
         });
     }
 }

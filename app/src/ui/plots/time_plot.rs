@@ -16,8 +16,12 @@ use std::ops::RangeInclusive;
 
 /// Room for half of the last label of the time axis.
 const ROOM_AT_THE_RIGHT: f32 = 14.0;
-/// Width and height of the name of a kept run, as shares of the plot.
-const LABEL_SIZE: [f64; 2] = [0.14, 0.1];
+/// Height of the name of a kept run, as a share of the plot.
+const LABEL_HEIGHT: f64 = 0.1;
+/// Width of a letter of it, about, in points.
+const LETTER_WIDTH: f32 = 5.6;
+/// Longest name on a plot, in letters; the pointer tells the rest.
+const LONGEST_NAME: usize = 22;
 /// Width of the line whose mark in the picture is under the pointer, in points.
 const LIT_WIDTH: f32 = 3.4;
 /// Room for the value of a run beside the title, in points.
@@ -186,7 +190,7 @@ fn kept_ui(
     name: &str,
     points: Vec<[f64; 2]>,
     colour: Color32,
-    labels: &mut Vec<[f64; 2]>,
+    labels: &mut Vec<[f64; 3]>,
 ) {
     let Some([time, value]) = points.last().copied() else {
         return;
@@ -199,24 +203,39 @@ fn kept_ui(
                 length: dash(index),
             }),
     );
-    let label = RichText::new(name).small().color(colour);
+    let shown = shortened(name);
     let bounds = plot.plot_bounds();
-    let end = time.min(bounds.max()[0]);
-    let place = free_place([end, value], [bounds.width(), bounds.height()], labels);
+    let share = LETTER_WIDTH * shown.chars().count() as f32 / plot.transform().frame().width();
+    let width = f64::from(share) * bounds.width();
+    // Right-aligned at the end of its line, where it is not cut off on the left.
+    let end = time.max(bounds.min()[0] + width).min(bounds.max()[0]);
+    let place = free_place([end, value, width], LABEL_HEIGHT * bounds.height(), labels);
     labels.push(place);
-    plot.text(Text::new(name, PlotPoint::from(place), label).anchor(Align2::RIGHT_BOTTOM));
+    let at = PlotPoint::new(place[0], place[1]);
+    let label = RichText::new(shown).small().color(colour);
+    plot.text(Text::new(name, at, label).anchor(Align2::RIGHT_BOTTOM));
 }
 
-/// Where a label that belongs at `wanted` stands on a plot of this `size` without lying over others.
-fn free_place(wanted: [f64; 2], size: [f64; 2], others: &[[f64; 2]]) -> [f64; 2] {
-    let [width, height] = [LABEL_SIZE[0] * size[0], LABEL_SIZE[1] * size[1]];
-    let is_taken = |place: &[f64; 2]| {
-        let covers = |other: &[f64; 2]| {
-            (other[0] - place[0]).abs() < width && (other[1] - place[1]).abs() < 0.99 * height
+/// `name` as far as a plot has room for it.
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    let kept: String = name.chars().take(LONGEST_NAME - 1).collect();
+    format!("{}…", kept.trim_end())
+}
+
+/// Where a label that belongs at `wanted` (its right end, its height, its width) stands without lying
+/// over others, each label so `high`.
+fn free_place(wanted: [f64; 3], high: f64, others: &[[f64; 3]]) -> [f64; 3] {
+    let is_taken = |place: &[f64; 3]| {
+        let covers = |other: &[f64; 3]| {
+            let beside = place[0] - place[2] < other[0] && other[0] - other[2] < place[0];
+            beside && (other[1] - place[1]).abs() < 0.99 * high
         };
         others.iter().any(covers)
     };
-    let below = |rows: usize| [wanted[0], wanted[1] - rows as f64 * height];
+    let below = |rows: usize| [wanted[0], wanted[1] - rows as f64 * high, wanted[2]];
     // Each of them may cover two rows.
     let mut places = (0..=2 * others.len()).map(below);
     places.find(|place| !is_taken(place)).unwrap_or(wanted)
@@ -263,16 +282,28 @@ mod tests {
 
     #[test]
     fn names_of_runs_that_end_together_stand_below_each_other() {
-        let size = [20.0, 10.0];
+        // A tenth of a plot that is 10 high, and names of 3.
+        let (high, width) = (1.0, 3.0);
         let mut labels = Vec::new();
         for value in [5.0, 5.1, 4.9, 9.0] {
-            let place = free_place([18.0, value], size, &labels);
-            let is_free = |other: &[f64; 2]| (place[1] - other[1]).abs() >= 0.99;
+            let place = free_place([18.0, value, width], high, &labels);
+            let is_free = |other: &[f64; 3]| (place[1] - other[1]).abs() >= 0.99;
             assert!(labels.iter().all(is_free), "{place:?} {labels:?}");
             labels.push(place);
         }
-        assert_eq!((labels[0], labels[3]), ([18.0, 5.0], [18.0, 9.0]));
-        let far = free_place([2.0, 5.0], size, &labels);
-        assert_eq!(far, [2.0, 5.0]);
+        let kept = (labels[0], labels[3]);
+        assert_eq!(kept, ([18.0, 5.0, width], [18.0, 9.0, width]));
+        for free in [[14.9, 5.0, width], [2.0, 5.0, 1.0]] {
+            assert_eq!(free_place(free, high, &labels), free);
+        }
+        // A long name reaches over to the others.
+        assert!(free_place([21.0, 5.0, 4.0], high, &labels)[1] < 5.0);
+    }
+
+    #[test]
+    fn long_names_are_cut_on_a_plot() {
+        assert_eq!(shortened("μ 0.8 from 3.20 s"), "μ 0.8 from 3.20 s");
+        let long = shortened("glycerol from 3.20 s, N 470");
+        assert_eq!(long, "glycerol from 3.20 s,…");
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! In: an event and the run that it is of. Out: a line of text.
 
+use crate::ui::words::names::setting_in_words;
 use crate::ui::words::number;
-use crate::ui::words::run_names::setting_in_words;
 use grainfall::lab::RunView;
 use grainfall::measure::Measure;
 use grainfall::run::{Event, Happening, Pair};

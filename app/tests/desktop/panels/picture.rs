@@ -1,5 +1,6 @@
 //! The picture: its settings, and clicks on it.
 
+use crate::measured::caption;
 use crate::window_of_panels::{Window, prepared};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Modifiers};
@@ -87,14 +88,11 @@ fn what_the_colours_mean_stands_beside_the_picture() {
         };
         let mut harness = Harness::builder().with_size([640.0, 360.0]).build_ui_state(
             move |ui, (settings, camera): &mut (ViewSettings, OrbitCamera)| {
-                let caption = Caption {
-                    world: Some(&world),
-                    real_time_factor: None,
-                    title: None,
+                let without_clock = Caption {
                     has_clock: false,
-                    is_for_afar: false,
+                    ..caption(&world)
                 };
-                viewport_ui(ui, &[caption], settings, camera);
+                viewport_ui(ui, &[without_clock], settings, camera);
             },
             (settings, OrbitCamera::default()),
         );
@@ -124,14 +122,7 @@ fn a_click_on_the_picture_picks_the_grain_under_it() {
         (world.grains.position[1].as_vec3(), 0.05, 0.0, 0.0);
     let mut harness = Harness::builder().with_size([400.0, 300.0]).build_ui_state(
         move |ui, (settings, camera): &mut (ViewSettings, OrbitCamera)| {
-            let caption = Caption {
-                world: Some(&world),
-                real_time_factor: None,
-                title: None,
-                has_clock: true,
-                is_for_afar: false,
-            };
-            viewport_ui(ui, &[caption], settings, camera);
+            viewport_ui(ui, &[caption(&world)], settings, camera);
         },
         (ViewSettings::default(), camera),
     );

@@ -1,6 +1,7 @@
 //! Room: how much of the window the picture has, how large text is, where panels stand, what is left
 //! of them while something is presented.
 
+use crate::measured::caption;
 use crate::window_of_panels::{Window, in_the_lab, prepared, ready, standing};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Event, Key, Pos2, Rect, Shape, Vec2, vec2};
@@ -227,14 +228,11 @@ fn what_is_presented_is_read_from_the_last_row() {
     let size = vec2(1280.0, 720.0);
     let mut harness = Harness::builder().with_size(size).build_ui_state(
         move |ui, (settings, camera): &mut (ViewSettings, OrbitCamera)| {
-            let caption = Caption {
-                world: Some(&world),
-                real_time_factor: None,
-                title: None,
-                has_clock: true,
+            let afar = Caption {
                 is_for_afar: true,
+                ..caption(&world)
             };
-            viewport_ui(ui, &[caption], settings, camera);
+            viewport_ui(ui, &[afar], settings, camera);
         },
         (settings, OrbitCamera::default()),
     );
