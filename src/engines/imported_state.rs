@@ -12,7 +12,7 @@ use crate::world::{Clock, Grains, Ledger, Polyhedra, World};
 use glam::DVec3;
 
 /// What a sample of an imported state has no value of: it takes forces, or what contacts remember.
-const UNKNOWN: [Measure; 11] = [
+const UNKNOWN: [Measure; 12] = [
     Measure::Bridges,
     Measure::Ruptures,
     Measure::ViscousLoss,
@@ -24,6 +24,7 @@ const UNKNOWN: [Measure; 11] = [
     Measure::RollingLoss,
     Measure::EnergyResidual,
     Measure::DrumTorque,
+    Measure::FloorForce,
 ];
 
 /// Most that the stated radius of a body may differ from its shape's, relative to it.

@@ -273,6 +273,11 @@ impl Engine {
             LabCommand::Rescue { path, look } => self.rescue(&path, look),
             LabCommand::Compare { parameter, value } => self.compare(parameter, value),
             LabCommand::EndComparison { keep } => self.end_comparison(keep),
+            LabCommand::NameBranch { half, number, name } => {
+                if let LabStage::Ready(runs) = &mut self.stage {
+                    runs.name_branch(half, number, &name);
+                }
+            }
             LabCommand::SetIn {
                 half,
                 parameter,
@@ -467,6 +472,7 @@ fn parts_changes(command: &LabCommand) -> bool {
         | LabCommand::CloseChange
         | LabCommand::ForgetMeasured(_)
         | LabCommand::MeasureFlow
+        | LabCommand::NameBranch { .. }
         | LabCommand::Rescue { .. }
         | LabCommand::Hold(_)
         | LabCommand::Threads(_) => false,

@@ -273,6 +273,7 @@ impl Lab {
             | LabCommand::OpenChange
             | LabCommand::CloseChange
             | LabCommand::EndComparison { .. }
+            | LabCommand::NameBranch { .. }
             | LabCommand::ForgetMeasured(_)
             | LabCommand::Hold(_)
             | LabCommand::MeasureFlow

@@ -40,6 +40,15 @@ pub enum LabCommand {
         /// The run to go on with.
         keep: Half,
     },
+    /// Call a branch by a name; an empty one takes its name away.
+    NameBranch {
+        /// In which run's list it is.
+        half: Half,
+        /// Its number.
+        number: u32,
+        /// Its name.
+        name: String,
+    },
     /// Write the session to a file: every run with its branches.
     Save {
         /// The file.

@@ -234,6 +234,7 @@ impl Playback {
             LabCommand::SetIn { .. }
             | LabCommand::Compare { .. }
             | LabCommand::EndComparison { .. }
+            | LabCommand::NameBranch { .. }
             | LabCommand::Save { .. } => return Err(CommandError::Recorded),
         }
         Ok(())

@@ -311,7 +311,7 @@ impl RunView {
             self.heed(self.extremes.advise(&news.world));
         }
         let count = |branch: &Branch| (branch.number, branch.history.commands().len());
-        if count(&self.branch) != count(&news.branch) {
+        if count(&self.branch) != count(&news.branch) || self.past.names != news.past.names {
             self.revision = next_number();
         }
         if self.branch.number != news.branch.number {

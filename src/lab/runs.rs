@@ -290,6 +290,13 @@ impl Runs {
         self.list[0].timeline.forget(index);
     }
 
+    /// Calls the branch of this `number` of the run in `half` by `name`.
+    pub fn name_branch(&mut self, half: Half, number: u32, name: &str) {
+        if let Some(run) = self.list.get_mut(half.index()) {
+            run.timeline.name_branch(number, name);
+        }
+    }
+
     /// Works on `threads` threads in all from now on.
     pub fn use_threads(&mut self, threads: usize) {
         let share = (threads / self.list.len()).max(1);

@@ -17,9 +17,11 @@
 //! | `contact_network` | coordination number, shares of the pairs of species, largest overlap |
 //! | `energy_ledger` | elastic energy, and what came in and was lost since the start |
 //! | `wet_bed` | liquid bridges, capillary and Galilei number, the law of the drops |
+//! | `mixing` | how well the kinds of grains are mixed |
 //! | `drum_torque` | the torque with which a drum turns its grains |
 //! | `velocity_kernel`, `velocity_map` | mean velocities near a point, and on a grid |
 //! | `deposit` | the heap of a column: front, height, profile, shape |
+//! | `floor` | what the floor under a column bears |
 //! | `grain_quantity` | numbers of each grain, to colour a picture by |
 //! | `histogram` | how often values occur: [`Histogram`] |
 //! | **of a run** | |
@@ -59,9 +61,11 @@ mod drum_torque;
 mod dry_drum;
 mod energy_ledger;
 mod estimate;
+mod floor;
 mod flow;
 mod grain_quantity;
 mod histogram;
+mod mixing;
 mod near_pairs;
 pub mod numeral;
 mod packing_fraction;
@@ -102,9 +106,11 @@ pub use drum_torque::drum_torque;
 pub use dry_drum::{DryDrum, beyond_kasper, dry_drum};
 pub use energy_ledger::{EnergyLedger, elastic_energy};
 pub use estimate::Estimate;
+pub use floor::{floor_force, floor_pressure, weight};
 pub use flow::{FlowDepth, FlowHistory, FlowProfile, MeanFlow, NON_RIGID_TEMPERATURE};
 pub use grain_quantity::GrainQuantity;
 pub use histogram::Histogram;
+pub use mixing::mixing_index;
 pub use packing_fraction::packing_fraction;
 pub use quantity::{Format, MeasuredValue, Quantity, Scope};
 pub use regime::Regime;

@@ -63,6 +63,8 @@ pub enum Scope {
     Drums,
     /// Columns that collapse.
     Columns,
+    /// Where there are several kinds of grains.
+    Mixtures,
     /// Where there is liquid, and beds, into which it can be poured.
     Liquids,
 }

@@ -25,7 +25,7 @@ use crate::world::World;
 pub const LEFT_OUT: f64 = 0.4;
 
 /// The measures of which a bed's results give the mean.
-const MEANS: [Measure; 10] = [
+const MEANS: [Measure; 11] = [
     Measure::SurfaceAngle,
     Measure::GranularTemperature,
     Measure::CorotatingTemperature,
@@ -36,10 +36,11 @@ const MEANS: [Measure; 10] = [
     Measure::SurfaceCurvature,
     Measure::Bridges,
     Measure::DrumTorque,
+    Measure::MixingIndex,
 ];
 
 /// What the results of a column take from its last sample.
-const COLUMN_AT_END: [Measure; 8] = [
+const COLUMN_AT_END: [Measure; 11] = [
     Measure::FrontRadius99,
     Measure::FrontRadius95,
     Measure::ClusterRadius,
@@ -48,6 +49,9 @@ const COLUMN_AT_END: [Measure; 8] = [
     Measure::MixedPairs,
     Measure::SecondPairs,
     Measure::CoordinationNumber,
+    Measure::MixingIndex,
+    Measure::FloorForce,
+    Measure::Weight,
 ];
 
 /// The terms of the energy balance that a residual is compared with.

@@ -7,6 +7,8 @@ use super::contact_network::{contact_shares, coordination_number, largest_overla
 use super::deposit::Deposit;
 use super::drum_torque::drum_torque;
 use super::energy_ledger::EnergyLedger;
+use super::floor::{floor_force, weight};
+use super::mixing::mixing_index;
 use super::packing_fraction::packing_fraction;
 use super::sampled_quantity::Measure;
 use super::surface::{MIDDLE_SHARE, SurfaceLine, surface_line};
@@ -93,6 +95,7 @@ fn set_common(sample: &mut Sample, world: &World) {
     sample.set(Measure::RollingLoss, energy.rolling_loss);
     sample.set(Measure::EnergyResidual, energy.residual());
     sample.set(Measure::MeanSpeed, mean_speed(world));
+    sample.set(Measure::MixingIndex, mixing_index(world));
 }
 
 /// What a bed with a free surface shows; returns that surface.
@@ -138,6 +141,8 @@ fn set_collapse(sample: &mut Sample, world: &World, column: &InitialColumn) {
     sample.set(Measure::FirstPairs, first);
     sample.set(Measure::MixedPairs, mixed);
     sample.set(Measure::SecondPairs, second);
+    sample.set(Measure::FloorForce, floor_force(world));
+    sample.set(Measure::Weight, weight(world));
 }
 
 /// Mean speed of the grains' centres [m/s]; NaN without grains.

@@ -292,13 +292,42 @@ quantities! {
             format: Format::Fixed(3),
             scope: Scope::Columns,
         }
+        MixingIndex {
+            key: "mixing index",
+            description: "Share of the pairs of neighbours that are of unlike kinds, over that by \
+                          chance: 0 where kinds never meet, 1 where they are mixed at random, \
+                          above 1 where they alternate. Neighbours have less than a third of the \
+                          mean radius between them.",
+            symbol: "I_m",
+            format: Format::Fixed(3),
+            scope: Scope::Mixtures,
+            source: "1 − r of Newman 2003",
+            equation: "I_m = (1 − Σ e_aa)/(1 − Σ a_a²)",
+        }
+        FloorForce {
+            key: "floor force",
+            description: "Force with which the grains press on the floor, that of all contacts: \
+                          their weight at rest, nothing in free fall.",
+            symbol: "F_f",
+            unit: Unit::same("N"),
+            format: Format::Prefixed,
+            scope: Scope::Columns,
+        }
+        Weight {
+            key: "weight",
+            description: "What all grains weigh.",
+            symbol: "W",
+            unit: Unit::same("N"),
+            format: Format::Prefixed,
+            scope: Scope::Columns,
+        }
     }
 }
 
 impl Measure {
     /// Whether it has a meaning in `world`: only a drum, a box or a mesh holds a bed that has a
-    /// surface (of a mesh nobody says how much room is below it), only a drum is turned, only a column has a front, and without liquid there are no bridges
-    /// but where it can be poured in.
+    /// surface (of a mesh nobody says how much room is below it), only a drum is turned, only a column has a front, what is mixed has kinds, as many as its
+    /// scene names, and without liquid there are no bridges but where it can be poured in.
     pub fn applies_to(self, world: &World) -> bool {
         let shape = &world.container.shape;
         let has_bed = matches!(
@@ -311,6 +340,7 @@ impl Measure {
             Scope::Beds => has_bed,
             Scope::Drums => matches!(shape, Shape::Drum { .. }),
             Scope::Columns => matches!(shape, Shape::Column { .. }),
+            Scope::Mixtures => world.species.len() > 1,
             Scope::Liquids => has_bed || world.liquid.is_some(),
         }
     }

@@ -164,22 +164,53 @@ impl Series {
     }
 }
 
-/// The columns in a file: a list that has one entry per measure.
+/// The columns in a file: a list that has one entry per measure. A file of an earlier build lacks
+/// the measures that were added since: samples in it have no value of them.
 mod columns {
     use super::{Column, Measure};
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
     type Columns = [Column; Measure::COUNT];
 
+    /// Columns of the first sessions of this version.
+    const FEWEST: usize = Measure::MixingIndex as usize;
+
     pub fn serialize<S: Serializer>(columns: &Columns, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(columns.iter().map(Column::values))
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Columns, D::Error> {
-        let columns: Vec<Vec<f64>> = Vec::deserialize(deserializer)?;
+        let mut columns: Vec<Vec<f64>> = Vec::deserialize(deserializer)?;
+        if (FEWEST..Measure::COUNT).contains(&columns.len()) {
+            let unknown = vec![f64::NAN; columns[0].len()];
+            columns.resize(Measure::COUNT, unknown);
+        }
         let columns: Vec<Column> = columns.into_iter().map(Column::from).collect();
         let count = columns.len();
-        let expected = format!("{} columns", Measure::COUNT);
+        let expected = format!("{FEWEST} to {} columns", Measure::COUNT);
         (columns.try_into()).map_err(|_| D::Error::invalid_length(count, &expected.as_str()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_of_an_earlier_build_have_no_value_of_what_was_added_since() {
+        let of = |columns: usize| {
+            let columns = vec![vec![1.0, 2.0]; columns];
+            let series = (vec![0_u64, 5], vec![0.0, 0.1], columns);
+            let bytes = postcard::to_stdvec(&series).unwrap();
+            postcard::from_bytes::<Series>(&bytes)
+        };
+        let earlier = of(Measure::MixingIndex as usize).unwrap();
+        assert!(earlier.is_whole());
+        assert_eq!(earlier.column(Measure::SecondPairs), [1.0, 2.0]);
+        let added = earlier.column(Measure::MixingIndex);
+        assert!(added.len() == 2 && added.iter().all(|value| value.is_nan()));
+        for wrong in [0, Measure::MixingIndex as usize - 1, Measure::COUNT + 1] {
+            assert!(of(wrong).is_err(), "{wrong} columns");
+        }
     }
 }

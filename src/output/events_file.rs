@@ -10,6 +10,23 @@ use std::io::{self, Write};
 /// The file's name.
 pub const EVENTS: &str = "events.csv";
 
+/// What a contact that begins is called in it.
+pub const IMPACT: &str = "impact";
+/// What a contact that ends is called.
+pub const PARTING: &str = "parting";
+/// What a liquid bridge that begins is called.
+pub const BRIDGE_FORMS: &str = "bridge forms";
+/// What a liquid bridge that ends is called.
+pub const BRIDGE_RUPTURES: &str = "bridge ruptures";
+/// What the maximum of θ before an avalanche is called.
+pub const AVALANCHE_BEGINS: &str = "avalanche begins";
+/// What the minimum of θ after it is called.
+pub const AVALANCHE_ENDS: &str = "avalanche ends";
+/// What the rest of a column's front is called.
+pub const FRONT_STOPS: &str = "front stops";
+/// What a parameter's new value is called.
+pub const CHANGE: &str = "change";
+
 /// What stands in [`EVENTS`].
 pub fn events_table() -> Table {
     Table::new(
@@ -67,49 +84,49 @@ pub fn write_events(events: &[Event], walls: &[Wall], file: &mut dyn Write) -> i
 fn rows(what: &Happening) -> Vec<Row<'_>> {
     let row = match what {
         Happening::Impact { pair, speed } => Row {
-            event: "impact",
+            event: IMPACT,
             pair: Some(*pair),
             speed: Some(*speed),
             ..Row::default()
         },
         Happening::Parting { pair, duration } => Row {
-            event: "parting",
+            event: PARTING,
             pair: Some(*pair),
             duration: *duration,
             ..Row::default()
         },
         Happening::BridgeForms { pair } => Row {
-            event: "bridge forms",
+            event: BRIDGE_FORMS,
             pair: Some(*pair),
             ..Row::default()
         },
         Happening::BridgeRuptures { pair, duration } => Row {
-            event: "bridge ruptures",
+            event: BRIDGE_RUPTURES,
             pair: Some(*pair),
             duration: *duration,
             ..Row::default()
         },
         Happening::AvalancheBegins(avalanche) => Row {
-            event: "avalanche begins",
+            event: AVALANCHE_BEGINS,
             angle: Some(avalanche.theta_m),
             drop: Some(avalanche.drop()),
             ..Row::default()
         },
         Happening::AvalancheEnds(avalanche) => Row {
-            event: "avalanche ends",
+            event: AVALANCHE_ENDS,
             duration: Some(avalanche.end - avalanche.start),
             angle: Some(avalanche.theta_r),
             drop: Some(avalanche.drop()),
             ..Row::default()
         },
         Happening::FrontStops { radius } => Row {
-            event: "front stops",
+            event: FRONT_STOPS,
             radius: Some(*radius),
             ..Row::default()
         },
         Happening::Changed(change) => {
             let of_setting = |setting| Row {
-                event: "change",
+                event: CHANGE,
                 setting: Some(setting),
                 ..Row::default()
             };

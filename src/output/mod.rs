@@ -46,7 +46,10 @@ pub use container_file::write_container;
 pub use digest::{digest_of, digest_of_file};
 pub use ending::Ending;
 pub use error::OutputError;
-pub use events_file::EVENTS;
+pub use events_file::{
+    AVALANCHE_BEGINS, AVALANCHE_ENDS, BRIDGE_FORMS, BRIDGE_RUPTURES, CHANGE, EVENTS, FRONT_STOPS,
+    IMPACT, PARTING, events_table,
+};
 pub use folder::{
     CHECKPOINT, FRAME_LOG, OutputFolder, PROFILES, SAMPLES, SUMMARY, is_name_below, is_own_name,
     write_file,

@@ -1,5 +1,6 @@
 //! Profiles: `flow.csv`, that of the flowing layer over depth, averaged over the part of the run
-//! that results count, and `profile.csv`, that of a heap's height over the radius at the end.
+//! that results count, and `profile.csv`, those of a heap's height and of the pressure on the floor
+//! under it over the radius at the end.
 
 use crate::measure::{HeightProfile, MeanFlow};
 use crate::run::{Cells, Column, Table};
@@ -29,6 +30,7 @@ pub fn profile_table() -> Table {
         [
             Column::numbers("radius", "m").described("distance from the column's axis"),
             Column::numbers("height", "m").described("mean over the azimuth"),
+            Column::numbers("pressure", "Pa").described("mean on the floor under the ring"),
         ],
     )
 }
@@ -52,15 +54,21 @@ pub fn write_flow(flow: &MeanFlow, file: &mut dyn Write) -> io::Result<()> {
     writer.flush()
 }
 
-/// Writes `profile` to `file`: distance from the column's axis, mean height over the azimuth there.
+/// Writes `profile` to `file`: distance from the column's axis, mean height over the azimuth there and
+/// `pressure` on the floor.
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write_profile(profile: &HeightProfile, file: &mut dyn Write) -> io::Result<()> {
+pub fn write_profile(
+    profile: &HeightProfile,
+    pressure: &[f64],
+    file: &mut dyn Write,
+) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(file);
     writer.write_record(profile_table().heads())?;
-    for (radius, height) in profile.radius.iter().zip(&profile.height) {
-        writer.write_record([format!("{radius:?}"), format!("{height:?}")])?;
+    let rings = profile.radius.iter().zip(&profile.height).zip(pressure);
+    for ((radius, height), pressure) in rings {
+        writer.write_record([radius, height, pressure].map(|number| format!("{number:?}")))?;
     }
     writer.flush()
 }

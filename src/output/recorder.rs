@@ -14,7 +14,7 @@ use super::series_file::{SERIES, SeriesFile};
 use super::summary_file::SummaryFile;
 use super::velocity_file::{VELOCITY, velocity_table, write_velocity};
 use super::{Ending, OutputError, RunSoFar};
-use crate::measure::{Deposit, Summary};
+use crate::measure::{Deposit, Summary, floor_pressure};
 use crate::run::{Provenance, TABLES_METADATA, VERSION, method, write_metadata};
 use crate::scene::Scene;
 use crate::solver::{Extremes, TimeStepAdvice, advise};
@@ -376,7 +376,11 @@ impl Recorder {
         let flow = flow.filter(|flow| !flow.depths.is_empty());
         let fastest = run.and_then(|run| run.flow.fastest_since(from));
         let deposit = run.and_then(|run| Deposit::of(run.world));
-        let heights = deposit.map(|deposit| deposit.height_profile());
+        let profile = run.zip(deposit).map(|(run, deposit)| {
+            let heights = deposit.height_profile();
+            let pressure = floor_pressure(run.world, &heights);
+            (heights, pressure)
+        });
         let events = run.map(|run| (run.events(), &run.world.container.walls));
         let events = events.filter(|(events, _)| !events.is_empty());
         let series = self.series.as_ref();
@@ -395,7 +399,9 @@ impl Recorder {
             ),
             (
                 Some(profile_table()),
-                self.write_table(PROFILE, heights.as_ref(), write_profile)?,
+                self.write_table(PROFILE, profile.as_ref(), |(heights, pressure), file| {
+                    write_profile(heights, pressure, file)
+                })?,
             ),
             (
                 Some(events_table()),

@@ -17,7 +17,8 @@
 //! | `course` | what was set when, and where the walls are by then |
 //! | `stated` | what its record states of a run |
 //! | `shapes` | what polyhedra look like |
-//! | `samples`, `flow_table` | `series.csv`, `flow.csv` |
+//! | `tables` | the tables, each with what is to be said of it |
+//! | `samples`, `flow_table`, `meetings_table` | `series.csv`, `flow.csv`, `events.csv` |
 //! | `moments` | the list of the states' files |
 //! | `vtk_arrays` | arrays out of VTK's XML files |
 //! | `own_files` | files of the folder, each with its digest |
@@ -28,6 +29,7 @@ mod error;
 mod flow_survey;
 mod flow_table;
 mod follower;
+mod meetings_table;
 mod moments;
 mod own_files;
 mod recorded_run;
@@ -35,6 +37,7 @@ mod recorded_state;
 mod samples;
 mod shapes;
 mod stated;
+mod tables;
 mod vtk_arrays;
 
 pub use error::RecordingError;

@@ -5,16 +5,15 @@
 
 use super::RecordingError;
 use super::course::Course;
-use super::flow_table::{LARGEST_FLOW, mean_flow};
 use super::moments::{LARGEST_LIST, ListedFile, listed_files};
 use super::own_files::OwnFiles;
 use super::recorded_state::{OF_CONTACTS, OF_GRAINS, recorded_state};
-use super::samples::{LARGEST_TABLE, samples};
 use super::shapes::{WANTED, shapes};
 use super::stated::{RunProgress, first_step, notes_of, progress_of, stamped};
+use super::tables::Tables;
 use super::vtk_arrays::{LARGEST_FILE, VtkArrays};
 use crate::measure::{MeanFlow, Series};
-use crate::output::{FLOW, IMPORTED, LISTS, SERIES, SHAPES, SUMMARY};
+use crate::output::{IMPORTED, LISTS, SHAPES, SUMMARY};
 use crate::run::{
     Branch, CommandError, Moment, ParameterInfo, RunRecord, StampedCommand, accept, live_parameters,
 };
@@ -155,8 +154,9 @@ impl Recording {
         }
         recording.list_states()?;
         recording.take_samples();
-        recording.take_flow();
-        recording.take_commands()?;
+        let first = recording.first_world()?;
+        recording.take_commands(&first)?;
+        recording.take_tables(&first);
         Ok(recording)
     }
 
@@ -211,7 +211,7 @@ impl Recording {
             branch.end = self.moments.last().copied().unwrap_or_default();
         }
         let samples = self.branch.series.len();
-        if let Ok((_, series, _)) = self.read_samples() {
+        if let Ok((series, _)) = self.tables().samples() {
             self.set_series(series);
         }
         Ok(self.frames.len() > known || self.branch.series.len() > samples)
@@ -318,31 +318,33 @@ impl Recording {
         listed_files(&list)
     }
 
+    fn tables(&self) -> Tables<'_> {
+        Tables {
+            files: &self.files,
+            is_over: self.progress == RunProgress::Over,
+        }
+    }
+
     /// Reads the samples; without them there are no plots.
     fn take_samples(&mut self) {
-        match self.read_samples() {
-            Ok((note, series, fault)) => {
-                self.notes.extend(note.into_iter().chain(fault));
+        match self.tables().samples() {
+            Ok((series, notes)) => {
+                self.notes.extend(notes);
                 self.set_series(series);
             }
             Err(error) => self.notes.push(format!("There are no plots: {error}")),
         }
     }
 
-    /// Reads the mean flow, if there is one.
-    fn take_flow(&mut self) {
-        // A run that goes on writes it at its end: what is there is of an earlier one.
-        if self.progress != RunProgress::Over || !self.files.has(FLOW) {
-            return;
-        }
-        let read = self.files.read(FLOW, LARGEST_FLOW);
-        match read.and_then(|file| Ok((file.note(), mean_flow(&file)?))) {
-            Ok((note, flow)) => {
-                self.notes.extend(note);
-                self.flow = Some(Arc::new(flow));
-            }
-            Err(error) => self.notes.push(format!("There is no mean flow: {error}")),
-        }
+    /// Reads what its run wrote at its end beside its samples; `first` is its first state.
+    fn take_tables(&mut self, first: &World) {
+        let mut notes = Vec::new();
+        let flow = self.tables().flow(&mut notes);
+        let steps = self.course.step_times();
+        let meetings = self.tables().meetings(first, &steps, &mut notes);
+        self.flow = flow.map(Arc::new);
+        Arc::make_mut(&mut self.branch).meetings = Arc::new(meetings);
+        self.notes.extend(notes);
     }
 
     /// The mean flow that its run wrote at its end; none where it wrote none.
@@ -350,31 +352,19 @@ impl Recording {
         self.flow.as_ref()
     }
 
-    /// The samples, what is to be said of their file, and what is wrong with where they end.
-    fn read_samples(&self) -> Result<(Option<String>, Series, Option<String>), RecordingError> {
-        let mut file = self.files.read(SERIES, LARGEST_TABLE)?;
-        if self.progress != RunProgress::Over {
-            // The last row may be half written.
-            let whole = file.bytes.iter().rposition(|byte| *byte == b'\n');
-            file.bytes.truncate(whole.map_or(0, |last| last + 1));
-        }
-        let (series, fault) = samples(&file)?;
-        Ok((file.note(), series, fault))
-    }
-
     fn set_series(&mut self, series: Series) {
         Arc::make_mut(&mut self.branch).series = Arc::new(series);
     }
 
     /// Takes in what was changed on the way, and which step each state was taken after.
-    fn take_commands(&mut self) -> Result<(), RecordingError> {
+    /// `first` is its first state.
+    fn take_commands(&mut self, first: &World) -> Result<(), RecordingError> {
         let summary = self.files.folder().join(SUMMARY);
         let refuse = |reason: String| RecordingError::of(&summary, reason);
         let commands = stamped(&self.record.commands).map_err(refuse)?;
-        let first = self.first_world()?;
-        let parameters = live_parameters(&self.scene, &first);
+        let parameters = live_parameters(&self.scene, first);
         let accepted = commands.into_iter().map(|stamped| {
-            let command = accept(&parameters, &first, &stamped.command)?;
+            let command = accept(&parameters, first, &stamped.command)?;
             Ok(StampedCommand { command, ..stamped })
         });
         let accepted: Result<Vec<StampedCommand>, CommandError> = accepted.collect();

@@ -7,6 +7,7 @@
 
 use super::Snapshot;
 use super::branch::Branch;
+use super::branch_names::BranchNames;
 use super::history::Moment;
 use super::meetings::Meeting;
 use super::sampling::Sampling;
@@ -37,6 +38,9 @@ pub struct Archive {
     pub redo: Vec<ArchivedEntry>,
     /// Branches begun so far.
     pub begun: u32,
+    /// What people called branches; it stands apart in a file.
+    #[serde(skip)]
+    pub names: BranchNames,
 }
 
 /// A state of the branch of this index.

@@ -45,7 +45,7 @@ pub enum MeetingKind {
 
 impl Meeting {
     /// Whether two of a run can have met so in a world of so many `grains` and `walls`.
-    pub(super) fn is_sound(&self, grains: usize, walls: usize) -> bool {
+    pub(crate) fn is_sound(&self, grains: usize, walls: usize) -> bool {
         let has_partner = match self.partner {
             Partner::Grain(other) => (other as usize) < grains,
             Partner::Wall(wall) => (wall as usize) < walls,

@@ -33,11 +33,13 @@
 //! | `steps` | which step was when, where the time step changed |
 //! | `changes` | which parameters each change set |
 //! | `command` | everything a person can ask for |
+//! | `branch_names` | what people called branches |
 //! | `shared` | what is shared in memory, in a file |
 
 mod archive;
 mod bed;
 mod branch;
+mod branch_names;
 mod changes;
 mod check;
 mod command;
@@ -80,6 +82,7 @@ pub use crate::scene::SAMPLE_INTERVAL;
 pub(crate) use bed::BedKey;
 pub use bed::BedStore;
 pub use branch::Branch;
+pub use branch_names::BranchNames;
 pub use changes::{Change, Setting, changes};
 pub use check::CommandError;
 pub(crate) use check::accept;

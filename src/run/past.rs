@@ -4,6 +4,7 @@
 //! In: nothing. Out: plain values, filled in by [`super::Timeline`].
 
 use super::branch::Branch;
+use super::branch_names::BranchNames;
 use super::history::Moment;
 use super::undo::Changed;
 use std::sync::Arc;
@@ -30,6 +31,8 @@ pub struct Past {
     pub redo: Option<Changed>,
     /// Branches that were left for others, the oldest first.
     pub kept: Vec<Arc<Branch>>,
+    /// What people called branches.
+    pub names: BranchNames,
     /// Memory that keyframes take [bytes].
     pub memory: usize,
 }

@@ -4,13 +4,16 @@
 //! earlier layout ends earlier: what it lacks is empty.
 
 use super::archive::Archive;
+use super::branch_names::BranchNames;
 use super::meetings::Meeting;
 use super::sampling::Sampling;
 use glam::Quat;
 use serde::{Deserialize, Serialize};
 
 /// Raised whenever what follows the second line of a session's file is laid out otherwise.
-pub const LAYOUT: &str = "6";
+pub const LAYOUT: &str = "7";
+/// The layout that ends where the names begin; it is read, too.
+const WITHOUT_NAMES: &str = "6";
 /// The layout that ends where the meetings begin; it is read, too.
 const WITHOUT_MEETINGS: &str = "5";
 /// The layout that ends where the orientations begin; it is read, too.
@@ -18,7 +21,13 @@ const WITHOUT_ORIENTATIONS: &str = "4";
 /// The layout that ends where the tail begins; it is read, too.
 pub const WITHOUT_TAIL: &str = "3";
 /// All that are read.
-const LAYOUTS: [&str; 4] = [LAYOUT, WITHOUT_MEETINGS, WITHOUT_ORIENTATIONS, WITHOUT_TAIL];
+const LAYOUTS: [&str; 5] = [
+    LAYOUT,
+    WITHOUT_NAMES,
+    WITHOUT_MEETINGS,
+    WITHOUT_ORIENTATIONS,
+    WITHOUT_TAIL,
+];
 
 /// What follows the states, in this order.
 #[derive(Default, Serialize, Deserialize)]
@@ -31,6 +40,8 @@ pub struct Tail {
     orientations: Vec<Vec<Quat>>,
     /// Who of few grains met in each branch.
     meetings: Vec<Vec<Meeting>>,
+    /// What people called branches.
+    names: BranchNames,
 }
 
 /// Whether files of this `layout` are read.
@@ -46,6 +57,7 @@ impl Tail {
             look: look.to_owned(),
             orientations: archive.orientations().collect(),
             meetings: archive.meetings().map(<[Meeting]>::to_vec).collect(),
+            names: archive.names.clone(),
         }
     }
 
@@ -73,6 +85,16 @@ impl Tail {
                     ..Self::default()
                 })
             }
+            WITHOUT_NAMES => {
+                let (samplings, look, orientations, meetings) = postcard::from_bytes(bytes)?;
+                Ok(Self {
+                    samplings,
+                    look,
+                    orientations,
+                    meetings,
+                    ..Self::default()
+                })
+            }
             _ => postcard::from_bytes(bytes),
         }
     }
@@ -82,6 +104,7 @@ impl Tail {
         archive.set_samplings(&self.samplings);
         archive.set_orientations(self.orientations);
         archive.set_meetings(self.meetings);
+        archive.names = self.names;
         self.look
     }
 }
@@ -92,29 +115,37 @@ mod tests {
 
     #[test]
     fn what_an_earlier_layout_lacks_is_empty() {
+        let mut names = BranchNames::default();
+        names.give(1, "the steep one");
         let tail = Tail {
             samplings: vec![Sampling::on_grid(3)],
             look: "a look".into(),
             orientations: vec![vec![Quat::IDENTITY]],
             meetings: vec![Vec::new(), Vec::new()],
+            names,
         };
         let bytes = postcard::to_stdvec(&tail).unwrap();
-        let end_of_meetings = bytes.len();
+        let end = bytes.len();
+        let end_of_meetings = end - postcard::to_stdvec(&tail.names).unwrap().len();
         let meetings = postcard::to_stdvec(&tail.meetings).unwrap().len();
         let orientations = postcard::to_stdvec(&tail.orientations).unwrap().len();
+        let without_meetings = end_of_meetings - meetings;
+        let without_orientations = without_meetings - orientations;
+        let steep = Some("the steep one");
         let ends = [
-            (LAYOUT, end_of_meetings, (1, "a look", 1, 2)),
+            (LAYOUT, end, (1, "a look", 1, 2, steep)),
+            (WITHOUT_NAMES, end_of_meetings, (1, "a look", 1, 2, None)),
             (
                 WITHOUT_MEETINGS,
-                end_of_meetings - meetings,
-                (1, "a look", 1, 0),
+                without_meetings,
+                (1, "a look", 1, 0, None),
             ),
             (
                 WITHOUT_ORIENTATIONS,
-                end_of_meetings - meetings - orientations,
-                (1, "a look", 0, 0),
+                without_orientations,
+                (1, "a look", 0, 0, None),
             ),
-            (WITHOUT_TAIL, 0, (0, "", 0, 0)),
+            (WITHOUT_TAIL, 0, (0, "", 0, 0, None)),
         ];
         for (layout, end, expected) in ends {
             let read = Tail::read(&bytes[..end], layout).unwrap();
@@ -123,10 +154,11 @@ mod tests {
                 read.look.as_str(),
                 read.orientations.len(),
                 read.meetings.len(),
+                read.names.of(1),
             );
             assert_eq!(found, expected, "{layout}");
         }
-        assert!(Tail::read(&bytes[..end_of_meetings - 1], LAYOUT).is_err());
+        assert!(Tail::read(&bytes[..end - 1], LAYOUT).is_err());
         assert!(is_known(LAYOUT) && !is_known("2"));
     }
 }

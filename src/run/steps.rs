@@ -56,7 +56,8 @@ impl StepTimes {
     pub fn step_at(&self, time: f64) -> u64 {
         let time = time.max(0.0);
         let part = self.last(|part| part.time <= time);
-        part.step + ((time - part.time) / part.time_step).round() as u64
+        let steps = ((time - part.time) / part.time_step).round() as u64;
+        part.step.saturating_add(steps)
     }
 
     /// The last part that `began`; the first one always has.

@@ -8,6 +8,7 @@
 
 use super::archive::{Archive, ArchivedEntry, ArchivedState, Table};
 use super::branch::Branch;
+use super::branch_names::BranchNames;
 use super::history::{Moment, Position};
 use super::keyframes::Keyframes;
 use super::measured::Stored;
@@ -32,6 +33,7 @@ pub struct Timeline {
     news: News,
     /// Branches begun so far.
     begun: u32,
+    names: BranchNames,
 }
 
 impl Timeline {
@@ -45,6 +47,7 @@ impl Timeline {
             journey: None,
             news: News::default(),
             begun: 1,
+            names: BranchNames::default(),
         }
     }
 
@@ -75,6 +78,7 @@ impl Timeline {
             undo,
             redo,
             begun: self.begun,
+            names: self.names.clone(),
             branches,
         }
     }
@@ -100,6 +104,7 @@ impl Timeline {
                 arrived: true,
             },
             begun: archive.begun,
+            names: archive.names,
         };
         if let Some(present) = branches.first() {
             timeline.run.replace_branch((**present).clone());
@@ -173,6 +178,7 @@ impl Timeline {
             undo: self.changes.next_undo().cloned(),
             redo: self.changes.next_redo().cloned(),
             kept: self.kept.clone(),
+            names: self.names.clone(),
             memory: self.keyframes.memory(),
         }
     }
@@ -350,10 +356,19 @@ impl Timeline {
         }
     }
 
-    /// Keeps `branch`, which began from the same bed, beside the present one, with the state at its
-    /// `end` where that is known; returns its index.
-    fn adopt(&mut self, mut branch: Branch, end: Option<Snapshot>) -> usize {
-        branch.number = self.next_number();
+    /// Calls the branch of this `number` by `name`; an empty one takes its name away.
+    pub fn name_branch(&mut self, number: u32, name: &str) {
+        self.names.give(number, name);
+    }
+
+    /// Keeps `branch` of `other`, which began from the same bed, beside the present one, with the
+    /// state at its `end` where that is known; returns its index.
+    fn adopt(&mut self, other: &Self, mut branch: Branch, end: Option<Snapshot>) -> usize {
+        let number = self.next_number();
+        if let Some(name) = other.names.of(branch.number) {
+            self.names.give(number, name);
+        }
+        branch.number = number;
         if let Some(end) = end {
             let position = branch.history.position(end.commands(), end.step());
             self.keyframes.keep(position, || end);
@@ -369,9 +384,9 @@ impl Timeline {
     pub(crate) fn adopt_all(&mut self, other: &Self) -> usize {
         for branch in &other.kept {
             let end = other.keyframes.end(branch).map(|end| (**end).clone());
-            self.adopt((**branch).clone(), end);
+            self.adopt(other, (**branch).clone(), end);
         }
-        self.adopt(other.branch().clone(), other.end())
+        self.adopt(other, other.branch().clone(), other.end())
     }
 
     /// Keeps these branches and no others beside the present one.

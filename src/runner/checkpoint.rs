@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 /// What the file begins with.
 const MARK: &str = "grainfall checkpoint";
 /// Raised whenever the file is laid out otherwise.
-const LAYOUT: &str = "8";
+const LAYOUT: &str = "9";
 /// Largest file of a checkpoint that is read [bytes].
 const LARGEST: u64 = 16 << 30;
 /// Most of the file in which its first line ends.

@@ -6,6 +6,7 @@ use crate::timeline::{arrive, change, go_on};
 use grainfall::measure::{Measure, SMALLEST_DROP, Sample, Series, avalanches};
 use grainfall::output::RunSoFar;
 use grainfall::parameters::Value;
+use grainfall::recording::Recording;
 use grainfall::run::{
     BedStore, Command, Event, EventKind, Happening, Parameter, Run, Script, ScriptedCommand,
     Session, Timeline, events,
@@ -130,9 +131,7 @@ fn every_contact_of_few_grains_is_listed_at_its_step() {
     }
 }
 
-#[test]
-fn a_bridge_forms_at_the_first_touch_and_ruptures_at_its_rupture_gap() {
-    let text = r#"(
+const MEET_AND_PART: &str = r#"(
         title: "Two wet grains that meet and part",
         materials: {"glass": (friction: 0.4, wet_friction: 0.1)},
         container: Nothing,
@@ -146,7 +145,10 @@ fn a_bridge_forms_at_the_first_touch_and_ruptures_at_its_rupture_gap() {
             capillary_gap: Open, rupture: AtRuptureGap)),
         duration: 0.02,
     )"#;
-    let scene = Scene::parse("meet and part", text).unwrap();
+
+#[test]
+fn a_bridge_forms_at_the_first_touch_and_ruptures_at_its_rupture_gap() {
+    let scene = Scene::parse("meet and part", MEET_AND_PART).unwrap();
     let mut run = prepared(&scene, 1, BedStore::none()).0;
     let mut volume = f64::NAN;
     let rupture = loop {
@@ -371,6 +373,121 @@ fn events_of_a_run_without_a_window_are_in_its_folder_when_it_went_on_from_a_che
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let digest = grainfall::output::digest_of_file(&at("stopped").out.join("events.csv")).unwrap();
     assert_eq!(summary["files"]["events.csv"], digest);
+}
+
+/// What the recording in `folder` shows of what happened, and what is said of its files.
+fn recorded(folder: &Path) -> (Vec<Event>, String) {
+    let recording = Recording::open(folder).unwrap();
+    let branch = recording.branch();
+    let angle = branch.series.column(Measure::SurfaceAngle);
+    let avalanches = avalanches(branch.series.time(), angle, SMALLEST_DROP);
+    let changes = branch.history.each_change();
+    let events = events(&branch.series, &avalanches, &branch.meetings, changes);
+    (events, recording.notes().join("; "))
+}
+
+#[test]
+fn a_recording_shows_what_happened_in_its_run() {
+    let home = tempfile::tempdir().unwrap();
+    let job = job(&home.path().join("bounce"), "400ms");
+    let (_, run) = runner::run(&job, &mut (), &|| false).unwrap();
+    let all = events_of(run.run().unwrap());
+    assert!(impacts(&all).len() >= 2 && partings(&all).len() >= 2);
+    assert_eq!(recorded(&job.out), (all.clone(), String::new()));
+    // Of grains that touch each other, and that a bridge holds.
+    let bridged = Scene::parse("meet and part", MEET_AND_PART).unwrap();
+    for (name, mut scene) in [
+        ("bridged", bridged),
+        ("chain", Scene::open("grain-chain").unwrap()),
+    ] {
+        scene.set("output-interval", "5ms").unwrap();
+        let job = Job {
+            threads: 1,
+            beds: shared_beds(),
+            ..Job::new(name, scene, home.path().join(name))
+        };
+        let (_, run) = runner::run(&job, &mut (), &|| false).unwrap();
+        let (events, said) = recorded(&job.out);
+        assert!(
+            events
+                .iter()
+                .any(|event| matches!(event.what, Happening::Impact { .. }))
+        );
+        assert_eq!(events, events_of(run.run().unwrap()), "{name}");
+        assert_eq!(said, "");
+    }
+}
+
+#[test]
+fn wrong_lines_of_a_recorded_list_of_events_are_told_with_file_and_line() {
+    let home = tempfile::tempdir().unwrap();
+    let job = job(&home.path().join("bounce"), "400ms");
+    runner::run(&job, &mut (), &|| false).unwrap();
+    let path = job.out.join("events.csv");
+    let whole = fs::read_to_string(&path).unwrap();
+    let all = impacts(&recorded(&job.out).0);
+    let lines: Vec<&str> = whole.lines().collect();
+    // The second impact, after the first and the parting.
+    let third = lines
+        .iter()
+        .rposition(|line| line.contains("impact"))
+        .unwrap();
+    for (from, to, reason) in [
+        ("impact", "embrace", "has \"embrace\" where an event stands"),
+        (
+            "floor",
+            "ceiling",
+            "has \"0\" and \"ceiling\" where a grain",
+        ),
+        (
+            ",0,floor",
+            ",0,1",
+            "is of grains, or of a step, that no run has",
+        ),
+        (
+            ",0,floor",
+            ",1,floor",
+            "is of grains, or of a step, that no run has",
+        ),
+        (",0,floor", ",1,0", "has \"1\" and \"0\" where a grain"),
+        (",floor,", ",floor,NaN", "where a number stands"),
+        ("0.", "-0.", "where a time stands"),
+        (
+            "0.",
+            "1000000000000000.",
+            "is of grains, or of a step, that no run has",
+        ),
+        ("0.", "0.0000000", "is earlier than the one before"),
+        (",impact", "", "is no row of a table"),
+    ] {
+        let wrong = lines[third].replacen(from, to, 1);
+        assert_ne!(wrong, lines[third], "{from}");
+        let mut damaged = lines.clone();
+        damaged[third] = &wrong;
+        fs::write(&path, damaged.join("\n")).unwrap();
+        let (events, said) = recorded(&job.out);
+        let line = format!("events.csv: line {} {reason}", third + 1);
+        let told = format!("events.csv: line {}", third + 1);
+        assert!(
+            said.contains(&told) && said.contains(reason),
+            "{line}: {said}"
+        );
+        assert!(
+            said.contains("events.csv is not as it was written"),
+            "{said}"
+        );
+        assert_eq!(impacts(&events), all[..all.len() - 1], "{reason}");
+    }
+    fs::write(&path, whole.replacen("time", "when", 1)).unwrap();
+    let (events, said) = recorded(&job.out);
+    assert!(
+        said.contains("There are no impacts: ") && said.contains("`time [s]`"),
+        "{said}"
+    );
+    // Changes are known without it.
+    assert!(impacts(&events).is_empty() && events.len() == 1);
+    fs::remove_file(&path).unwrap();
+    assert_eq!(recorded(&job.out).1, "");
 }
 
 #[test]

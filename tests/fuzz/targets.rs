@@ -5,7 +5,7 @@ use super::{byte_mutator, mutator};
 use grainfall::engines::sound_scene_from;
 use grainfall::lesson::{Lesson, LessonUnderWay, built_in_lessons};
 use grainfall::measure::sample;
-use grainfall::output::{FLOW, flow_table};
+use grainfall::output::{EVENTS, FLOW, events_table, flow_table};
 use grainfall::parameters::Settings;
 use grainfall::recording::Recording;
 use grainfall::run::{
@@ -601,10 +601,15 @@ impl Recordings {
             let heads = flow_table().heads().join(",");
             let flow = format!("{heads}\n0.0,0.25,40,0.01\n0.001,0.2,39,NaN\n0.002,NaN,0,NaN\n");
             fs::write(out.join(FLOW), flow).expect("it can be written");
+            let heads = events_table().heads().join(",");
+            let events = "0.001,impact,0,1,0.2,,,,,,\n0.001,bridge forms,0,1,,,,,,,\n0.002,parting,0,1,,0.001,,,,,\n\
+                          0.003,avalanche begins,,,,,0.5,0.1,,,\n0.003,change,,,,,,,,gravity,5.0\n";
+            fs::write(out.join(EVENTS), format!("{heads}\n{events}")).expect("it can be written");
             let names = [
                 "summary.json",
                 "series.csv",
                 FLOW,
+                EVENTS,
                 "grains.pvd",
                 "contacts.pvd",
                 "shapes.vtu",

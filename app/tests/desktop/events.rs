@@ -212,3 +212,15 @@ fn the_histogram_and_the_curve_of_a_grain_show_its_speed() {
     let curve = format!("Grain 1 over time [s], Speed [mm/s], now {shown}");
     harness.get_by_label_contains(&curve);
 }
+
+/// Not a single number stands on the axis of the histogram but zero: the plot has a width all the
+/// same.
+#[test]
+fn grains_at_rest_are_one_bar_at_zero() {
+    let simulation = prepared();
+    assert_eq!(simulation.world().map(|world| world.clock.step), Some(0));
+    let mut harness = Window::of(simulation);
+    harness.state_mut().show_panel("Grains");
+    harness.run_steps(6);
+    harness.get_by_label_contains("Grains over Speed [m/s]: 3 grains, mean 0 m/s, spread 0 m/s");
+}

@@ -7,12 +7,13 @@
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::panels::averages::Averages;
+use crate::ui::plots::axes::round_marks;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText};
-use egui_plot::{AxisHints, GridMark, Line, LineStyle, MarkerShape, Plot, PlotUi, Points, VLine};
+use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotUi, Points, VLine};
 use grainfall::lab::RunView;
 use grainfall::measure::{
     Estimate, RunQuantity, Summary, Verdict, beyond_kasper, drop_ratio_law, dry_drum,
@@ -262,15 +263,7 @@ pub fn comparison_ui(ui: &mut egui::Ui, shown: PaperPlot) {
         .allow_axis_zoom_drag(false)
         .allow_double_click_reset(false)
         .auto_bounds(false)
-        .x_grid_spacer(|input| {
-            let (first, last) = (input.bounds.0.ceil() as i32, input.bounds.1.floor() as i32);
-            (first..=last)
-                .map(|decade| GridMark {
-                    value: f64::from(decade),
-                    step_size: 1.0,
-                })
-                .collect()
-        })
+        .x_grid_spacer(|input| round_marks(input, 1.0, 1.0))
         .custom_x_axes(vec![
             AxisHints::new_x().formatter(|mark, _| number::power_of_ten(mark.value.round() as i32)),
         ])

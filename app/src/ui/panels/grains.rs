@@ -209,6 +209,15 @@ impl ShownUnit {
     }
 }
 
+/// How wide the bars of a histogram are: a single value has a bar, too, and where that is zero one
+/// of width 1.
+fn bar_width(histogram: &Histogram) -> f64 {
+    match histogram.high.abs() {
+        0.0 if histogram.width() == 0.0 => 1.0,
+        largest => histogram.width().max(0.02 * largest),
+    }
+}
+
 /// Draws how many grains have which value, and where the chosen one stands.
 fn histogram_ui(ui: &mut egui::Ui, histogram: &Histogram, unit: &ShownUnit, own: Option<f64>) {
     let palette = Palette::of(ui.visuals());
@@ -221,9 +230,7 @@ fn histogram_ui(ui: &mut egui::Ui, histogram: &Histogram, unit: &ShownUnit, own:
     );
     ui.label(&text)
         .on_hover_text("Of the state shown; the spread is the standard deviation");
-    // A single value has a bar, too.
-    let least = 0.02 * histogram.high.abs().max(f64::MIN_POSITIVE);
-    let width = unit.factor * histogram.width().max(least);
+    let width = unit.factor * bar_width(histogram);
     let bars = histogram.parts().filter(|(_, count)| *count > 0);
     let bars =
         bars.map(|(middle, count)| Bar::new(unit.factor * middle, count as f64).width(width));

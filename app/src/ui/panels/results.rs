@@ -13,7 +13,7 @@ use grainfall::lab::RunView;
 use grainfall::measure::{Measure, ResultKey, RunQuantity, Sample, Summary, SummaryEntry};
 
 /// What the latest sample shows where it has a meaning, energies of all grains apart.
-const LATEST: [Measure; 22] = [
+const LATEST: [Measure; 25] = [
     Measure::SurfaceAngle,
     Measure::GranularTemperature,
     Measure::CorotatingTemperature,
@@ -36,6 +36,9 @@ const LATEST: [Measure; 22] = [
     Measure::FirstPairs,
     Measure::MixedPairs,
     Measure::SecondPairs,
+    Measure::MixingIndex,
+    Measure::FloorForce,
+    Measure::Weight,
 ];
 
 /// The averages of a bed.

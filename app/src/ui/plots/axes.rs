@@ -20,6 +20,11 @@ pub const SPARSE_Y: f32 = 3.5;
 /// Smallest height of a plot, in its unit: a curve of zeros still needs marks that differ.
 const LEAST_SPAN: f64 = 1e-30;
 
+/// The largest whole number of steps that a float holds with those around it: 2⁵³.
+const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
+/// More marks than an axis of any screen has.
+const MOST_MARKS: f64 = 10_000.0;
+
 /// Share of a number below which two are the same but for rounding.
 const ROUNDING: f64 = 1e-9;
 /// Height of the plot of a constant, as a share of it.
@@ -61,13 +66,17 @@ pub fn fitting_plot<'a>(ui: &egui::Ui, id: &str) -> Plot<'a> {
 }
 
 /// Grid lines at round numbers at least `finest` apart, `sparse` times as far apart as the plot
-/// would have them at the closest.
+/// would have them at the closest. None where no number of digits tells the marks apart.
 pub fn round_marks(input: GridInput, sparse: f32, finest: f64) -> Vec<GridMark> {
     let step = round_step((input.base_step_size * f64::from(sparse)).max(finest));
     let (first, last) = (
         (input.bounds.0 / step).ceil(),
         (input.bounds.1 / step).floor(),
     );
+    let exact = -MOST_EXACT..=MOST_EXACT;
+    if !exact.contains(&first) || !exact.contains(&last) || last - first > MOST_MARKS {
+        return Vec::new();
+    }
     (first as i64..=last as i64)
         .map(|index| GridMark {
             value: index as f64 * step,
@@ -124,5 +133,23 @@ mod tests {
         let marks = round_marks(input, 1.0, 0.0);
         assert!((10..=60).contains(&marks.len()), "{}", marks.len());
         assert!(marks.iter().any(|mark| mark.value == 0.0));
+    }
+
+    #[test]
+    fn ranges_that_numbers_cannot_divide_have_no_marks() {
+        let no_marks = |bounds: (f64, f64), base_step_size: f64| {
+            let input = GridInput {
+                bounds,
+                base_step_size,
+            };
+            round_marks(input, 10.0, 0.0).is_empty()
+        };
+        assert!(no_marks((-2e-310, 2e-310), 5e-324));
+        assert!(no_marks((0.0, 1.0), 0.0));
+        assert!(no_marks((0.0, 1.0), f64::NAN));
+        assert!(no_marks((3.0, 3.0 + 1e-15), 1e-17));
+        assert!(no_marks((f64::NEG_INFINITY, f64::INFINITY), f64::INFINITY));
+        assert!(no_marks((f64::NAN, 1.0), 0.1));
+        assert!(!no_marks((3.0, 4.0), 0.01));
     }
 }
