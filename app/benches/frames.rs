@@ -2,8 +2,8 @@
 //! graphics device: colours, shadows and places of all grains, for two drums of spheres and a
 //! column of as many polyhedra as the tallest one of Man et al. 2023; and what it costs to make the
 //! meshes of those polyhedra, once for a scene. Then the same for the whole window, every panel
-//! open, a grain under the microscope, flowing layer and temperatures drawn, with what a frame
-//! allocates.
+//! open, a grain under the microscope, flowing layer, temperatures, forces and ghosts drawn, with
+//! what a frame allocates.
 //!
 //! `cargo bench -p grainfall --bench frames`, see `benches/README.md`.
 
@@ -172,6 +172,8 @@ fn window(scene: Scene) -> App {
     (view.selected, view.traced) = (Some(0), vec![0, 1, 2]);
     (view.colour_by, view.show_forces) = (ColourBy::Quantity(GrainQuantity::Speed), true);
     (view.show_flow, view.show_temperature) = (true, true);
+    // With ghosts round them.
+    view.grain_size = 0.4;
     let is_ready = |app: &App| {
         let standing = *app.world().resource::<Simulation>().status() == Status::Paused;
         let (meshing, grains) = (

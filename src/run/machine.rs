@@ -1,4 +1,4 @@
-//! What the machine has left: memory, and room on a disk.
+//! What the machine has left: memory, and room on a disk; and work that gives way to other work.
 //!
 //! In: nothing, or a path. Out: bytes, or none where the system does not say.
 
@@ -44,9 +44,37 @@ fn of_disk(_path: &Path) -> Option<f64> {
     None
 }
 
+/// Niceness of work that others are not to wait for: a thread that draws gets thirty times as much of
+/// a core that both want.
+#[cfg(target_os = "linux")]
+const NICE: i32 = 15;
+
+/// Lets the calling thread, and those that it begins from now on, have of a core what others leave,
+/// on Linux; elsewhere they share it with them.
+pub fn give_way() {
+    #[cfg(target_os = "linux")]
+    {
+        // Linux counts niceness by threads. Where it refuses, they share the core, too.
+        let _ = rustix::process::setpriority_process(None, NICE);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn threads_that_give_way_hand_it_on_and_others_do_not() {
+        let niceness = || rustix::process::getpriority_process(None).unwrap();
+        let before = niceness();
+        let inherited = std::thread::spawn(move || {
+            give_way();
+            std::thread::spawn(niceness).join().unwrap()
+        });
+        assert_eq!(inherited.join().unwrap(), NICE.max(before));
+        assert_eq!(niceness(), before);
+    }
 
     #[test]
     fn what_the_system_says_is_read() {

@@ -22,7 +22,7 @@
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `orientations` | how far spheres have turned, for pictures |
 //! | `method` | which solver and measures computed a run |
-//! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left |
+//! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left; work that gives way |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `measured` | what was measured, and how much of it stands in files |
 //! | `meetings` | which of few grains met and parted, and when |
@@ -90,6 +90,7 @@ pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMachine, Estimate};
 pub use events::{Event, EventKind, Happening, Pair, events};
 pub use history::{History, Moment};
+pub(crate) use machine::give_way;
 pub use measured::{Measured, Stored};
 pub use meetings::{MOST_MEETINGS, Meeting, MeetingKind};
 pub use method::method;

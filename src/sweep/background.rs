@@ -6,6 +6,7 @@
 use super::case::CaseResult;
 use super::plan::Sweep;
 use super::{SweepEnding, Swept, run_seen};
+use crate::run::give_way;
 use crate::runner::{Part, Watch};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -44,6 +45,8 @@ impl BackgroundSweep {
         let standing = Arc::new(Mutex::new(SweepStanding::default()));
         let shared = (sweep.clone(), stop.clone(), standing.clone());
         let work = move || {
+            // Somebody looks at something else meanwhile.
+            give_way();
             let (sweep, stop, standing) = shared;
             run(&sweep, &stop, &standing);
         };

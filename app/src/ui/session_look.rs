@@ -30,6 +30,7 @@ pub struct SessionLook {
     log_colours: bool,
     cut: Option<Cut>,
     grain_size: f32,
+    show_ghosts: Option<bool>,
     show_turning: Option<bool>,
     show_forces: bool,
     show_bridges: bool,
@@ -83,6 +84,7 @@ impl SessionLook {
             log_colours: view.log_colours,
             cut: view.cut,
             grain_size: view.grain_size,
+            show_ghosts: view.show_ghosts,
             show_turning: view.show_turning,
             show_forces: view.show_forces,
             show_bridges: view.show_bridges,
@@ -133,6 +135,7 @@ impl SessionLook {
         view.log_colours = self.log_colours;
         view.cut = self.cut;
         view.grain_size = self.grain_size.clamp(SMALLEST, 1.0);
+        view.show_ghosts = self.show_ghosts;
         view.show_turning = self.show_turning;
         view.show_forces = self.show_forces;
         view.show_bridges = self.show_bridges;

@@ -276,6 +276,23 @@ impl OrbitCamera {
         place.is_some_and(|(place, _)| picture.contains(place))
     }
 
+    /// The plane through the right edge of the picture: its normal, which points out of the picture,
+    /// and its distance from the origin along it [m].
+    pub fn right_edge(&self) -> (Vec3, f32) {
+        let rotation = self.rotation();
+        let (right, forward) = (rotation * Vec3::X, rotation * Vec3::NEG_Z);
+        match self.projection {
+            ProjectionKind::Perspective => {
+                let normal = (right - self.tangent().x * forward).normalize();
+                (normal, normal.dot(self.eye()))
+            }
+            ProjectionKind::Orthographic => {
+                let half = 0.5 * self.height * self.aspect();
+                (right, right.dot(self.focus) + half)
+            }
+        }
+    }
+
     fn aspect(&self) -> f32 {
         self.viewport.x.max(1.0) / self.viewport.y.max(1.0)
     }
@@ -368,6 +385,29 @@ mod tests {
             }
         }
         corners
+    }
+
+    #[test]
+    fn what_lies_beyond_the_right_edge_lies_right_of_the_picture() {
+        for projection in [ProjectionKind::Perspective, ProjectionKind::Orthographic] {
+            let mut camera = OrbitCamera {
+                yaw: 0.7,
+                pitch: 0.3,
+                projection,
+                ..OrbitCamera::default()
+            };
+            camera.fit(&corners());
+            camera.zoom(400.0, Vec2::ZERO);
+            let (normal, edge) = camera.right_edge();
+            let mut beyond = 0;
+            for corner in corners() {
+                let (place, _) = camera.project(corner).unwrap();
+                let is_beyond = place.x > camera.viewport.x;
+                assert_eq!(normal.dot(corner) > edge, is_beyond, "{corner}");
+                beyond += u32::from(is_beyond);
+            }
+            assert!((1..8).contains(&beyond), "{projection:?}: {beyond}");
+        }
     }
 
     /// The box of all points' places, in points.

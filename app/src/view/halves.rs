@@ -21,6 +21,12 @@ pub(super) fn parts(rect: Rect, count: usize) -> impl Iterator<Item = Rect> {
     })
 }
 
+/// Where the part of the picture that is framed in `rect` is seen: the last one goes on under a
+/// `margin` that is free.
+pub(super) fn seen_part(rect: Rect, is_last: bool, margin: f32) -> Rect {
+    rect.with_max_x(rect.right() + if is_last { margin } else { 0.0 })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

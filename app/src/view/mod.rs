@@ -23,6 +23,7 @@
 //! | `trace` | follows the grains that are traced, and what is measured |
 //! | `container_walls`, `wall_material`, `wall_meshes` | drum, box and planes as one-sided panes |
 //! | `links` | force chains, liquid bridges, velocity arrows |
+//! | `ghosts` | grains at full size where they are drawn smaller, as thin as glass |
 //! | `spheres` | spheres as one draw, exact |
 //! | `polyhedron_meshes`, `facets` | polyhedra as a few draws of triangles; the surface of a rounded one |
 //! | `grain_buffer` | place, colour and shadow of all grains in one buffer |
@@ -48,6 +49,7 @@ mod cut_out;
 mod facets;
 mod film;
 mod framing;
+mod ghosts;
 mod grain_buffer;
 mod halves;
 mod ink;

@@ -133,8 +133,8 @@ pub(super) fn legend_margin<'a>(
     }
 }
 
-/// Writes what the colours mean into the margin of `rect`, which no picture reaches, on a ground
-/// like the picture's.
+/// Writes what the colours mean into the margin of `rect`, which no grain reaches; on a ground like
+/// the picture's, unless the floor and the walls go on there.
 pub(super) fn legend(
     painter: &Painter,
     rect: Rect,
@@ -142,9 +142,11 @@ pub(super) fn legend(
     world: Option<&World>,
 ) {
     let ink = Ink::new(painter, settings.background);
-    let margin = rect.with_min_x(rect.right() - settings.margin);
-    let ground = rgb(srgb(Scheme::of(settings.background).background));
-    painter.rect_filled(margin, CornerRadius::ZERO, ground);
+    if !settings.margin_is_free {
+        let margin = rect.with_min_x(rect.right() - settings.margin);
+        let ground = rgb(srgb(Scheme::of(settings.background).background));
+        painter.rect_filled(margin, CornerRadius::ZERO, ground);
+    }
     let corner = rect.right_bottom() - vec2(INSET, INSET);
     let forces = force_legend(&settings.link_scales);
     let others = [
@@ -238,7 +240,7 @@ fn from_afar(
 }
 
 /// The distance of every fifth ring on the floor from the axis of a column, to the right before it,
-/// where no grains lie.
+/// where neither grains lie nor the legend stands.
 fn ring_labels(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, radius: f64) {
     const LABELS: usize = 8;
     let step = 5.0 * ring_distance(radius);
@@ -259,7 +261,8 @@ fn ring_labels(ink: &Ink, rect: Rect, camera: &OrbitCamera, world: &World, radiu
             return;
         };
         let place = rect.min + vec2(x, y);
-        if outside * 100 > looked_at.len() || place.distance(place_before) < 32.0 {
+        let is_free = place.x < rect.right() && place.distance(place_before) >= 32.0;
+        if outside * 100 > looked_at.len() || !is_free {
             continue;
         }
         place_before = place;
@@ -432,7 +435,9 @@ fn species(ink: &Ink, corner: Pos2, world: &World) {
         ink.painter
             .circle_filled(at, 6.0, rgb(species_colour(index)));
         let text_at = at - vec2(13.0, 0.0);
-        ink.write(text_at, Align2::RIGHT_CENTER, &species.name, 13.0, ink.text);
+        let font = FontId::proportional(13.0);
+        let anchor = Align2::RIGHT_CENTER;
+        ink.grounded(text_at, anchor, &species.name, font, ink.text, ink.veil);
     }
 }
 

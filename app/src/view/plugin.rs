@@ -6,7 +6,9 @@ use crate::view::camera::OrbitCamera;
 use crate::view::cut_out::Ground;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, take_newest};
 use crate::view::view_settings::ViewSettings;
-use crate::view::{container_walls, grain_buffer, links, polyhedron_meshes, rig, spheres, trace};
+use crate::view::{
+    container_walls, ghosts, grain_buffer, links, polyhedron_meshes, rig, spheres, trace,
+};
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::CameraUpdateSystems;
 use bevy::prelude::*;
@@ -39,6 +41,7 @@ impl Plugin for ViewPlugin {
                 polyhedron_meshes::plugin,
                 container_walls::plugin,
                 links::plugin,
+                ghosts::plugin,
             ))
             .add_systems(Startup, rig::spawn)
             .add_systems(

@@ -7,6 +7,7 @@
 //! the planes of its faces. Two runs side by side have the same shapes, so both halves share the
 //! meshes.
 
+use crate::simulation::DrawnIn;
 use crate::view::facets::Facets;
 use crate::view::grain_buffer::{CutPlanes, Forms, GrainBuffer, polyhedron};
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, layers};
@@ -15,7 +16,7 @@ use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::mesh::{
     Indices, MeshVertexAttribute, MeshVertexBufferLayoutRef, PrimitiveTopology,
-    VertexAttributeValues, VertexFormat,
+    VertexAttributeValues, VertexBufferLayout, VertexFormat,
 };
 use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
@@ -112,11 +113,7 @@ impl Material for PolyhedronMaterial {
         layout: &MeshVertexBufferLayoutRef,
         key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.vertex.buffers = vec![layout.0.get_layout(&[
-            PLACE.at_shader_location(0),
-            NORMAL.at_shader_location(1),
-            GRAIN.at_shader_location(2),
-        ])?];
+        descriptor.vertex.buffers = vec![facet_layout(layout)?];
         if key.bind_group_data.0 {
             // A far side shows the section before it.
             descriptor.primitive.cull_mode = None;
@@ -129,6 +126,20 @@ impl Material for PolyhedronMaterial {
     }
 }
 
+/// How the corners of the meshes lie in memory.
+///
+/// # Errors
+/// Where the mesh is none of these.
+pub(super) fn facet_layout(
+    layout: &MeshVertexBufferLayoutRef,
+) -> Result<VertexBufferLayout, SpecializedMeshPipelineError> {
+    Ok(layout.0.get_layout(&[
+        PLACE.at_shader_location(0),
+        NORMAL.at_shader_location(1),
+        GRAIN.at_shader_location(2),
+    ])?)
+}
+
 /// Where the planes of a grain's faces are, as the shader reads it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -139,7 +150,7 @@ struct PlaneRange {
 
 /// One of the meshes in one half of the picture.
 #[derive(Component)]
-struct Chunk;
+pub(super) struct Chunk;
 
 /// How far the meshes of polyhedra are.
 #[derive(Resource, Default)]
@@ -255,6 +266,7 @@ fn mesh_some(
             commands.spawn_batch(Half::ALL.map(|half| {
                 (
                     Chunk,
+                    DrawnIn(half),
                     layers(half),
                     Mesh3d(mesh.clone()),
                     MeshMaterial3d(meshing.materials[half.index()].clone()),

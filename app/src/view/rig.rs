@@ -6,10 +6,10 @@ use crate::view::camera::{HOME, OrbitCamera};
 use crate::view::colour::Scheme;
 use crate::view::cut_out::Ground;
 use crate::view::framing::{grain_box, group_on_its_way, outline};
-use crate::view::halves::{beside, parts};
+use crate::view::halves::{beside, parts, seen_part};
 use crate::view::shown_worlds::{ShownWorlds, layers};
 use crate::view::view_settings::{ProjectionKind, ViewSettings};
-use bevy::camera::{ClearColorConfig, ScalingMode, Viewport};
+use bevy::camera::{ClearColorConfig, ScalingMode, SubCameraView, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::light::cluster::ClusterConfig;
 use bevy::math::UVec2;
@@ -184,16 +184,30 @@ pub(super) fn follow(
             let free = settings.free_rect.or(shown.is_pair().then_some(whole));
             let free = free.map(|free| beside(free, settings.margin));
             let part = free.and_then(|free| parts(free, count).nth(half.index()));
-            let viewport = viewport(part, settings.pixels_per_point, target);
-            let shape = viewport.as_ref().map_or(target, |v| v.physical_size);
+            let is_last = half.index() + 1 == count;
+            let seen = part.map(|part| seen_part(part, is_last, settings.free_margin()));
+            let [framed, seen] =
+                [part, seen].map(|part| viewport(part, settings.pixels_per_point, target));
+            let shape = framed.as_ref().map_or(target, |v| v.physical_size);
             if settings.free_rect.is_none() && half == Half::Left {
                 orbit.viewport = shape.as_vec2();
             }
-            camera.viewport = viewport;
+            camera.sub_camera_view = wider_view(framed.as_ref(), seen.as_ref());
+            camera.viewport = seen;
         }
         *transform = Transform::from_translation(orbit.eye()).with_rotation(orbit.rotation());
         *projection = seen_by(&orbit);
     }
+}
+
+/// What is `seen` of a scene that is `framed` in the left part of that, where it is more.
+fn wider_view(framed: Option<&Viewport>, seen: Option<&Viewport>) -> Option<SubCameraView> {
+    let (full_size, size) = (framed?.physical_size, seen?.physical_size);
+    (size != full_size).then_some(SubCameraView {
+        full_size,
+        offset: Vec2::ZERO,
+        size,
+    })
 }
 
 /// The size of a target in egui points.

@@ -12,6 +12,8 @@ use grainfall::measure::{GrainQuantity, Measure};
 use grainfall::world::World;
 use serde::{Deserialize, Serialize};
 
+/// Size of the grains in the picture at which one sees what lies between their centres.
+const LOOK_BETWEEN: f32 = 0.4;
 /// So many grains are watched one by one.
 const FEW: usize = 24;
 
@@ -32,6 +34,9 @@ pub struct ViewSettings {
     pub cut: Option<Cut>,
     /// Size of the grains in the picture over their own: smaller ones let one look between them.
     pub grain_size: f32,
+    /// Whether grains that are drawn smaller have a ghost of their own size; `None`: where forces are
+    /// drawn.
+    pub show_ghosts: Option<bool>,
     /// Whether spheres have a pattern that shows how they turn; `None`: where there are a few.
     pub show_turning: Option<bool>,
     /// Whether the forces between grains are drawn.
@@ -78,6 +83,8 @@ pub struct ViewSettings {
     pub free_rect: Option<egui::Rect>,
     /// Out: how much of that at its right is kept for what the colours mean, in egui points.
     pub margin: f32,
+    /// Out: whether the picture goes on under that, as no grain does.
+    pub margin_is_free: bool,
     /// In: physical pixels per egui point.
     pub pixels_per_point: f32,
     /// Whether edges are smoothed by several samples a pixel; read when the picture is set up.
@@ -107,6 +114,7 @@ impl Default for ViewSettings {
             log_colours: false,
             cut: None,
             grain_size: 1.0,
+            show_ghosts: None,
             show_turning: None,
             show_forces: false,
             show_bridges: false,
@@ -129,6 +137,7 @@ impl Default for ViewSettings {
             camera_request: None,
             free_rect: None,
             margin: 0.0,
+            margin_is_free: false,
             pixels_per_point: 1.0,
             smooth_edges: true,
             legend: None,
@@ -146,6 +155,31 @@ impl ViewSettings {
     /// Whether the spheres of `world` have a pattern.
     pub fn shows_turning(&self, world: &World) -> bool {
         (self.show_turning).unwrap_or(world.grains.len() <= FEW)
+    }
+
+    /// Whether ghosts of the grains are drawn at full size.
+    pub fn shows_ghosts(&self) -> bool {
+        self.grain_size < 1.0 && self.show_ghosts.unwrap_or(self.show_forces)
+    }
+
+    /// Draws the forces or no longer. Grains of their own size would hide them: these become smaller
+    /// meanwhile.
+    pub fn draw_forces(&mut self, draws: bool) {
+        if draws && !self.show_forces && self.grain_size == 1.0 {
+            self.grain_size = LOOK_BETWEEN;
+        } else if !draws && self.show_forces && self.grain_size == LOOK_BETWEEN {
+            self.grain_size = 1.0;
+        }
+        self.show_forces = draws;
+    }
+
+    /// How much of the margin the picture goes on under [points].
+    pub fn free_margin(&self) -> f32 {
+        if self.margin_is_free {
+            self.margin
+        } else {
+            0.0
+        }
     }
 
     /// Begins or ends to draw the way of `grain`.

@@ -6,7 +6,7 @@
 
 use crate::view::bed_marks::{draw_flow, draw_veil};
 use crate::view::camera::{OrbitCamera, apply_response};
-use crate::view::halves::{beside, parts};
+use crate::view::halves::{beside, parts, seen_part};
 use crate::view::ink::Ink;
 use crate::view::measured_marks;
 use crate::view::overlay::{Caption, PicturePart, legend, legend_margin, overlay};
@@ -15,8 +15,9 @@ use crate::view::ruler_marks::ruler_ui;
 use crate::view::sheet::{MarkKind, Sheet, under};
 use crate::view::view_settings::ViewSettings;
 use bevy::math::Vec2;
-use bevy_egui::egui::{Id, Response, Sense, Ui, WidgetInfo, WidgetType};
+use bevy_egui::egui::{Id, Rect, Response, Sense, Ui, WidgetInfo, WidgetType};
 use grainfall::lab::Half;
+use grainfall::world::World;
 
 /// The legend takes no more of the picture's width than this share.
 const LARGEST_MARGIN: f32 = 0.3;
@@ -36,9 +37,14 @@ pub fn viewport_ui(
     settings.lit_by_picture = None;
     let worlds = || captions.iter().filter_map(|caption| caption.world);
     settings.margin = legend_margin(settings, worlds()).min(LARGEST_MARGIN * free.width());
+    let beside_legend = captions.last().and_then(|caption| caption.world);
+    settings.margin_is_free = settings.margin > 0.0
+        && beside_legend.is_some_and(|world| !reaches_right_edge(world, camera));
     let halves = Half::ALL.into_iter().zip(captions);
     let picture = beside(free, settings.margin);
     for (rect, (half, caption)) in parts(picture, captions.len()).zip(halves) {
+        let is_last = half.index() + 1 == captions.len();
+        let seen = seen_part(rect, is_last, settings.free_margin());
         let response = ui.interact(rect, Id::new(("picture", half)), Sense::click_and_drag());
         response.widget_info(|| {
             let title = caption
@@ -49,7 +55,7 @@ pub fn viewport_ui(
         });
         apply_response(&response, camera);
         click(&response, half, caption, settings, camera);
-        measured(&response, half, caption, settings, camera);
+        measured(&response, seen, (half, caption), settings, camera);
         if let Some(world) = caption.world {
             ruler_ui(&response, world, settings, camera);
         }
@@ -57,9 +63,9 @@ pub fn viewport_ui(
             let part = PicturePart {
                 half,
                 is_first: half == Half::Left,
-                is_last: half.index() + 1 == captions.len(),
+                is_last,
             };
-            overlay(&ui.painter_at(rect), rect, caption, part, settings, camera);
+            overlay(&ui.painter_at(seen), rect, caption, part, settings, camera);
         }
     }
     if settings.show_overlay {
@@ -67,11 +73,20 @@ pub fn viewport_ui(
     }
 }
 
-/// Draws what is measured where it is measured; the pointer there is told how.
+/// Whether a grain of `world` is beyond the right edge of the picture, in part at least.
+fn reaches_right_edge(world: &World, camera: &OrbitCamera) -> bool {
+    let (normal, edge) = camera.right_edge();
+    let (normal, edge) = (normal.as_dvec3(), f64::from(edge));
+    let grains = world.grains.position.iter().zip(&world.grains.radius);
+    let mut farthest = grains.map(|(x, radius)| x.dot(normal) + radius);
+    farthest.any(|far| far > edge)
+}
+
+/// Draws what is measured where it is measured, where it is `seen`; the pointer there is told how.
 fn measured(
     response: &Response,
-    half: Half,
-    caption: &Caption,
+    seen: Rect,
+    (half, caption): (Half, &Caption),
     settings: &mut ViewSettings,
     camera: &OrbitCamera,
 ) {
@@ -82,7 +97,7 @@ fn measured(
     let painter = response
         .ctx
         .layer_painter(response.layer_id)
-        .with_clip_rect(rect);
+        .with_clip_rect(seen);
     let ink = Ink::new(&painter, settings.background);
     let shown = &settings.measured[half.index()];
     let mut sheet = Sheet {

@@ -7,6 +7,7 @@
 
 mod comparison;
 mod events;
+mod ghosts;
 mod headless_film;
 mod lesson;
 mod measured;

@@ -4,7 +4,7 @@
 use crate::measured::{camera, pictures, pointed_with};
 use crate::timeline::carried_out;
 use crate::view::{
-    Photograph, cosine, drum_of_grains, pair, photograph, photograph_of, studio, world,
+    Photograph, SIZE, cosine, drum_of_grains, pair, photograph, photograph_of, studio, world,
 };
 use crate::window_of_panels::{ready, standing};
 use bevy::math::{Vec2, Vec3};
@@ -17,11 +17,11 @@ use grainfall::physics::LIQUID_CASES;
 use grainfall::run::Command;
 use grainfall::runner;
 use grainfall::scene::Scene;
-use grainfall::world::{Shape, SpeciesId};
+use grainfall::world::{Shape, SpeciesId, Surface};
 use grainfall_app::simulation::Simulation;
 use grainfall_app::view::{
-    ColourBy, ColourMap, FlowLines, Measured, ProjectionKind, StandardView, StartPlace,
-    ViewSettings,
+    CameraRequest, ColourBy, ColourMap, FlowLines, Measured, ProjectionKind, StandardView,
+    StartPlace, ViewSettings,
 };
 use std::sync::Arc;
 
@@ -317,4 +317,47 @@ fn a_wet_grain_mirrors_the_light_in_a_spot_and_is_darker_around() {
     let ((dry, dry_aside), (wet, wet_aside)) = (lightness(false), lightness(true));
     assert!(wet > dry + 60, "{wet} {dry}");
     assert!(wet_aside + 15 < dry_aside, "{wet_aside} {dry_aside}");
+}
+
+#[test]
+fn the_floor_goes_on_under_what_the_colours_mean() {
+    let name = "the_floor_goes_on_under_what_the_colours_mean";
+    let Some(_studio) = studio(name) else {
+        return;
+    };
+    let shape = Shape::Column {
+        radius: 0.02,
+        height: 0.02,
+    };
+    let floor = Surface::Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+    };
+    let mut column = world(shape, vec![floor]);
+    for x in [-0.01, 0.0, 0.01] {
+        let kind = SpeciesId(u16::from(x > 0.0));
+        let place = DVec3::new(x, 4e-3, 0.0);
+        column.grains.push_sphere(place, 4e-3, 2500.0, kind);
+    }
+    let set = |view: &mut ViewSettings| {
+        view.show_overlay = true;
+        view.show_container = true;
+        view.show_measured = false;
+        view.grain_size = 1.0;
+        view.camera_request = Some(CameraRequest::Home);
+    };
+    let ([picture, _], [settings, _]) = pictures(&Arc::new(column), name, [&set, &set]);
+    assert!(settings.margin > 50.0 && settings.margin_is_free);
+    let edge = SIZE.x as f32 - settings.margin;
+    let mut seen = 0;
+    // Above the numbers on the floor.
+    for y in (20..280).step_by(4) {
+        let at = |x: f32| picture.at(Vec2::new(edge + x, y as f32));
+        let step = apart(at(-2.5), at(2.5));
+        // What the lines on the floor change within five pixels; the edge of a picture is as far from
+        // the background as the floor is.
+        assert!(step < 45, "{y}: {:?}, {:?}", at(-2.5), at(2.5));
+        seen += u32::from(picture.contrast(Vec2::new(edge + 6.0, y as f32)) > 3);
+    }
+    assert!(seen > 8, "{seen}");
 }

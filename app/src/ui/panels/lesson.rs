@@ -364,7 +364,7 @@ fn answered_ui(ui: &mut egui::Ui, lesson: &LessonUnderWay, out: &mut Vec<Request
 pub fn show_look(look: &LessonLook, view: &mut ViewSettings) {
     view.colour_by = look.colour_by.map_or(ColourBy::Species, ColourBy::Quantity);
     let shows = |what| look.show.contains(&what);
-    view.show_forces = shows(Shown::Forces);
+    view.draw_forces(shows(Shown::Forces));
     view.show_bridges = shows(Shown::Bridges);
     view.show_velocities = shows(Shown::Velocities);
     view.show_turning = shows(Shown::Turning).then_some(true);

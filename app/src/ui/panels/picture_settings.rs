@@ -18,8 +18,6 @@ use std::ops::RangeInclusive;
 
 /// Millimetres per metre: positions of cuts are shown in millimetres.
 const MILLIMETRES: f64 = 1e3;
-/// Size of the grains in the picture at which one sees what lies between their centres.
-const LOOK_BETWEEN: f32 = 0.4;
 
 /// What is drawn as measured.
 pub const MEASURED_HINT: &str = "The line whose slope is the surface angle θ; the front R and the height H of a heap. Each is \
@@ -312,9 +310,9 @@ fn turning_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>)
 
 /// What is drawn between the grains, and how much of them is in its way.
 fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
-    let before = view.show_forces;
+    let mut forces = view.show_forces;
     ui.horizontal_wrapped(|ui| {
-        ui.checkbox(&mut view.show_forces, "Forces").on_hover_text(
+        ui.checkbox(&mut forces, "Forces").on_hover_text(
             "A bar from grain to grain, as thick as the force; one that pulls has a waist",
         );
         if wet {
@@ -324,12 +322,7 @@ fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
         ui.checkbox(&mut view.show_velocities, "Velocities")
             .on_hover_text("An arrow from each centre, as long as the grain is fast");
     });
-    if view.show_forces && !before && view.grain_size == 1.0 {
-        // Else the grains hide what lies between their centres.
-        view.grain_size = LOOK_BETWEEN;
-    } else if !view.show_forces && before && view.grain_size == LOOK_BETWEEN {
-        view.grain_size = 1.0;
-    }
+    view.draw_forces(forces);
     ui.horizontal(|ui| {
         ui.label("Grain size");
         let mut size = 100.0 * view.grain_size;
@@ -343,6 +336,17 @@ fn between_ui(ui: &mut egui::Ui, view: &mut ViewSettings, wet: bool) {
             view.grain_size = 0.01 * size;
         }
     });
+    if view.grain_size < 1.0 {
+        let mut shows = view.shows_ghosts();
+        let hint = "What smaller grains are at full size, as thin as glass";
+        if ui
+            .checkbox(&mut shows, "Ghosts at full size")
+            .on_hover_text(hint)
+            .changed()
+        {
+            view.show_ghosts = Some(shows);
+        }
+    }
 }
 
 fn camera_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {

@@ -80,8 +80,10 @@ fn what_lies_between_the_grains_is_chosen_by_name() {
 #[test]
 fn what_the_colours_mean_stands_beside_the_picture() {
     let world = prepared().world().unwrap().clone();
-    let of = |legend: Option<Legend>| {
+    let of = |legend: Option<Legend>, height: f32| {
         let world = world.clone();
+        let mut camera = OrbitCamera::default();
+        camera.height = height;
         let settings = ViewSettings {
             legend,
             ..ViewSettings::default()
@@ -94,15 +96,15 @@ fn what_the_colours_mean_stands_beside_the_picture() {
                 };
                 viewport_ui(ui, &[without_clock], settings, camera);
             },
-            (settings, OrbitCamera::default()),
+            (settings, camera),
         );
         harness.run_steps(2);
         let (settings, camera) = harness.state();
         let free = settings.free_rect.unwrap();
         assert_eq!(camera.viewport.x + settings.margin, free.width());
-        settings.margin
+        (settings.margin, settings.margin_is_free)
     };
-    assert_eq!(of(None), 0.0);
+    assert_eq!(of(None, 1.0), (0.0, false));
     let speed = Legend {
         title: "Granular temperature",
         min: 0.0,
@@ -110,7 +112,10 @@ fn what_the_colours_mean_stands_beside_the_picture() {
         unit: "m²/s²",
         is_log: false,
     };
-    assert!(of(Some(speed)) > 100.0);
+    let (margin, is_free) = of(Some(speed.clone()), 1.0);
+    assert!(margin > 100.0 && is_free, "floor and walls go on there");
+    // From so near that grains reach beyond the edge, the margin is the legend's alone.
+    assert_eq!(of(Some(speed), 0.01), (margin, false));
 }
 
 #[test]
