@@ -33,6 +33,8 @@ const LEGEND_MARGIN: f32 = 128.0;
 const SPECIES_MARGIN: f32 = 96.0;
 /// Height of a bar of colours with its title and the room above it [points].
 const LEGEND_HEIGHT: f32 = 216.0;
+/// From one name of a species to the next [points].
+const SPECIES_HEIGHT: f32 = 20.0;
 
 /// What the overlay of one half of the picture, or of all of it, says beside what the settings
 /// know.
@@ -133,8 +135,23 @@ pub(super) fn legend_margin<'a>(
     }
 }
 
-/// Writes what the colours mean into the margin of `rect`, which no grain reaches; on a ground like
-/// the picture's, unless the floor and the walls go on there.
+/// How far up from the lower edge of the picture that shows `world` the legend stands [points].
+pub(super) fn legend_height(settings: &ViewSettings, world: &World) -> f32 {
+    let bars = [
+        settings.veil.is_some(),
+        settings.link_scales.force.is_some(),
+    ];
+    let bars = bars.into_iter().filter(|is_there| *is_there).count();
+    let lowest = if settings.legend.is_some() || bars > 0 {
+        LEGEND_HEIGHT
+    } else {
+        SPECIES_HEIGHT * world.species.len() as f32
+    };
+    INSET + lowest + bars as f32 * LEGEND_HEIGHT
+}
+
+/// Writes what the colours mean into the margin of `rect`, where no grain is behind it; on a ground
+/// like the picture's, unless the picture goes on there.
 pub(super) fn legend(
     painter: &Painter,
     rect: Rect,
@@ -430,7 +447,7 @@ fn links(ink: &Ink, corner: Pos2, camera: &OrbitCamera, settings: &ViewSettings)
 
 fn species(ink: &Ink, corner: Pos2, world: &World) {
     for (i, species) in world.species.iter().rev().enumerate() {
-        let at = corner - vec2(8.0, 8.0 + 20.0 * i as f32);
+        let at = corner - vec2(8.0, 8.0 + SPECIES_HEIGHT * i as f32);
         let index = world.species.len() - 1 - i;
         ink.painter
             .circle_filled(at, 6.0, rgb(species_colour(index)));

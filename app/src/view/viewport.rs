@@ -9,7 +9,7 @@ use crate::view::camera::{OrbitCamera, apply_response};
 use crate::view::halves::{beside, parts, seen_part};
 use crate::view::ink::Ink;
 use crate::view::measured_marks;
-use crate::view::overlay::{Caption, PicturePart, legend, legend_margin, overlay};
+use crate::view::overlay::{Caption, PicturePart, legend, legend_height, legend_margin, overlay};
 use crate::view::pick::pick;
 use crate::view::ruler_marks::ruler_ui;
 use crate::view::sheet::{MarkKind, Sheet, under};
@@ -39,7 +39,8 @@ pub fn viewport_ui(
     settings.margin = legend_margin(settings, worlds()).min(LARGEST_MARGIN * free.width());
     let beside_legend = captions.last().and_then(|caption| caption.world);
     settings.margin_is_free = settings.margin > 0.0
-        && beside_legend.is_some_and(|world| !reaches_right_edge(world, camera));
+        && beside_legend
+            .is_some_and(|world| !is_behind_legend(world, camera, legend_height(settings, world)));
     let halves = Half::ALL.into_iter().zip(captions);
     let picture = beside(free, settings.margin);
     for (rect, (half, caption)) in parts(picture, captions.len()).zip(halves) {
@@ -73,13 +74,18 @@ pub fn viewport_ui(
     }
 }
 
-/// Whether a grain of `world` is beyond the right edge of the picture, in part at least.
-fn reaches_right_edge(world: &World, camera: &OrbitCamera) -> bool {
+/// Whether a grain of `world` is right of the picture, in part at least, and no more than `height`
+/// above its lower edge [points], where the legend stands.
+fn is_behind_legend(world: &World, camera: &OrbitCamera, height: f32) -> bool {
     let (normal, edge) = camera.right_edge();
     let (normal, edge) = (normal.as_dvec3(), f64::from(edge));
-    let grains = world.grains.position.iter().zip(&world.grains.radius);
-    let mut farthest = grains.map(|(x, radius)| x.dot(normal) + radius);
-    farthest.any(|far| far > edge)
+    let top = camera.viewport.y - height;
+    let mut grains = world.grains.position.iter().zip(&world.grains.radius);
+    grains.any(|(x, radius)| {
+        let is_beyond = x.dot(normal) + radius > edge;
+        let place = is_beyond.then(|| camera.project(x.as_vec3())).flatten();
+        place.is_some_and(|(place, scale)| place.y + *radius as f32 * scale > top)
+    })
 }
 
 /// Draws what is measured where it is measured, where it is `seen`; the pointer there is told how.
@@ -150,5 +156,35 @@ fn click(
         }
     } else if picked != settings.selected {
         (settings.selected, settings.beside) = (picked, None);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::test_worlds::grains_in_a_row;
+    use crate::view::view_settings::ProjectionKind;
+    use bevy::math::Vec3;
+    use glam::DVec3;
+
+    #[test]
+    fn a_grain_right_of_the_picture_is_behind_the_legend_where_that_stands() {
+        for projection in [ProjectionKind::Perspective, ProjectionKind::Orthographic] {
+            // A metre is 1000 points at the focus, and the picture 0.8 m wide and 0.6 m high.
+            let mut camera = OrbitCamera::default();
+            (camera.focus, camera.yaw, camera.pitch) = (Vec3::ZERO, 0.0, 0.0);
+            (camera.height, camera.viewport) = (0.6, Vec2::new(800.0, 600.0));
+            camera.projection = projection;
+            let mut world = grains_in_a_row(1);
+            world.grains.radius[0] = 0.01;
+            let mut is_behind = |x: f64, y: f64| {
+                world.grains.position[0] = DVec3::new(x, y, 0.0);
+                is_behind_legend(&world, &camera, 200.0)
+            };
+            assert!(is_behind(0.45, -0.2), "{projection:?}: beside, low");
+            assert!(is_behind(0.395, -0.11), "{projection:?}: at the edge");
+            assert!(!is_behind(0.45, 0.0), "{projection:?}: above the legend");
+            assert!(!is_behind(0.3, -0.2), "{projection:?}: in the picture");
+        }
     }
 }
