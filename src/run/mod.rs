@@ -27,13 +27,13 @@
 //! | `measured` | what was measured, and how much of it stands in files |
 //! | `meetings` | which of few grains met and parted, and when |
 //! | `pieces`, `sampling` | a long way cut into pieces; when samples are taken |
+//! | `branch_names` | what people called branches |
 //! | `provenance`, `record` | where a file came from; a state and what leads to it, as files state it |
 //! | `script` | commands that are carried out by themselves: replay |
 //! | `rescue` | what a window was about, for the case that it ends unasked |
 //! | `steps` | which step was when, where the time step changed |
 //! | `changes` | which parameters each change set |
 //! | `command` | everything a person can ask for |
-//! | `branch_names` | what people called branches |
 //! | `shared` | what is shared in memory, in a file |
 
 mod archive;

@@ -176,7 +176,7 @@ pub fn printable(text: &str) -> String {
 }
 
 /// Control characters, what turns the direction of the text after it, and what is no character.
-fn is_unprintable(c: char) -> bool {
+pub(super) fn is_unprintable(c: char) -> bool {
     let is_control = c.is_control() && !matches!(c, '\n' | '\t');
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     is_control || turns || matches!(c, '\u{fffe}' | '\u{ffff}')

@@ -66,6 +66,21 @@ pub enum TimeStep {
     /// The largest stable step at any time: a change that moves the limit changes the step too, as
     /// a command of its own.
     Following,
+    /// A quarter of the largest stable step at the start: what results are held against.
+    Reference,
+    /// Half as much again as the largest stable step at the start: for a look, not for a result.
+    Fast,
+}
+
+impl TimeStep {
+    /// The step over the largest stable one at the start; of one that is given, one.
+    pub fn share_of_limit(self) -> f64 {
+        match self {
+            Self::Automatic | Self::Given(_) | Self::Following => 1.0,
+            Self::Reference => 0.25,
+            Self::Fast => 1.5,
+        }
+    }
 }
 
 /// What ends a run without a window.

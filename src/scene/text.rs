@@ -223,6 +223,8 @@ fn time_step(step: TimeStep) -> String {
     match step {
         TimeStep::Automatic => "Automatic".to_owned(),
         TimeStep::Following => "Following".to_owned(),
+        TimeStep::Reference => "Reference".to_owned(),
+        TimeStep::Fast => "Fast".to_owned(),
         TimeStep::Given(step) => format!("Given({step:?})"),
     }
 }

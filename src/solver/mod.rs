@@ -18,6 +18,7 @@
 //! | `tangential` | tangential springs, capped by Coulomb |
 //! | `terms` | what there is to tell of the force of a contact, term by term |
 //! | `time_step` | how long a step may be |
+//! | `impact_accuracy` | what a step makes of an impact, and the steps that a scene can have |
 //! | `profile` | where the time goes |
 //! | `fault` | what makes the solver stop |
 //! | `row` | four numbers side by side |
@@ -52,6 +53,7 @@
 mod barrier;
 mod fault;
 mod grid;
+mod impact_accuracy;
 mod polyhedra;
 mod profile;
 mod ranges;
@@ -66,6 +68,7 @@ mod workers;
 
 pub use crate::lanes::Processor;
 pub use fault::{Fault, FaultKind};
+pub use impact_accuracy::{ImpactAccuracy, StepChoice, step_choices};
 pub use profile::{Profile, Stage};
 pub use spheres::NormalLaw;
 pub use terms::ForceTerms;

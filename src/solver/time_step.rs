@@ -81,7 +81,10 @@ pub fn advise(scene: &Scene) -> TimeStepAdvice {
     let limits = limits(&grains, scene.law, scene.liquid.as_ref(), &at);
     match scene.time_step {
         TimeStep::Given(given) => TimeStepAdvice::of(given, limits),
-        TimeStep::Automatic | TimeStep::Following => TimeStepAdvice::of(largest(&limits), limits),
+        chosen => {
+            let step = chosen.share_of_limit() * largest(&limits);
+            TimeStepAdvice::of(step.clamp(TIME_STEP.least, TIME_STEP.most), limits)
+        }
     }
 }
 
@@ -108,6 +111,17 @@ impl Extremes {
         let at = self.circumstances(world.polyhedra.is_some(), world.integrator());
         let limits = limits(&grains, world.law, world.wetting(), &at);
         TimeStepAdvice::of(world.clock.time_step, limits)
+    }
+
+    /// The smallest grains: what they are made of and their radius [m]; none where there is none.
+    pub(super) fn smallest(&self) -> Option<(MaterialId, f64)> {
+        let radii = self.radii.iter().copied();
+        radii.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Speed of impacts that steps are advised for [m/s].
+    pub(super) fn impact_speed(&self) -> f64 {
+        self.impact_speed
     }
 
     fn circumstances(&self, are_polyhedra: bool, integrator: Integrator) -> Circumstances {

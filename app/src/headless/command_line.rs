@@ -4,6 +4,10 @@
 //! complete come from the same.
 
 use super::{Allowed, ImportTask, PaperTask, Said, SweepTask};
+#[cfg(feature = "desktop")]
+use crate::picture_size;
+#[cfg(feature = "desktop")]
+use bevy::math::UVec2;
 use clap::{Args, Parser, Subcommand};
 use grainfall::engines::MpiEngine;
 #[cfg(feature = "desktop")]
@@ -36,8 +40,8 @@ pub struct Arguments {
     /// What is said at the end.
     #[command(flatten)]
     pub said: Said,
-    /// Make a film of a run without a window, or of the folder of a run: FILE.gif, FILE.mp4 (with ffmpeg),
-    /// or a folder of PNG files. No display is needed, but a Vulkan driver, which may be a software one
+    /// Make a film of a run without a window, or of the folder of a run: FILE.gif, FILE.mp4, FILE.webm or
+    /// FILE.mov (with ffmpeg), or a folder of PNG files. No display is needed, but a Vulkan driver, which may be a software one
     #[arg(long, value_name = "FILE", requires = "no_render")]
     pub record: Option<PathBuf>,
     /// A picture to take.
@@ -73,12 +77,22 @@ pub struct PictureArguments {
     #[arg(long, requires = "screenshot")]
     pub transparent: bool,
     /// Width and height of the picture, or of the film, in pixels
-    #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "pictured", value_parser = size)]
-    pub size: (u32, u32),
-    /// Simulated seconds for each second of the film, which has 25 pictures [default: 1, less where the scene
-    /// lasts less than 5 s]
+    #[arg(long, value_name = "WxH", default_value = "1440x860", requires = "pictured", value_parser = picture_size::read)]
+    pub size: UVec2,
+    /// Simulated seconds for each second of the film [default: 1, less where the scene lasts less than
+    /// 5 s]
     #[arg(long, value_name = "FACTOR", requires = "record", value_parser = speed)]
     pub speed: Option<f64>,
+    /// Frames for each second of the film
+    #[arg(long, value_name = "FRAMES", default_value = "25", requires = "record", value_parser = frame_rate)]
+    pub frame_rate: f64,
+}
+
+/// `30`.
+#[cfg(feature = "desktop")]
+fn frame_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (1.0..=60.0).contains(rate));
+    rate.ok_or_else(|| "expected frames a second from 1 to 60, such as 30".to_owned())
 }
 
 /// `0.25`.
@@ -99,15 +113,6 @@ fn moment(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a time such as `13s`, `500ms` or `2min`".to_owned())
 }
 
-/// `1280x720`.
-#[cfg(feature = "desktop")]
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (64..=8192).contains(side));
-    text.split_once('x')
-        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
-        .ok_or_else(|| "expected WIDTHxHEIGHT, each 64 to 8192, such as 1280x720".to_owned())
-}
-
 /// What to open and what to change about it.
 #[derive(Args)]
 pub struct What {
@@ -124,7 +129,7 @@ pub struct What {
     /// meet]
     #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     pub sample_interval: Option<String>,
-    /// Length of a step: automatic, 10us
+    /// Length of a step: automatic, reference, fast, 10us
     #[arg(long, allow_hyphen_values = true, value_name = "TIME")]
     pub time_step: Option<String>,
     /// Seed of everything random
@@ -175,6 +180,20 @@ pub enum Task {
     Settings {
         /// A scene file, or the name of a built-in scene
         scene: String,
+        /// As JSON, in SI units
+        #[arg(long)]
+        json: bool,
+    },
+    /// Say what limits a scene's time step, and what longer and shorter ones cost in accuracy
+    ///
+    /// Of the steps `reference`, `standard` (`automatic`) and `fast`, and of the one that the scene gives: how an impact of two
+    /// of its smallest grains comes out, computed with each.
+    TimeSteps {
+        /// A scene file, or the name of a built-in scene
+        scene: String,
+        /// Change a value, as in a single run: friction.glass.glass=0.3, integrator=imex
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
         /// As JSON, in SI units
         #[arg(long)]
         json: bool,

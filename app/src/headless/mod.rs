@@ -19,6 +19,7 @@ mod report;
 mod shell;
 mod sweep_task;
 pub mod terminal;
+mod time_steps;
 
 pub use allowed::Allowed;
 pub use confirm::confirm;
@@ -33,3 +34,4 @@ pub use progress::Progress;
 pub use report::{Report, Said};
 pub use shell::{misspelt_command, print_completions, write_manual};
 pub use sweep_task::SweepTask;
+pub use time_steps::list_time_steps;

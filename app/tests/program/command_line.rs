@@ -62,6 +62,35 @@ fn scenes_are_listed_and_each_name_opens() {
 }
 
 #[test]
+fn steps_are_listed_with_what_they_cost_and_one_that_is_given_beside_them() {
+    let place = Place::new();
+    let asked = ["time-steps", "dry-r3", "--set", "time-step=40us", "--json"];
+    let listed: serde_json::Value = serde_json::from_slice(&place.run(&asked).stdout).unwrap();
+    assert_eq!(listed["limits"][0]["name"], "Rayleigh wave");
+    let choices = listed["choices"].as_array().unwrap();
+    let names: Vec<&str> = choices
+        .iter()
+        .filter_map(|row| row["name"].as_str())
+        .collect();
+    assert_eq!(names, ["reference", "standard", "fast", "given"]);
+    let spread = |row: &serde_json::Value| {
+        let end = |k: usize| row["impact"]["range"][k].as_f64().unwrap();
+        end(1) - end(0)
+    };
+    assert!(choices[..3].iter().map(spread).is_sorted(), "{choices:?}");
+    let said = text(&place.run(&["time-steps", "column"]).stdout);
+    assert!(said.contains("dashpots of a polyhedron"), "{said}");
+    assert!(
+        said.contains("reference") && said.contains("0.25"),
+        "{said}"
+    );
+    let refused = place.run(&["time-steps", "column", "--set", "time-step=long"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = text(&refused.stderr);
+    assert!(said.contains("`reference`, `fast`"), "{said}");
+}
+
+#[test]
 fn a_folder_called_like_a_scene_does_not_hide_it() {
     let place = Place::new();
     std::fs::create_dir(place.path("wet")).unwrap();
@@ -116,7 +145,7 @@ fn film_that_cannot_be_is_refused_before_anything_is_computed() {
     place.write("taken.gif", "");
     for (film, code, expected) in [
         ("taken.gif", 2, "exists already"),
-        ("film.avi", 2, "ends in .gif or .mp4"),
+        ("film.avi", 2, "ends in .gif, .mp4, .webm or .mov"),
         ("film.gif", 1, "no Vulkan driver was found"),
     ] {
         let mut command = place.command(&["bouncing-grain", "--no-render", "--record", film]);

@@ -13,7 +13,7 @@ const REACH: f64 = 10.0;
 const LARGEST_SEED: f64 = 1e6;
 
 /// Leaves the step to the program: at any time, or at the start.
-static AUTOMATIC: [Choice; 2] = [
+static AUTOMATIC: [Choice; 4] = [
     Choice {
         key: "automatic",
         name: "automatic",
@@ -24,6 +24,24 @@ static AUTOMATIC: [Choice; 2] = [
         name: "automatic at the start",
         number: -1.0,
     },
+    Choice {
+        key: "reference",
+        name: "reference, a quarter of it",
+        number: -2.0,
+    },
+    Choice {
+        key: "fast",
+        name: "fast, half as much again",
+        number: -3.0,
+    },
+];
+
+/// What a scene says of its step for each of these, in their order.
+const CHOSEN: [TimeStep; 4] = [
+    TimeStep::Following,
+    TimeStep::Automatic,
+    TimeStep::Reference,
+    TimeStep::Fast,
 ];
 
 pub static TIME_STEP: ParameterRow = ParameterRow {
@@ -31,7 +49,7 @@ pub static TIME_STEP: ParameterRow = ParameterRow {
     name: |_| "time step",
     symbol: "Δt",
     kind: Kind::NumberOr(&units::SHORT_TIME, &AUTOMATIC),
-    expected: "`automatic`, or a time such as `1e-5s` or `10us`",
+    expected: "`automatic`, `reference`, `fast`, or a time such as `1e-5s` or `10us`",
     limits: Some(&limits::TIME_STEP),
     slider: |step, _, _| step / REACH..=step * 2.0,
     equation: |_| "x(t + Δt) from x(t): velocity Verlet",
@@ -39,14 +57,18 @@ pub static TIME_STEP: ParameterRow = ParameterRow {
                   to be trusted.",
     in_scene: Some(InScene {
         read: |scene, _| match scene.time_step {
-            TimeStep::Following => Some(Value::Choice(&AUTOMATIC[0])),
-            TimeStep::Automatic => Some(Value::Choice(&AUTOMATIC[1])),
             TimeStep::Given(step) => Some(Value::Number(step)),
+            chosen => {
+                let place = CHOSEN.iter().position(|one| *one == chosen)?;
+                Some(Value::Choice(&AUTOMATIC[place]))
+            }
         },
         write: |scene, _, value| {
             scene.time_step = match value {
-                Value::Choice(choice) if *choice == AUTOMATIC[0] => TimeStep::Following,
-                Value::Choice(_) => TimeStep::Automatic,
+                Value::Choice(choice) => {
+                    let place = AUTOMATIC.iter().position(|one| one == choice)?;
+                    CHOSEN[place]
+                }
                 Value::Number(step) => TimeStep::Given(step),
                 Value::Count(_) => return None,
             };

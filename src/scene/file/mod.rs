@@ -239,7 +239,9 @@ fn meaning(key: &str) -> &'static str {
         "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
         "law" => ContactLaw::FORMS,
         "integrator" => "`Explicit` or `Imex`",
-        "time_step" => "`Automatic`, `Following` or `Given(…)` with a time in s",
+        "time_step" => {
+            "`Automatic`, `Following`, `Reference`, `Fast` or `Given(…)` with a time in s"
+        }
         "until" => "`Duration` or `Rest`",
         "duration" | "output_interval" | "sample_interval" => "a time in s",
         _ => "",

@@ -2,7 +2,7 @@
 
 use super::*;
 use grainfall::scene::{TimeStep, built_in};
-use grainfall::solver::{Extremes, advise};
+use grainfall::solver::{Extremes, StepChoice, advise, step_choices};
 use grainfall::world::build_packed;
 
 #[test]
@@ -206,4 +206,87 @@ fn step_is_one_that_a_run_can_have_however_soft_or_stiff_its_grains() {
     assert!(stiff.limits[0].time_step < 1e-12, "{stiff:?}");
     assert_eq!(stiff.time_step, 1e-12);
     assert!(stiff.warning.unwrap().contains("exceeds the limit"));
+}
+
+#[test]
+fn named_steps_are_parts_of_the_advised_one_and_are_written_as_they_are_read() {
+    let mut scene = scene("HertzMindlin", 0.0, "Automatic");
+    let standard = advise(&scene).time_step;
+    for (name, stated, share) in [
+        ("reference", TimeStep::Reference, 0.25),
+        ("fast", TimeStep::Fast, 1.5),
+        ("automatic-at-start", TimeStep::Automatic, 1.0),
+        ("automatic", TimeStep::Following, 1.0),
+    ] {
+        scene.set("time-step", name).unwrap();
+        assert_eq!(scene.time_step, stated);
+        let advice = advise(&scene);
+        assert_eq!(advice.time_step, share * standard, "{name}");
+        assert_eq!(advice.warning.is_some(), share > 1.0, "{name}");
+        let again = Scene::parse("again", &scene.to_text().unwrap()).unwrap();
+        assert_eq!(again.time_step, stated);
+    }
+}
+
+fn impacts(scene: &Scene) -> Vec<(StepChoice, f64, [f64; 2])> {
+    let choices = step_choices(scene).into_iter();
+    let known = choices.map(|choice| {
+        let impact = choice.impact.expect("grains that part");
+        (choice, impact.restitution, impact.range)
+    });
+    known.collect()
+}
+
+#[test]
+fn impacts_give_back_what_they_do_in_closed_form_the_nearer_the_shorter_the_step() {
+    // Hertz contacts of the drum give back what their material states. Linear dashpots that never
+    // pull give back more than the restitution 0.1 that they are made from: with their damping
+    // ratio ζ and s = √(1 − ζ²), e^(−ζ/s (π − arctan(2 ζ s/(1 − 2 ζ²)))).
+    let zeta = 0.1_f64.ln().abs() / std::f64::consts::PI.hypot(0.1_f64.ln());
+    let s = (1.0 - zeta * zeta).sqrt();
+    let angle = std::f64::consts::PI - (2.0 * zeta * s / (1.0 - 2.0 * zeta * zeta)).atan();
+    let never_pulling = (-zeta / s * angle).exp();
+    assert_relative("restitution of such dashpots", never_pulling, 0.2527, 2e-4);
+    for (name, integrator, exact, tolerance) in [
+        ("dry-r3", None, 0.95, 3e-4),
+        ("column", Some("explicit"), never_pulling, 3e-3),
+        ("column", Some("imex"), never_pulling, 3e-3),
+    ] {
+        let mut scene = Scene::open(name).unwrap();
+        if let Some(integrator) = integrator {
+            scene.set("integrator", integrator).unwrap();
+        }
+        let impacts = impacts(&scene);
+        let names: Vec<&str> = impacts.iter().map(|(choice, ..)| choice.name).collect();
+        assert_eq!(names, ["reference", "standard", "fast"]);
+        let error = (impacts[0].1 - exact).abs();
+        assert!(error < tolerance, "{name} {integrator:?}: off by {error}");
+        let spreads: Vec<f64> = impacts.iter().map(|(_, _, [a, b])| b - a).collect();
+        assert!(
+            spreads.is_sorted() && spreads[0] < 0.5 * spreads[1],
+            "{spreads:?}"
+        );
+        assert!(
+            impacts
+                .iter()
+                .all(|(_, mean, [a, b])| a <= mean && mean <= b)
+        );
+    }
+}
+
+#[test]
+fn impacts_are_told_with_the_step_that_a_scene_gives_and_not_where_there_are_no_grains() {
+    let given = scene("HertzMindlin", 0.0, "Given(1e-5)");
+    let choices = step_choices(&given);
+    let last = choices.last().unwrap();
+    assert_eq!((last.name, last.time_step), ("given", 1e-5));
+    let none = Scene {
+        grains: grainfall::scene::SceneGrains::List(Vec::new()),
+        ..given
+    };
+    assert!(
+        step_choices(&none)
+            .iter()
+            .all(|choice| choice.impact.is_none())
+    );
 }

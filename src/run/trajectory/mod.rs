@@ -3,21 +3,23 @@
 //! In: a scene and its settled bed, then commands and step numbers to advance to. Out: the world at
 //! that step and its samples (see [`super::sampling`]). Nothing here knows of
 //! wall-clock time, ticks or threads: however a run is sliced, the same scene, seed and commands
-//! give the same bits.
+//! give the same bits. Here it advances and is measured; `commands` holds what changes it,
+//! `moments` how it comes to another of its moments and to another branch.
 
+mod commands;
+mod moments;
+
+use super::StampedCommand;
 use super::branch::Branch;
-use super::check::accept;
 use super::history::Moment;
 use super::measured::{Measured, Stored};
 use super::meetings::{MOST_MEETINGS, Meeting, meetings};
 use super::orientations::{Orientations, Turned};
 use super::sampling::{Pace, Sampling};
 use super::script::Script;
-use super::snapshot::{Checkpoint, Snapshot};
-use super::{Command, CommandError, StampedCommand};
 use crate::measure::{FlowHistory, Sample, Series, sample, sample_and_surface};
-use crate::parameters::{Parameter, ParameterInfo, Value, live_parameters};
-use crate::scene::{Scene, TimeStep};
+use crate::parameters::{ParameterInfo, live_parameters};
+use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, Solver, TimeStepAdvice};
 use crate::world::World;
 use std::sync::Arc;
@@ -179,71 +181,6 @@ impl Run {
         self.solver.take_profile()
     }
 
-    /// Commands to carry out by themselves when their steps come, in order of their steps.
-    ///
-    /// # Errors
-    /// A [`CommandError`] when one of them cannot be carried out in this scene; none is taken then.
-    pub fn schedule(&mut self, script: Script) -> Result<(), CommandError> {
-        self.follow(script, 0)
-    }
-
-    /// The same for all the commands of a recorded run: no time step follows a limit but by a
-    /// command.
-    ///
-    /// # Errors
-    /// As [`Run::schedule`].
-    pub fn replay(&mut self, script: Script) -> Result<(), CommandError> {
-        self.follow(script, usize::MAX)
-    }
-
-    fn follow(&mut self, script: Script, recorded: usize) -> Result<(), CommandError> {
-        let script = script.accepted(|command| self.accept(command))?;
-        self.branch.plan = script.clone();
-        (self.script, self.recorded) = (script, recorded);
-        self.apply_due(true);
-        Ok(())
-    }
-
-    /// Goes on as the branch says and, after its end, as was planned.
-    pub(crate) fn follow_branch(&mut self) {
-        (self.script, self.recorded) = self.branch.rest(self.commands);
-        self.apply_due(false);
-    }
-
-    /// Carries out `command` now and keeps it. What concerns the clock alone (play, pause, step,
-    /// seek …) is passed over. Where the scene's time step follows its limit and the command moves
-    /// that limit, a command about the time step is carried out after it.
-    ///
-    /// # Errors
-    /// A [`CommandError`] when the scene has no such parameter or the value is out of its range;
-    /// nothing changes then.
-    pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
-        let command = self.accept(&command)?;
-        self.followed(|run| run.execute(command, false));
-        Ok(())
-    }
-
-    /// Gives a `parameter` the `value`, both as [`Run::accept`] has them, as [`Run::apply`] does;
-    /// it is part of the change before it where it `joins`.
-    pub(crate) fn change(&mut self, parameter: Parameter, value: Value, joins: bool) {
-        self.followed(|run| run.set(parameter, value, joins));
-    }
-
-    /// Whether the time step stays from now on where the scene lets it follow its limit: two runs
-    /// side by side keep one time.
-    pub(crate) fn keep_step(&mut self, keeps: bool) {
-        self.keeps_step = keeps;
-    }
-
-    /// The `command` as this run carries it out: its parameter by the one name that it has, its
-    /// value of the kind that this takes.
-    ///
-    /// # Errors
-    /// The [`CommandError`] that [`Run::apply`] would answer with.
-    pub fn accept(&self, command: &Command) -> Result<Command, CommandError> {
-        accept(&self.parameters, &self.world, command)
-    }
-
     /// Advances to `step`, sampling on the way; does nothing when that step is past.
     ///
     /// # Errors
@@ -309,190 +246,7 @@ impl Run {
         self.flow = None;
     }
 
-    /// All it takes to go on from here in another process.
-    pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint {
-            world: self.world.clone(),
-            commands: self.commands().to_vec(),
-            series: self.branch.series.clone(),
-            flow: self.flow().clone(),
-            meetings: self.branch.meetings.clone(),
-            sampling: self.sampling,
-        }
-    }
-
-    /// Goes on from a `checkpoint` of a run of the same scene and script. Commands of the script
-    /// that were carried out before it are not carried out again.
-    pub fn resume(&mut self, checkpoint: Checkpoint) {
-        self.world = checkpoint.world;
-        self.script.forget_past(&self.world.clock);
-        self.commands = checkpoint.commands.len();
-        self.samples = checkpoint.series.taken();
-        self.branch = Branch {
-            history: Arc::new(checkpoint.commands.into_iter().collect()),
-            series: checkpoint.series,
-            flow: checkpoint.flow,
-            meetings: checkpoint.meetings,
-            end: Moment::of(&self.world),
-            plan: self.script.clone(),
-            number: self.branch.number,
-        };
-        self.flow = None;
-        self.sampling = checkpoint.sampling;
-    }
-
-    /// All it takes to come back to this moment.
-    pub fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            world: self.world.clone(),
-            commands: self.commands,
-            samples: self.samples,
-            flow: self.flow().clone(),
-            sampling: self.sampling,
-            turned: self.orientations(),
-        }
-    }
-
-    /// Goes back to a `snapshot` of this run and forgets what followed it.
-    pub fn restore(&mut self, snapshot: &Snapshot) {
-        let end = Moment::of(&snapshot.world);
-        self.branch = (self.branch).until(snapshot.commands, end, self.branch.number);
-        self.show(snapshot);
-    }
-
-    /// Goes to a `snapshot` of the present branch; what followed it there stays known.
-    pub(crate) fn show(&mut self, snapshot: &Snapshot) {
-        self.world.clone_from(&snapshot.world);
-        self.commands = snapshot.commands.min(self.branch.history.commands().len());
-        self.samples = snapshot.samples.min(self.branch.series.taken());
-        self.flow = Some(snapshot.flow.clone());
-        self.sampling = snapshot.sampling;
-        (self.orientations).jump(&self.world, snapshot.turned.as_deref());
-        self.forget_script();
-        self.note_end();
-    }
-
-    /// Goes to time zero, before any command of the present branch; what followed there stays
-    /// known.
-    pub(crate) fn rewind(&mut self) {
-        self.world.clone_from(&self.bed);
-        (self.commands, self.samples) = (0, 0);
-        self.orientations.jump(&self.world, None);
-        self.sampling = Sampling::default();
-        self.flow = Some(Arc::default());
-        self.forget_script();
-        self.take_due_sample();
-        self.note_end();
-    }
-
-    /// Is about `branch` from now on, of which the state need not be one, and returns the branch
-    /// that is left. The caller goes to a state of it next.
-    pub(crate) fn replace_branch(&mut self, branch: Branch) -> Branch {
-        std::mem::replace(&mut self.branch, branch)
-    }
-
-    /// Ends the present branch at the state, which becomes the beginning of one of this `number`;
-    /// returns the branch that is left.
-    pub(crate) fn begin_branch(&mut self, number: u32) -> Branch {
-        let end = Moment::of(&self.world);
-        let branch = self.branch.until(self.commands, end, number);
-        let left = self.replace_branch(branch);
-        self.note_end();
-        left
-    }
-
-    /// Goes to time zero and begins a branch of this `number` there. Those of the `values` that
-    /// differ from the bed's become commands at step zero, all of them one change. Returns the
-    /// branch that is left.
-    pub(crate) fn start_afresh(&mut self, values: &[(Parameter, Value)], number: u32) -> Branch {
-        let left = self.replace_branch(Branch::begin(number));
-        self.rewind();
-        for (parameter, value) in values {
-            if parameter.read(&self.world).is_some_and(|own| own != *value) {
-                self.set(parameter.clone(), *value, true);
-            }
-        }
-        left
-    }
-
-    fn forget_script(&mut self) {
-        self.script = Script::default();
-        self.recorded = 0;
-    }
-
-    fn apply_due(&mut self, joins: bool) {
-        let step = self.world.clock.step;
-        while self.recorded > 0
-            && let Some(command) = self.script.take_due(step)
-        {
-            self.recorded -= 1;
-            self.execute(command, joins);
-        }
-        if self.script.next_step().is_some_and(|due| due <= step) {
-            self.followed(|run| {
-                while let Some(command) = run.script.take_due(step) {
-                    run.execute(command, joins);
-                }
-            });
-        }
-    }
-
-    /// Makes a change; where the time step follows its limit and that has moved, takes the largest
-    /// stable time step from here on, as part of the change.
-    fn followed(&mut self, change: impl FnOnce(&mut Self)) {
-        if self.keeps_step || self.scene.time_step != TimeStep::Following {
-            return change(self);
-        }
-        let before = self.advice().largest();
-        change(self);
-        let advice = self.advice();
-        let largest = advice.largest();
-        if largest != before && largest != advice.time_step {
-            self.set(Parameter::TimeStep, largest.into(), true);
-        }
-    }
-
-    fn execute(&mut self, command: Command, joins: bool) {
-        match command {
-            Command::Reset => {
-                self.start_afresh(&self.values(), self.branch.number);
-            }
-            Command::Set { parameter, value } => self.set(parameter, value, joins),
-            _ => {}
-        }
-    }
-
-    /// Gives a `parameter` the `value`, both as [`Run::accept`] has them, and notes it in the
-    /// branch.
-    fn set(&mut self, parameter: Parameter, value: Value, joins: bool) {
-        parameter.write(value, &self.scene, &mut self.world);
-        // On the way to a later moment of the branch the command is in it already.
-        if self.commands == self.branch.history.commands().len() {
-            if parameter == Parameter::TimeStep {
-                self.script.keep_times(&self.world.clock);
-            }
-            let command = StampedCommand {
-                step: self.world.clock.step,
-                time: self.world.time(),
-                command: Command::Set { parameter, value },
-            };
-            Arc::make_mut(&mut self.branch.history).push(command, joins);
-        }
-        self.commands += 1;
-    }
-
-    /// Present values of the parameters and of the time step.
-    pub(crate) fn values(&self) -> Vec<(Parameter, Value)> {
-        let parameters = self.parameters.iter().map(|info| info.parameter.clone());
-        let parameters = parameters.chain([Parameter::TimeStep]);
-        let values = parameters.filter_map(|parameter| {
-            let value = parameter.read(&self.world)?;
-            Some((parameter, value))
-        });
-        values.collect()
-    }
-
-    fn take_due_sample(&mut self) {
+    pub(super) fn take_due_sample(&mut self) {
         if self.sampling.due(&self.pace, &self.world.clock) <= self.world.clock.step {
             self.take_sample();
         }
@@ -529,7 +283,7 @@ impl Run {
     }
 
     /// Notes the state as the branch's end, where it is at or beyond it.
-    fn note_end(&mut self) {
+    pub(super) fn note_end(&mut self) {
         if self.is_at_end() {
             self.branch.end = Moment::of(&self.world);
             self.branch.plan.keep_times(&self.world.clock);
