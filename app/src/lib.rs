@@ -17,6 +17,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`simulation`] | the Bevy plugin that lets a lab go on |
+//! | `picture_size` | how large pictures may be |
 //! | [`headless`] | the program without a window: the app, progress, what is printed |
 //! | `view` | a world as pixels: grains, container, camera, colours |
 //! | `ui` | the egui panels |
@@ -28,6 +29,8 @@
 )]
 
 pub mod headless;
+#[cfg(feature = "desktop")]
+pub mod picture_size;
 pub mod simulation;
 #[cfg(feature = "desktop")]
 pub mod ui;

@@ -135,7 +135,8 @@ fn film_job(path: Option<PathBuf>, picture: &PictureArguments) -> Option<FilmJob
         path: path?,
         at: picture.at,
         speed: picture.speed,
-        size: picture.size.into(),
+        rate: picture.frame_rate,
+        size: picture.size,
         plain: picture.plain,
     })
 }
@@ -168,6 +169,7 @@ fn carry_out_task(task: Task, allowed: &Allowed) -> Result<u8, RunnerError> {
             Ok(exit::DONE)
         }
         Task::Settings { scene, json } => list_settings(&scene, json),
+        Task::TimeSteps { scene, set, json } => headless::list_time_steps(&scene, &set, json),
         Task::Pack { scene, set, out } => headless::write_packing(&scene, &set, allowed, &out),
         Task::Sweep(task) => run_sweep(&task, allowed),
         Task::Import(task) => task.carry_out(),
@@ -307,7 +309,7 @@ fn open_window(
     let picture = picture.screenshot.map(|path| PictureJob {
         path,
         at: picture.at,
-        size: picture.size.into(),
+        size: picture.size,
         offscreen: picture.offscreen,
         of: match (picture.transparent, picture.plain) {
             (true, _) => PictureOf::CutOut,

@@ -5,12 +5,13 @@
 //! changed; orders for the screenshot job. What would lose work is asked about first.
 
 use crate::simulation::Simulation;
+use crate::ui::dialogs::capture_form::CaptureForm;
 use crate::ui::dialogs::path_dialog::Purpose;
 use crate::ui::dock::Dock;
 use crate::ui::opener::Opener;
 use crate::ui::panels::lesson::show_look;
 use crate::ui::request::{LessonAct, Request, Requests, SweepAct};
-use crate::ui::screenshot_orders::FilmState;
+use crate::ui::screenshot_orders::{FilmState, PictureOf, ScreenshotOrder};
 use crate::ui::sweep_desk::SweepDesk;
 use crate::view::{CameraRequest, ViewSettings};
 use bevy::prelude::*;
@@ -60,6 +61,29 @@ pub fn fulfil_requests(
     }
 }
 
+/// Why a request cannot be fulfilled now.
+fn refusal(request: &Request, simulation: Option<&Simulation>, opener: &Opener) -> Option<String> {
+    let is_recording = simulation.is_some_and(|lab| lab.recording().is_some());
+    if is_recording && request.takes_a_run() {
+        return Some(CommandError::Recorded.to_string());
+    }
+    let is_replaying = matches!(opener.screenshots.film, FilmState::Replaying { .. });
+    (is_replaying && request.moves_the_run())
+        .then(|| "What is recorded is being filmed: cancel the film first".to_owned())
+}
+
+/// Asks where to put a picture, and how large it is to be.
+fn choose_picture(of: PictureOf, dock: &mut Dock) {
+    let form = CaptureForm::picture(of, dock.memory.capture());
+    dock.path_dialog.ask_with(Purpose::Picture, form);
+}
+
+/// Orders a picture or a film, and remembers what was chosen.
+fn take_picture(order: ScreenshotOrder, dock: &mut Dock, opener: &mut Opener) {
+    dock.memory.keep_capture(&order);
+    opener.screenshots.asked.push(order);
+}
+
 /// Fulfils one request that loses nothing.
 fn fulfil(
     request: Request,
@@ -68,9 +92,8 @@ fn fulfil(
     opener: &mut Opener,
     exit: &mut MessageWriter<AppExit>,
 ) {
-    let is_recording = (simulation.as_ref()).is_some_and(|lab| lab.recording().is_some());
-    if is_recording && request.takes_a_run() {
-        return dock.notify(CommandError::Recorded.to_string());
+    if let Some(reason) = refusal(&request, simulation.as_deref(), opener) {
+        return dock.notify(reason);
     }
     let request = match request {
         Request::Anyway(request) => *request,
@@ -114,6 +137,9 @@ fn fulfil(
         }
         (Request::RunOn, Some(recording)) => opener.run_on(recording, dock),
         (Request::MeasureFlow, Some(recording)) => recording.send(LabCommand::MeasureFlow),
+        (Request::TypeName, Some(simulation)) => dock.ask_name(simulation, opener.view.focus),
+        (Request::TypeMoment, Some(simulation)) => dock.ask_moment(simulation),
+        (Request::Menus, _) => dock.wants_menus = !dock.is_presenting,
         (Request::Repeat, Some(simulation)) => dock.transport.repeat.mark(simulation),
         (Request::Trail, _) => opener.trace_selected(),
         (Request::Ruler, _) => opener.view.ruler.toggle(),
@@ -134,16 +160,19 @@ fn fulfil(
         (Request::OpenLeft(path), _) => opener.open_left(path, dock),
         (Request::DiscardLeft(path), _) => discard(&path, dock),
         (Request::ChooseFile, _) => dock.path_dialog.ask(Purpose::Open),
-        (Request::ChoosePicture(of), _) => dock.path_dialog.ask(Purpose::Picture(of)),
+        (Request::ChoosePicture(of), _) => choose_picture(of, dock),
         (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
         (Request::ChooseChanges, _) => dock.path_dialog.ask(Purpose::Changes),
         (Request::ChooseFilm, _) if opener.screenshots.film != FilmState::Idle => {
             dock.notify("A film is being recorded already: stop it first");
         }
-        (Request::ChooseFilm, _) => dock.path_dialog.ask(Purpose::Film),
+        (Request::ChooseFilm, Some(simulation)) => {
+            let form = CaptureForm::film(dock.memory.capture(), simulation);
+            dock.path_dialog.ask_with(Purpose::Film, form);
+        }
         (Request::ExportPlot(export), _) => dock.export_plot(export),
         (Request::SavePlot(path), _) => save_plot(&path, dock),
-        (Request::Screenshot(order), _) => opener.screenshots.asked.push(order),
+        (Request::Screenshot(order), _) => take_picture(order, dock, opener),
         (Request::Quit, _) => {
             dock.sweeps.leave();
             exit.write(AppExit::Success);
@@ -155,11 +184,14 @@ fn fulfil(
             | Request::SetIn(..)
             | Request::EndComparison(_)
             | Request::NameRun { .. }
+            | Request::TypeName
+            | Request::TypeMoment
             | Request::RunAnew
             | Request::RunOn
             | Request::MeasureFlow
             | Request::Lesson(_)
             | Request::Repeat
+            | Request::ChooseFilm
             | Request::SaveSession(_)
             | Request::SaveChanges(_),
             None,

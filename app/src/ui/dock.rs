@@ -1,8 +1,7 @@
-//! Everything that is drawn round the picture: which panels there are, what stands above, below and
-//! over them.
+//! Everything that is drawn round the picture: panels, what stands above, below and over them.
 //!
 //! In: the simulation and the view's settings. Out: requests, and what is left free for the
-//! picture. Needs no Bevy app.
+//! picture. Needs no Bevy app. Which panels there are is [`super::register`]'s.
 
 use crate::simulation::Simulation;
 use crate::ui::arrangement::{Arrangement, Rearrangement};
@@ -10,38 +9,20 @@ use crate::ui::bars::badge::Badge;
 use crate::ui::bars::menu::{Shown, menu_ui};
 use crate::ui::bars::transport::Transport;
 use crate::ui::detail::Detail;
-use crate::ui::dialogs::path_dialog::{PathDialog, Purpose};
-use crate::ui::dialogs::scene_gallery::Gallery;
-use crate::ui::dialogs::sheets::{doubt_ui, left_ui, open_error_ui, sheet_ui, unsaved_ui};
+use crate::ui::dialogs::path_dialog::PathDialog;
+use crate::ui::dialogs::shown::ShownDialogs;
 use crate::ui::notice::{Notice, StaleTooltips};
-use crate::ui::panels::about_scene::AboutScene;
-use crate::ui::panels::avalanche_plots::AvalanchePlots;
-use crate::ui::panels::beside_paper::BesidePaper;
-use crate::ui::panels::changes::ChangeList;
-use crate::ui::panels::collapse_plots::CollapsePlots;
-use crate::ui::panels::column_beside_paper::ColumnBesidePaper;
 use crate::ui::panels::compare::Compare;
-use crate::ui::panels::energy_stack::EnergyStack;
-use crate::ui::panels::events::Events;
-use crate::ui::panels::explorer::Explorer;
-use crate::ui::panels::flow_over_depth::FlowOverDepth;
-use crate::ui::panels::grains::Grains;
 use crate::ui::panels::lesson::LessonDesk;
-use crate::ui::panels::mean_velocities::MeanVelocities;
-use crate::ui::panels::microscope::Microscope;
 use crate::ui::panels::parameter_sweep::ParameterSweep;
-use crate::ui::panels::parameters::Parameters;
-use crate::ui::panels::picture_settings::PictureSettings;
-use crate::ui::panels::results::Results;
-use crate::ui::panels::solver_profile::SolverProfile;
 use crate::ui::plot_export::Export;
-use crate::ui::request::{Request, Sheet};
-use crate::ui::sections::{Section, section};
+use crate::ui::register::register;
+use crate::ui::request::Request;
 use crate::ui::sides::Sides;
 use crate::ui::sweep_desk::SweepDesk;
 use crate::ui::theme::Palette;
 use crate::ui::user_memory::{Look, UserMemory};
-use crate::ui::widgets::focus::focus_ui;
+use crate::ui::widgets::focus::{FocusBelow, focus_ui};
 use crate::ui::words::names::title_in_words;
 use crate::ui::{shortcuts, text_size, theme};
 use crate::view::ViewSettings;
@@ -73,25 +54,17 @@ pub struct Dock {
     badge: Badge,
     /// The plot that a file is being chosen for.
     pub export: Option<Box<Export>>,
-    gallery: Gallery,
-    shows_scenes: bool,
-    memory: UserMemory,
+    pub(super) dialogs: ShownDialogs,
+    pub(super) memory: UserMemory,
     /// The built-in scene that is open, unless it was changed.
     scene: Option<&'static str>,
     /// Choosing a file.
     pub path_dialog: PathDialog,
-    sheet: Option<Sheet>,
-    open_error: Option<String>,
     /// The file of the session, where it has one.
     pub session: Option<PathBuf>,
-    /// What is asked whether it is meant, and why.
-    doubted: Option<(String, Request)>,
-    /// Sessions that earlier windows left, which are offered.
-    left_behind: Vec<PathBuf>,
-    /// One of them that was opened and is not yet kept as this window's work.
+    /// A session that an earlier window left, which was opened and is not yet kept as this window's
+    /// work.
     pub taken_up: Option<PathBuf>,
-    /// The request that would lose unsaved work, while the person is asked about it.
-    leaving: Option<Request>,
     /// What to do when the session has been saved.
     pub after_saving: Option<Request>,
     notice: Notice,
@@ -102,6 +75,12 @@ pub struct Dock {
     /// Whether a picture of the window is being taken, in which no tooltip belongs.
     pub is_photographed: bool,
     stale_tooltips: StaleTooltips,
+    /// What gets the keyboard's focus back.
+    focus: FocusBelow,
+    /// Where the menu bar is.
+    menu_bar: egui::Rect,
+    /// Whether the keyboard's focus is wanted in the menu bar.
+    pub wants_menus: bool,
     /// Whether a file hovers over the window.
     pub file_hovers: bool,
     /// Whether the dock is hidden and the picture fills the window.
@@ -115,65 +94,31 @@ pub struct Dock {
     pub window: Option<egui::Vec2>,
 }
 
-/// The register of panels on the left, from top to bottom, and whether each is open at first.
-fn left(sweeps: &SweepDesk) -> Vec<Section> {
-    vec![
-        section(AboutScene, true),
-        section(Parameters::default(), true),
-        section(Compare::default(), false),
-        section(ParameterSweep::of(sweeps), false),
-        section(ChangeList::default(), true),
-        section(PictureSettings, false),
-        section(SolverProfile, false),
-    ]
-}
-
-/// The register of panels on the right.
-fn right() -> Vec<Section> {
-    vec![
-        section(Microscope::default(), false),
-        section(AvalanchePlots::default(), true),
-        section(CollapsePlots::default(), true),
-        section(Events::default(), false),
-        section(Explorer::default(), false),
-        section(Grains::default(), false),
-        section(EnergyStack, false),
-        section(MeanVelocities::default(), false),
-        section(FlowOverDepth::default(), false),
-        section(BesidePaper::default(), true),
-        section(ColumnBesidePaper, true),
-        section(Results::default(), true),
-    ]
-}
-
 impl Default for Dock {
     fn default() -> Self {
         let sweeps = SweepDesk::default();
         Self {
-            sides: Sides::new(left(&sweeps), right()),
+            sides: Sides::new(register(&sweeps)),
             sweeps,
             lesson: LessonDesk::default(),
             transport: Transport::default(),
             badge: Badge::default(),
             export: None,
-            gallery: Gallery::default(),
-            shows_scenes: false,
+            dialogs: ShownDialogs::default(),
             memory: UserMemory::default(),
             scene: None,
             path_dialog: PathDialog::default(),
-            sheet: None,
-            open_error: None,
             session: None,
-            doubted: None,
-            left_behind: Vec::new(),
             taken_up: None,
-            leaving: None,
             after_saving: None,
             notice: Notice::default(),
             is_holding: false,
             is_changing: false,
             is_photographed: false,
             stale_tooltips: StaleTooltips::default(),
+            focus: FocusBelow::default(),
+            menu_bar: egui::Rect::NOTHING,
+            wants_menus: false,
             file_hovers: false,
             is_hidden: false,
             is_presenting: false,
@@ -197,6 +142,9 @@ impl Dock {
         self.remember_look(root.ctx(), view);
         theme::show(root.ctx(), view.background);
         self.remember_ui(root.ctx(), simulation);
+        if self.covers(root.ctx()) > 0 {
+            self.focus.lead(root.ctx());
+        }
         self.is_holding =
             (root.ctx()).input(|input| input.pointer.any_down() || !input.keys_down.is_empty());
         let is_lesson = |asked: &Request| matches!(asked, Request::Lesson(_));
@@ -208,10 +156,32 @@ impl Dock {
         } else {
             self.panels_ui(root, simulation, view, out);
         }
-        self.windows_ui(root.ctx(), out);
+        self.windows_ui(root.ctx(), simulation, out);
+        let covers = self.covers(root.ctx());
+        self.focus.follow(root.ctx(), covers, self.menu_bar);
         focus_ui(root.ctx(), Palette::of(root.visuals()));
         let (has_dialog, is_photographed) = (self.has_dialog(), self.is_photographed);
         (self.stale_tooltips).hide(root.ctx(), has_dialog, is_photographed);
+    }
+
+    /// How many of a dialog, a menu and a list lie over the panels.
+    fn covers(&self, ctx: &egui::Context) -> usize {
+        usize::from(self.has_dialog()) + usize::from(egui::Popup::is_any_open(ctx))
+    }
+
+    /// Draws the same into a second picture, but what lies over it: nobody works it there.
+    pub(super) fn second_ui(
+        &mut self,
+        root: &mut egui::Ui,
+        simulation: Option<&Simulation>,
+        view: &mut ViewSettings,
+        out: &mut Vec<Request>,
+    ) {
+        if self.is_presenting {
+            self.presented_ui(root, simulation, out);
+        } else {
+            self.panels_ui(root, simulation, view, out);
+        }
     }
 
     /// Menu bar, both sides and the bar below.
@@ -256,17 +226,6 @@ impl Dock {
         }
     }
 
-    /// Whether a dialog or a sheet lies over the panels.
-    fn has_dialog(&self) -> bool {
-        self.shows_scenes
-            || self.path_dialog.is_open()
-            || self.sheet.is_some()
-            || self.open_error.is_some()
-            || self.leaving.is_some()
-            || self.doubted.is_some()
-            || !self.left_behind.is_empty()
-    }
-
     /// Panels away over the whole screen, or back.
     pub fn present(&mut self) {
         self.is_presenting ^= true;
@@ -279,6 +238,9 @@ impl Dock {
     /// Does what was `asked` of the places of panels, and remembers it.
     pub fn rearrange(&mut self, asked: Rearrangement, simulation: Option<&Simulation>) {
         self.sides.rearrange(asked, simulation);
+        if let Rearrangement::Show(title) = asked {
+            self.show_panel(title);
+        }
         self.memory.keep_panels(match asked {
             Rearrangement::AsAtFirst => Arrangement::default(),
             _ => self.sides.arrangement(),
@@ -292,9 +254,8 @@ impl Dock {
 
     /// The panels as they are at first, where this person wants them.
     fn renew_panels(&mut self) {
-        self.sides = self
-            .sides
-            .renewed([left(&self.sweeps), right()], self.memory.panels());
+        let panels = register(&self.sweeps);
+        self.sides = self.sides.renewed(panels, self.memory.panels());
         self.transport = Transport::default();
     }
 
@@ -330,17 +291,6 @@ impl Dock {
     /// Opens every panel on both sides.
     pub fn show_all_panels(&mut self) {
         self.sides.open_all();
-    }
-
-    /// Lets the person choose where the plot `export` goes.
-    pub fn export_plot(&mut self, export: Box<Export>) {
-        self.export = Some(export);
-        self.path_dialog.ask(Purpose::Plot);
-    }
-
-    /// Shows the scenes that come with the program.
-    pub fn show_scenes(&mut self) {
-        self.shows_scenes = true;
     }
 
     /// Restores the look of the last session, then keeps the present one.
@@ -403,36 +353,6 @@ impl Dock {
         !self.is_hidden && !self.is_presenting && self.transport.shows_time()
     }
 
-    /// Shows a sheet.
-    pub fn show_sheet(&mut self, sheet: Sheet) {
-        self.sheet = Some(sheet);
-    }
-
-    /// Shows why a file could not be opened.
-    pub fn show_open_error(&mut self, reason: String) {
-        self.open_error = Some(reason);
-    }
-
-    /// Asks whether `request`, against which `reason` speaks, is meant.
-    pub fn doubt(&mut self, reason: String, request: Request) {
-        self.doubted = Some((reason, request));
-    }
-
-    /// Offers the sessions that earlier windows `left`, one by one.
-    pub fn offer_left(&mut self, left: Vec<PathBuf>) {
-        self.left_behind = left;
-    }
-
-    /// Why a file could not be opened, while that is shown.
-    pub fn open_error(&self) -> Option<&str> {
-        self.open_error.as_deref()
-    }
-
-    /// Asks whether to save before `next`, which leaves the session.
-    pub fn ask_to_save(&mut self, next: Request) {
-        self.leaving = Some(next);
-    }
-
     /// Says `text` for a few seconds.
     pub fn notify(&mut self, text: impl Into<String>) {
         self.notice.say(text.into());
@@ -488,9 +408,10 @@ impl Dock {
             recent: self.memory.recent(),
             sides: &mut self.sides.shown,
             panels,
+            takes_focus: std::mem::take(&mut self.wants_menus),
         };
         let mut of_badge = Vec::new();
-        egui::Panel::top("menu").show(root, |ui| {
+        let bar = egui::Panel::top("menu").show(root, |ui| {
             menu_ui(ui, simulation, &mut shown, view, out, |ui| {
                 if let Some(simulation) = simulation {
                     badge.ui(ui, simulation, &mut of_badge);
@@ -499,24 +420,18 @@ impl Dock {
                 }
             });
         });
+        self.menu_bar = bar.response.rect;
         out.extend(of_badge);
     }
 
-    fn windows_ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
-        self.shows_scenes = self.shows_scenes && self.gallery.ui(ctx, &self.memory, out);
+    fn windows_ui(
+        &mut self,
+        ctx: &egui::Context,
+        simulation: Option<&Simulation>,
+        out: &mut Vec<Request>,
+    ) {
         self.path_dialog.ui(ctx, out);
-        self.sheet = self.sheet.filter(|sheet| sheet_ui(ctx, *sheet));
-        let open = |reason: &String| open_error_ui(ctx, reason);
-        self.open_error = self.open_error.take().filter(open);
-        if let Some(path) = self.left_behind.first()
-            && !left_ui(ctx, path, out)
-        {
-            self.left_behind.remove(0);
-        }
-        self.doubted =
-            (self.doubted.take()).filter(|(reason, request)| doubt_ui(ctx, reason, request, out));
-        let asked = |next: &Request| unsaved_ui(ctx, next, out);
-        self.leaving = self.leaving.take().filter(asked);
+        self.dialogs.ui(ctx, simulation, &self.memory, out);
         let waiting = "Waiting for the system's file dialog; ask again to type a path";
         let otherwise = self.path_dialog.is_waiting().then_some(waiting);
         self.notice.ui(ctx, otherwise);

@@ -10,11 +10,15 @@
 //! | file or folder | holds |
 //! |---|---|
 //! | `plugin` | when panels are drawn, as systems of Bevy |
+//! | `second_pass` | panels and marks of a second picture, off screen |
+//! | `captions` | what stands in the picture |
 //! | `rescue` | work that is in no file, kept for the case that the program ends unasked |
 //! | `dispatch` | what each request does |
 //! | `opener` | scenes, lessons, sessions and recordings in the place of what is shown |
 //! | `session_look` | how a window looked, as a session keeps it |
-//! | `dock` | the register of panels, what stands round the picture and lies over it |
+//! | `dock_dialogs` | what the dock asks and tells over everything else |
+//! | `dock` | what stands round the picture and lies over it |
+//! | `register` | every panel in its place |
 //! | `sides`, `sections` | both sides of panels; one side of them |
 //! | `notice` | what is told for a few seconds |
 //! | `dialogs` | windows over the rest: scenes with their pictures, a path to choose, sheets of text |
@@ -27,6 +31,7 @@
 //! | `plots` | curves of samples: axes, the part of the run in view, all runs on one plot |
 //! | `playback` | what can be asked of the run now: play, steps, leaps, the next avalanche |
 //! | `repeat` | the part of a run that is played again and again |
+//! | `capture_choice` | what somebody chose of pictures and films the last time |
 //! | `request`, `screenshot_orders` | what panels ask for; pictures and films that are asked for |
 //! | `plot_export` | a plot on its way to a file |
 //! | `arrangement` | where panels stand, by their titles; how wide sides may be |
@@ -38,10 +43,13 @@
 
 mod arrangement;
 mod bars;
+mod captions;
+mod capture_choice;
 mod detail;
 mod dialogs;
 mod dispatch;
 mod dock;
+mod dock_dialogs;
 mod event_kinds;
 mod keyboard;
 mod notice;
@@ -52,10 +60,12 @@ mod playback;
 mod plot_export;
 mod plots;
 mod plugin;
+mod register;
 mod repeat;
 mod request;
 mod rescue;
 mod screenshot_orders;
+mod second_pass;
 mod sections;
 mod session_look;
 mod shortcuts;
@@ -71,7 +81,9 @@ pub use arrangement::{Arrangement, Rearrangement};
 pub use bars::badge::{Check, Level, checks, stable_step};
 pub use bars::film_bar::film_bar_ui;
 pub use bars::transport::{Transport, status_ui};
+pub use capture_choice::CaptureChoice;
 pub use detail::Detail;
+pub use dialogs::capture_form::CaptureForm;
 pub use dialogs::path_dialog::{PathDialog, Purpose};
 pub use dialogs::sheets::{open_error_ui, sheet_ui, unsaved_ui};
 pub(crate) use dispatch::said;
@@ -101,7 +113,10 @@ pub use plugin::{DockPlugin, UiPlugin};
 pub use repeat::Repeat;
 pub use request::{LessonAct, Request, Requests, Sheet, SweepAct};
 pub use rescue::RescuePlugin;
-pub use screenshot_orders::{FilmState, PictureOf, ScreenshotOrder, ScreenshotOrders};
+pub use screenshot_orders::{
+    FilmOrder, FilmSpan, FilmState, PictureOf, PictureOrder, ScreenshotOrder, ScreenshotOrders,
+};
+pub use second_pass::SecondPicturePass;
 pub use session_look::SessionLook;
 pub use sweep_desk::{SweepDesk, SweepSeen};
 pub use user_memory::{Look, UserMemory};

@@ -108,12 +108,14 @@ impl Export {
                 ..chart::Line::default()
             }
         };
+        // A run that was left where it began has no curve, and the legend names curves.
+        let is_curve = |line: &chart::Line| line.points.len() > 1;
         let plot = chart::Plot {
             file: String::new(),
             title: format!("{} over {}", self.y.label(), self.x.label()),
             x: chart::ChartAxis::linear(&self.x.label()),
             y: chart::ChartAxis::linear(&self.y.label()),
-            lines: self.runs.iter().map(line).collect(),
+            lines: self.runs.iter().map(line).filter(is_curve).collect(),
         };
         if !plot.has_points() {
             return Err(io::Error::other("there is nothing to draw yet"));
@@ -180,12 +182,37 @@ mod tests {
 
     #[test]
     fn drawing_shows_units_of_the_panel_and_leaves_out_what_is_no_number() {
-        let svg = export(None).svg().unwrap();
+        let mut export = export(None);
+        export.runs[0].points.push([1.0, 0.5]);
+        let svg = export.svg().unwrap();
         assert!(svg.contains("Surface angle θ [°]") && svg.contains("Time t [s]"));
         assert!(!svg.contains("NaN"));
-        let mut empty = export(None);
-        empty.runs[0].points.clear();
-        assert!(empty.svg().is_err());
+        export.runs[0].points.clear();
+        assert!(export.svg().is_err());
+    }
+
+    #[test]
+    fn legend_names_the_runs_that_have_a_curve_and_no_others() {
+        let mut export = export(None);
+        export.runs[0].points = vec![[0.0, 0.25], [0.5, 0.5]];
+        let left = |name: &str, points: Vec<[f64; 2]>| ExportedRun {
+            name: name.to_owned(),
+            time: points.iter().map(|[time, _]| *time).collect(),
+            points,
+        };
+        export.runs.extend([
+            left("of no length", vec![[0.0, 0.25]]),
+            left("of nothing", Vec::new()),
+            left("of no numbers", vec![[0.0, f64::NAN], [0.5, f64::NAN]]),
+            left("of another", vec![[0.0, 0.25], [0.2, 0.3]]),
+        ]);
+        let svg = export.svg().unwrap();
+        assert!(svg.contains("this run") && svg.contains("of another"));
+        for name in ["of no length", "of nothing", "of no numbers"] {
+            assert!(!svg.contains(name), "{name}");
+        }
+        // The table has every sample.
+        assert!(export.csv().unwrap().contains("of no length,0,0.25"));
     }
 
     #[test]

@@ -5,16 +5,15 @@
 
 use crate::simulation::Simulation;
 use crate::ui::bars::film_bar::film_bar_ui;
+use crate::ui::captions::captions;
 use crate::ui::dispatch::fulfil_requests;
 use crate::ui::dock::Dock;
 use crate::ui::opener::{OpenWith, Opening, finish_opening};
-use grainfall::lab::{Half, Options, RunView, Status};
-
 use crate::ui::request::{Request, Requests};
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
-use crate::ui::words::run_names::half_title;
+use crate::ui::second_pass::{SecondPicturePass, draw_second_picture};
 use crate::ui::{keyboard, theme};
-use crate::view::{Caption, OrbitCamera, ViewSettings, viewport_ui};
+use crate::view::{OrbitCamera, ViewSettings, viewport_ui};
 use bevy::asset::AssetEventSystems;
 use bevy::prelude::*;
 use bevy::window::{FileDragAndDrop, PrimaryWindow, WindowCloseRequested, WindowMode};
@@ -22,6 +21,7 @@ use bevy_egui::{
     EguiContexts, EguiPostUpdateSet, EguiPreUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext,
     egui,
 };
+use grainfall::lab::{Options, Status};
 
 /// Draws the panels and fulfils what they ask for. Needs Bevy's default plugins, `EguiPlugin` and
 /// the view's plugin.
@@ -36,6 +36,7 @@ impl Plugin for UiPlugin {
         let options = self.options.clone();
         app.add_plugins(DockPlugin { options })
             .add_systems(EguiPrimaryContextPass, (install_theme, draw_panels).chain())
+            .add_systems(SecondPicturePass, draw_second_picture)
             .add_systems(Update, follow_full_screen)
             .add_systems(
                 PreUpdate,
@@ -117,8 +118,11 @@ fn draw_panels(
     }
     // A film runs at its own speed, however long its pictures take.
     let is_filmed = orders.film != FilmState::Idle;
-    let has_clock = is_filmed || !dock.shows_time();
-    let mut captions = captions(simulation, is_filmed, has_clock);
+    let has_clock = !dock.shows_time();
+    let factor = simulation
+        .filter(|_| !is_filmed)
+        .map_or(0.0, |run| run.real_time_factor());
+    let mut captions = captions(simulation, has_clock, factor);
     for caption in &mut captions {
         caption.is_for_afar = dock.is_presenting && !dock.is_hidden;
     }
@@ -127,40 +131,6 @@ fn draw_panels(
         dock.over_picture_ui(&root, simulation);
     }
     Ok(())
-}
-
-/// What stands in the picture: once, or in each of its halves; how fast it goes, only where it is
-/// not filmed.
-fn captions(simulation: Option<&Simulation>, is_filmed: bool, has_clock: bool) -> Vec<Caption<'_>> {
-    let factor = match simulation {
-        Some(simulation) if !is_filmed => simulation.real_time_factor(),
-        _ => 0.0,
-    };
-    let is_pair = |simulation: &&Simulation| simulation.comparison().is_some();
-    let captions = match simulation.filter(is_pair) {
-        None => {
-            let run = simulation.map(|simulation| simulation.half(Half::Left));
-            vec![caption(run, factor, None)]
-        }
-        Some(pair) => Half::ALL
-            .map(|half| caption(Some(pair.half(half)), factor, Some(half_title(pair, half))))
-            .into(),
-    };
-    let with_clock = |caption| Caption {
-        has_clock,
-        ..caption
-    };
-    captions.into_iter().map(with_clock).collect()
-}
-
-fn caption(run: Option<&RunView>, factor: f64, title: Option<String>) -> Caption<'_> {
-    Caption {
-        world: run.and_then(|run| run.world().map(AsRef::as_ref)),
-        real_time_factor: (factor > 0.0).then_some(factor),
-        title,
-        has_clock: true,
-        is_for_afar: false,
-    }
 }
 
 /// Lets the window fill the screen, or not, where that was asked for.

@@ -38,6 +38,10 @@ pub enum Request {
         /// The name.
         name: String,
     },
+    /// Let the person type the name of the run that is shown.
+    TypeName,
+    /// Let the person type the moment to go to.
+    TypeMoment,
     /// Mark the moment shown as an end of the part that is played again and again; the third time
     /// play on without that.
     Repeat,
@@ -87,18 +91,20 @@ pub enum Request {
     ChooseChanges,
     /// Write the changes of the present run to this file.
     SaveChanges(PathBuf),
-    /// Let the person choose where a picture of this goes.
+    /// Let the person choose where a picture of this goes and how large it is.
     ChoosePicture(PictureOf),
     /// Let the person choose where this plot goes.
     ExportPlot(Box<Export>),
     /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.
     SavePlot(PathBuf),
-    /// Let the person choose where a film of the picture goes.
+    /// Let the person choose where a film goes and what it is like.
     ChooseFilm,
     /// Take a picture or a film, or end one.
     Screenshot(ScreenshotOrder),
     /// Show a sheet over the window.
     Show(Sheet),
+    /// The keyboard's focus into the menu bar.
+    Menus,
     /// Another place for a panel.
     Arrange(Rearrangement),
     /// Panels away and numbers that are read from afar, or back.
@@ -113,6 +119,18 @@ impl Request {
     /// Whether it gives a parameter a value: what is set while one drag lasts is one change.
     pub(super) fn sets_a_value(&self) -> bool {
         matches!(self, Self::Command(Command::Set { .. }) | Self::SetIn(..))
+    }
+
+    /// Whether it changes the run, or takes it to another moment.
+    pub(super) fn moves_the_run(&self) -> bool {
+        matches!(
+            self,
+            Self::Command(_)
+                | Self::StartComparison(..)
+                | Self::SetIn(..)
+                | Self::EndComparison(_)
+                | Self::Lesson(_)
+        )
     }
 
     /// Whether it takes a run: what a recording is not asked for.
@@ -131,6 +149,7 @@ impl Request {
             | Self::SetIn(..)
             | Self::EndComparison(_)
             | Self::NameRun { .. }
+            | Self::TypeName
             | Self::Save
             | Self::ChooseSession
             | Self::SaveSession(_)

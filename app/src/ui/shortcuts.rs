@@ -5,11 +5,14 @@
 //! text is typed or a dialog is open, no key counts.
 
 use crate::simulation::Simulation;
+use crate::ui::arrangement::Rearrangement;
 use crate::ui::event_kinds::EventKinds;
+use crate::ui::panels::explorer::Explorer;
+use crate::ui::panels::picture_settings::PictureSettings;
 use crate::ui::playback::{
     Way, allows, go, leap, play_or_pause, step_back, step_on, to_avalanche, to_event,
 };
-use crate::ui::request::{LessonAct, Request, Sheet};
+use crate::ui::request::{LessonAct, Request, Sheet, SweepAct};
 use crate::ui::screenshot_orders::PictureOf;
 use crate::view::{CameraRequest, StandardView};
 use bevy_egui::egui::{self, Key, KeyboardShortcut, Modifiers};
@@ -56,6 +59,10 @@ const fn shift(key: Key) -> KeyboardShortcut {
 
 const fn look_from(side: StandardView) -> KeyAction {
     KeyAction::Ask(Request::Camera(CameraRequest::From(side)))
+}
+
+const fn show(panel: &'static str) -> KeyAction {
+    KeyAction::Ask(Request::Arrange(Rearrangement::Show(panel)))
 }
 
 const fn lesson(act: LessonAct) -> KeyAction {
@@ -115,6 +122,11 @@ pub const SHORTCUTS: &[Shortcut] = &[
         action: KeyAction::StepBack,
     },
     Shortcut {
+        keys: &[key(Key::G)],
+        name: "Go to a moment: type its time",
+        action: KeyAction::Ask(Request::TypeMoment),
+    },
+    Shortcut {
         keys: &[key(Key::End)],
         name: "The newest state",
         action: KeyAction::ToTheNewest,
@@ -134,6 +146,17 @@ pub const SHORTCUTS: &[Shortcut] = &[
         keys: &[key(Key::R)],
         name: "Start afresh",
         action: KeyAction::Ask(Request::Command(Command::Reset)),
+    },
+    Shortcut {
+        keys: &[key(Key::F2)],
+        name: "Name the run that is shown",
+        action: KeyAction::Ask(Request::TypeName),
+    },
+    // Before the shorter ones, which would take its keys.
+    Shortcut {
+        keys: &[ctrl_shift(Key::T)],
+        name: "Run over several values of a parameter",
+        action: KeyAction::Ask(Request::Sweep(SweepAct::Ask(None))),
     },
     Shortcut {
         keys: &[ctrl(Key::T)],
@@ -249,13 +272,23 @@ pub const SHORTCUTS: &[Shortcut] = &[
     },
     Shortcut {
         keys: &[ctrl(Key::P)],
-        name: "Save a picture of the window",
+        name: "Save a picture",
         action: KeyAction::Ask(Request::ChoosePicture(PictureOf::Window)),
     },
     Shortcut {
         keys: &[ctrl(Key::R)],
-        name: "Record a film of the picture",
+        name: "Record a film",
         action: KeyAction::Ask(Request::ChooseFilm),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::E)],
+        name: "Any quantity over time, to look at and to export",
+        action: show(Explorer::TITLE),
+    },
+    Shortcut {
+        keys: &[ctrl(Key::Comma)],
+        name: "What the picture shows, and how",
+        action: show(PictureSettings::TITLE),
     },
     Shortcut {
         keys: &[key(Key::PageUp)],
@@ -327,6 +360,11 @@ pub const SHORTCUTS: &[Shortcut] = &[
         keys: &[key(Key::F1)],
         name: "These shortcuts",
         action: KeyAction::Ask(Request::Show(Sheet::Shortcuts)),
+    },
+    Shortcut {
+        keys: &[key(Key::F10)],
+        name: "The menus",
+        action: KeyAction::Ask(Request::Menus),
     },
     Shortcut {
         keys: &[key(Key::P)],

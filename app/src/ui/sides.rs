@@ -23,7 +23,7 @@ pub struct Sides {
 
 impl Sides {
     /// Both sides as they are at first.
-    pub fn new(left: Vec<Section>, right: Vec<Section>) -> Self {
+    pub fn new([left, right]: [Vec<Section>; 2]) -> Self {
         let shown = OpenSides {
             left: true,
             right: true,
@@ -39,8 +39,8 @@ impl Sides {
     }
 
     /// The same panels as at first, standing as in `arrangement`.
-    pub fn renewed(&self, [left, right]: [Vec<Section>; 2], arrangement: &Arrangement) -> Self {
-        let mut sides = Self::new(left, right);
+    pub fn renewed(&self, panels: [Vec<Section>; 2], arrangement: &Arrangement) -> Self {
+        let mut sides = Self::new(panels);
         sides.shown = self.shown;
         sides.arrange(arrangement);
         sides
@@ -181,6 +181,10 @@ impl Sides {
         above: impl FnOnce(&mut egui::Ui, &mut Vec<Request>),
     ) {
         let window = root.ctx().content_rect().size();
+        // Where there is room for one side, it is that of a panel that is asked for.
+        let is_asked = |sections: &[Section]| sections.iter().any(|section| section.is_wanted);
+        let has_room = self.shown.has_room(Side::Right, window.x);
+        self.shown.left &= has_room || !is_asked(&self.right) || is_asked(&self.left);
         let shown = self.shown;
         let panel = |side: Side, name: &'static str| {
             let widths = shown.widths(side, window);

@@ -1,13 +1,15 @@
 //! What the program remembers of one person from start to start: files opened, how much the
-//! controls show, how large and on which background, where panels stand, how fast each scene ran on
-//! this machine.
+//! controls show, how large and on which background, where panels stand, how large pictures are and how
+//! films pass, how fast each scene ran on this machine.
 //!
 //! In: a small JSON file of the user's. Out: the same file, written whenever something changes. A
 //! file that is damaged or cannot be written is reported once; then less is remembered, and nothing
 //! else is lost. Scenes and sessions are not kept here.
 
 use crate::ui::arrangement::Arrangement;
+use crate::ui::capture_choice::CaptureChoice;
 use crate::ui::detail::Detail;
+use crate::ui::screenshot_orders::ScreenshotOrder;
 use crate::ui::text_size::SCALES;
 use crate::view::Background;
 use bevy::log::warn;
@@ -59,6 +61,7 @@ struct Remembered {
     lab: bool,
     look: Look,
     panels: Arrangement,
+    capture: CaptureChoice,
     speeds: BTreeMap<String, f64>,
 }
 
@@ -115,6 +118,20 @@ impl UserMemory {
     pub fn keep_panels(&mut self, panels: Arrangement) {
         if panels != self.kept.panels {
             self.kept.panels = panels;
+            self.write();
+        }
+    }
+
+    /// What was chosen of pictures and films.
+    pub fn capture(&self) -> &CaptureChoice {
+        &self.kept.capture
+    }
+
+    /// Remembers what `order` chose.
+    pub fn keep_capture(&mut self, order: &ScreenshotOrder) {
+        let chosen = self.kept.capture.after(order);
+        if chosen != self.kept.capture {
+            self.kept.capture = chosen;
             self.write();
         }
     }

@@ -221,6 +221,18 @@ impl OrbitCamera {
         self.height = height.max(1e-5);
     }
 
+    /// Shows the same in a picture of this `size` [points]: all points of `outline` [m] where it fits
+    /// these, else at least what is seen now.
+    pub(super) fn reshape(&mut self, size: Vec2, outline: &[Vec3]) {
+        let before = self.aspect();
+        self.viewport = size;
+        if self.fits && !outline.is_empty() {
+            self.fit(outline);
+        } else {
+            self.height *= (before / self.aspect()).max(1.0);
+        }
+    }
+
     /// From camera axes (x right, y up, z to the viewer) to the world's.
     pub fn rotation(&self) -> Quat {
         Quat::from_euler(EulerRot::YXZ, self.yaw, -self.pitch, 0.0)

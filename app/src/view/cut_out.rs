@@ -4,10 +4,10 @@
 //! black or on white, blending as browsers do (the numbers of sRGB as they are), gets the two pictures
 //! back to a few parts in 255, at edges and through glass too; on other grounds what lies between.
 
-use bevy::prelude::{Color, Resource};
+use bevy::prelude::Color;
 
 /// What is behind the picture.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ground {
     /// The colour that a person chose.
     #[default]

@@ -19,6 +19,7 @@
 //! | `measured_marks` | lines and numbers where something is measured |
 //! | `ruler_marks` | the ruler in the picture |
 //! | `pick` | which grain a point of the picture shows |
+//! | `second_rig` | the cameras of a second picture, off screen |
 //! | `rig` | Bevy's cameras, which follow the orbiting eye |
 //! | `trace` | follows the grains that are traced, and what is measured |
 //! | `container_walls`, `wall_material`, `wall_meshes` | drum, box and planes as one-sided panes |
@@ -29,6 +30,7 @@
 //! | `grain_buffer` | place, colour and shadow of all grains in one buffer |
 //! | `occlusion` | the soft shadow in the gaps between grains |
 //! | `quads` | what spheres and links are drawn on |
+//! | `second_picture` | what belongs to that picture |
 //! | `framing` | what of a scene a picture should hold |
 //! | `sheet` | lines and labels in space |
 //! | `camera` | the orbiting eye, without Bevy's entities |
@@ -38,7 +40,10 @@
 //! | `view_settings` | what a person chose to see |
 //! | `trail`, `measured`, `ruler` | the ways of chosen grains; what is measured of a world; a ruler |
 //! | `halves`, `scale` | the picture in parts; lengths and numbers in it |
-//! | `film`, `png` | films and pictures as files |
+//! | `film` | films as files |
+//! | `video` | those that another program encodes |
+//! | `film_pictures`, `film_kind` | the pictures of a film; what films are written as, how they pass |
+//! | `png` | pictures as files |
 //! | `cut_out` | a picture without its ground |
 
 mod bed_marks;
@@ -48,6 +53,8 @@ mod container_walls;
 mod cut_out;
 mod facets;
 mod film;
+mod film_kind;
+mod film_pictures;
 mod framing;
 mod ghosts;
 mod grain_buffer;
@@ -67,6 +74,8 @@ mod rig;
 mod ruler;
 mod ruler_marks;
 mod scale;
+mod second_picture;
+mod second_rig;
 mod sheet;
 mod shown_worlds;
 mod spheres;
@@ -74,6 +83,7 @@ mod spheres;
 mod test_worlds;
 mod trace;
 mod trail;
+mod video;
 mod view_settings;
 mod viewport;
 mod wall_material;
@@ -86,7 +96,9 @@ pub(crate) use colour::contrast;
 pub(crate) use colour::{MEASURED_ON_DARK, MEASURED_ON_LIGHT, round_up};
 pub use colour::{species_colour, trail_colour};
 pub use cut_out::{Ground, cut_out};
-pub use film::{FILM_RATE, FilmKind, FilmWriter};
+pub use film::FilmWriter;
+pub use film_kind::{Codec, FILM_RATE, FILM_RATES, FILM_SPEEDS, FilmKind, Pace};
+pub use film_pictures::Drawn;
 pub use grain_buffer::GrainBuffer;
 pub use measured::Measured;
 pub use measured_marks::Protractor;
@@ -97,6 +109,8 @@ pub use polyhedron_meshes::Meshing;
 pub use rig::WorldCamera;
 pub use ruler::{Reading, Ruler, RulerEnd};
 pub use scale::ScaleBar;
+pub use second_picture::{SecondLook, SecondOverlay, SecondPicture};
+pub use second_rig::{OfSecondPicture, SecondCamera, second_camera};
 pub use shown_worlds::{ShownWorlds, ViewSystems};
 pub use trail::Trail;
 pub use view_settings::{

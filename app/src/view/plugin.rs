@@ -3,11 +3,12 @@
 //! In: Bevy's app. Out: its systems.
 
 use crate::view::camera::OrbitCamera;
-use crate::view::cut_out::Ground;
+use crate::view::second_picture::SecondPicture;
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems, take_newest};
 use crate::view::view_settings::ViewSettings;
 use crate::view::{
-    container_walls, ghosts, grain_buffer, links, polyhedron_meshes, rig, spheres, trace,
+    container_walls, ghosts, grain_buffer, links, polyhedron_meshes, rig, second_rig, spheres,
+    trace,
 };
 use bevy::asset::{load_internal_asset, uuid_handle};
 use bevy::camera::CameraUpdateSystems;
@@ -28,8 +29,9 @@ impl Plugin for ViewPlugin {
             Shader::from_wgsl
         );
         app.init_resource::<ViewSettings>()
-            .init_resource::<Ground>()
             .init_resource::<OrbitCamera>()
+            .init_resource::<SecondPicture>()
+            .init_resource::<rig::Framed>()
             .init_resource::<ShownWorlds>()
             .configure_sets(
                 Update,
@@ -50,9 +52,10 @@ impl Plugin for ViewPlugin {
                     .chain()
                     .in_set(ViewSystems::Take),
             )
+            .add_systems(Update, second_rig::follow_window.after(ViewSystems::Draw))
             .add_systems(
                 PostUpdate,
-                (rig::steer, rig::follow)
+                (rig::steer, rig::follow, second_rig::follow)
                     .chain()
                     .after(EguiPostUpdateSet::EndPass)
                     .before(CameraUpdateSystems)

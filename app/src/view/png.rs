@@ -24,8 +24,8 @@ const DRAWING_SCALE: u32 = 3;
 /// # Errors
 /// Where it cannot be encoded or written.
 pub fn save_png(image: &Image, from: Option<&Provenance>, path: &Path) -> io::Result<()> {
-    let (size, pixels) = pixels(image)?;
-    write(size, (&pixels, png::ColorType::Rgb), from, path)
+    let (size, pixels) = rgb(image)?;
+    save_pixels(size, (&pixels, png::ColorType::Rgb), from, path)
 }
 
 /// Writes what is in the picture of which `grounds` are the ones on black and on white, without a
@@ -38,7 +38,7 @@ pub fn save_cut_out(
     from: Option<&Provenance>,
     path: &Path,
 ) -> io::Result<()> {
-    let [black, white] = grounds.map(pixels);
+    let [black, white] = grounds.map(rgb);
     let ((size, black), (other, white)) = (black?, white?);
     if size != other {
         return Err(io::Error::other(
@@ -46,11 +46,11 @@ pub fn save_cut_out(
         ));
     }
     let pixels = cut_out(&black, &white);
-    write(size, (&pixels, png::ColorType::Rgba), from, path)
+    save_pixels(size, (&pixels, png::ColorType::Rgba), from, path)
 }
 
 /// The size of `image`, and red, green and blue of its pixels.
-fn pixels(image: &Image) -> io::Result<(UVec2, Vec<u8>)> {
+pub(super) fn rgb(image: &Image) -> io::Result<(UVec2, Vec<u8>)> {
     let pixels = image.clone().try_into_dynamic();
     let pixels = pixels.map_err(io::Error::other)?.into_rgb8();
     Ok((UVec2::from(pixels.dimensions()), pixels.into_raw()))
@@ -73,7 +73,7 @@ pub fn save_drawing(svg: &str, from: &Provenance, path: &Path) -> io::Result<()>
         .iter()
         .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
         .collect();
-    write(size, (&pixels, png::ColorType::Rgb), Some(from), path)
+    save_pixels(size, (&pixels, png::ColorType::Rgb), Some(from), path)
 }
 
 /// The drawing that `svg` states, its text in the fonts of the window.
@@ -90,8 +90,11 @@ fn drawing(svg: &str) -> Result<usvg::Tree, usvg::Error> {
     usvg::Tree::from_str(svg, &options)
 }
 
-/// Writes a picture of this size, whose pixels have these channels.
-fn write(
+/// Writes a picture of this size, whose pixels have these channels, to the file at `path`.
+///
+/// # Errors
+/// Where it cannot be encoded or written.
+pub(super) fn save_pixels(
     size: UVec2,
     (pixels, channels): (&[u8], png::ColorType),
     from: Option<&Provenance>,

@@ -23,32 +23,36 @@ use grainfall::world::{Shape, World};
 pub struct WorldCamera;
 
 pub(super) fn spawn(mut commands: Commands, settings: Res<ViewSettings>) {
+    let samples = if settings.smooth_edges {
+        Msaa::Sample4
+    } else {
+        Msaa::Off
+    };
     for half in Half::ALL {
-        commands.spawn((
-            WorldCamera,
-            DrawnIn(half),
-            layers(half),
-            Camera3d::default(),
-            Camera {
-                // The left one clears the picture for both.
-                order: half.index().cast_signed(),
-                is_active: half == Half::Left,
-                ..default()
-            },
-            Tonemapping::None,
-            DebandDither::Disabled,
-            ClusterConfig::Single,
-            if settings.smooth_edges {
-                Msaa::Sample4
-            } else {
-                Msaa::Off
-            },
-        ));
+        commands.spawn((WorldCamera, world_camera(half, half == Half::Left), samples));
     }
 }
 
+/// A camera that shows the world in `half`.
+pub(super) fn world_camera(half: Half, is_active: bool) -> impl Bundle {
+    (
+        DrawnIn(half),
+        layers(half),
+        Camera3d::default(),
+        Camera {
+            // The left one clears the picture for both.
+            order: half.index().cast_signed(),
+            is_active,
+            ..default()
+        },
+        Tonemapping::None,
+        DebandDither::Disabled,
+        ClusterConfig::Single,
+    )
+}
+
 /// What the picture was last fitted to.
-#[derive(Default)]
+#[derive(Resource, Default)]
 pub(super) struct Framed {
     /// The scene, as far as its framing goes, and how often a person had asked then.
     of: Option<(Shape, usize, usize, u32)>,
@@ -63,6 +67,11 @@ pub(super) struct Framed {
 }
 
 impl Framed {
+    /// The points that must be seen.
+    pub(super) fn outline(&self) -> &[Vec3] {
+        &self.outline
+    }
+
     /// Goes with the grains of `world`, the middle of which was at `before`.
     fn ride(&mut self, before: Vec3, world: &World, camera: &mut OrbitCamera) {
         let Some((min, max)) = grain_box(world) else {
@@ -91,7 +100,7 @@ pub(super) fn steer(
     mut settings: ResMut<ViewSettings>,
     mut camera: ResMut<OrbitCamera>,
     shown: Res<ShownWorlds>,
-    mut framed: Local<Framed>,
+    mut framed: ResMut<Framed>,
 ) {
     if let Some(request) = settings.bypass_change_detection().camera_request.take() {
         camera.follow(request);
@@ -160,44 +169,74 @@ fn home(shape: Shape) -> (f32, f32) {
     }
 }
 
+/// A camera of Bevy's, and where it stands.
+pub(super) type Placed = (
+    &'static DrawnIn,
+    &'static mut Camera,
+    &'static mut Transform,
+    &'static mut Projection,
+);
+
 /// Moves Bevy's cameras to where [`OrbitCamera`] is, each with its part of the picture.
 pub(super) fn follow(
     settings: Res<ViewSettings>,
-    ground: Res<Ground>,
     shown: Res<ShownWorlds>,
     mut orbit: ResMut<OrbitCamera>,
-    mut cameras: Query<(&DrawnIn, &mut Camera, &mut Transform, &mut Projection), With<WorldCamera>>,
+    mut cameras: Query<Placed, With<WorldCamera>>,
 ) {
-    let count = if shown.is_pair() { 2 } else { 1 };
     let draws =
         (cameras.iter()).any(|(&DrawnIn(half), camera, ..)| half == Half::Left && camera.is_active);
-    for (&DrawnIn(half), mut camera, mut transform, mut projection) in &mut cameras {
-        if half == Half::Left {
-            let chosen = Scheme::of(settings.background).background;
-            camera.clear_color = ClearColorConfig::Custom(ground.colour(chosen));
-        } else {
-            camera.clear_color = ClearColorConfig::None;
-            camera.is_active = draws && shown.is_pair();
-        }
-        if let Some(target) = camera.physical_target_size() {
-            let whole = egui::Rect::from_min_size(egui::Pos2::ZERO, points(target, &settings));
-            let free = settings.free_rect.or(shown.is_pair().then_some(whole));
-            let free = free.map(|free| beside(free, settings.margin));
-            let part = free.and_then(|free| parts(free, count).nth(half.index()));
-            let is_last = half.index() + 1 == count;
-            let seen = part.map(|part| seen_part(part, is_last, settings.free_margin()));
-            let [framed, seen] =
-                [part, seen].map(|part| viewport(part, settings.pixels_per_point, target));
-            let shape = framed.as_ref().map_or(target, |v| v.physical_size);
-            if settings.free_rect.is_none() && half == Half::Left {
-                orbit.viewport = shape.as_vec2();
-            }
-            camera.sub_camera_view = wider_view(framed.as_ref(), seen.as_ref());
-            camera.viewport = seen;
-        }
-        *transform = Transform::from_translation(orbit.eye()).with_rotation(orbit.rotation());
-        *projection = seen_by(&orbit);
+    let count = if shown.is_pair() { 2 } else { 1 };
+    for (&DrawnIn(half), camera, transform, projection) in &mut cameras {
+        let placed = (half, camera, transform, projection);
+        place(
+            placed,
+            count,
+            (&*settings, Ground::Chosen),
+            &mut orbit,
+            draws,
+        );
     }
+}
+
+/// Puts the camera of a `half` of so many where `orbit` is, with its part of the picture.
+pub(super) fn place(
+    (half, mut camera, mut transform, mut projection): (
+        Half,
+        Mut<Camera>,
+        Mut<Transform>,
+        Mut<Projection>,
+    ),
+    count: usize,
+    (settings, ground): (&ViewSettings, Ground),
+    orbit: &mut OrbitCamera,
+    draws: bool,
+) {
+    if half == Half::Left {
+        let chosen = Scheme::of(settings.background).background;
+        camera.clear_color = ClearColorConfig::Custom(ground.colour(chosen));
+    } else {
+        camera.clear_color = ClearColorConfig::None;
+        camera.is_active = draws && count > 1;
+    }
+    if let Some(target) = camera.physical_target_size() {
+        let whole = egui::Rect::from_min_size(egui::Pos2::ZERO, points(target, settings));
+        let free = settings.free_rect.or((count > 1).then_some(whole));
+        let free = free.map(|free| beside(free, settings.margin));
+        let part = free.and_then(|free| parts(free, count).nth(half.index()));
+        let is_last = half.index() + 1 == count;
+        let seen = part.map(|part| seen_part(part, is_last, settings.free_margin()));
+        let [framed, seen] =
+            [part, seen].map(|part| viewport(part, settings.pixels_per_point, target));
+        let shape = framed.as_ref().map_or(target, |v| v.physical_size);
+        if settings.free_rect.is_none() && half == Half::Left {
+            orbit.viewport = shape.as_vec2();
+        }
+        camera.sub_camera_view = wider_view(framed.as_ref(), seen.as_ref());
+        camera.viewport = seen;
+    }
+    *transform = Transform::from_translation(orbit.eye()).with_rotation(orbit.rotation());
+    *projection = seen_by(orbit);
 }
 
 /// What is `seen` of a scene that is `framed` in the left part of that, where it is more.
@@ -288,6 +327,7 @@ mod tests {
         app.init_resource::<ViewSettings>()
             .init_resource::<OrbitCamera>()
             .init_resource::<ShownWorlds>()
+            .init_resource::<Framed>()
             .add_systems(Update, steer);
         let show = |app: &mut App, world: &World| {
             let mut shown = app.world_mut().resource_mut::<ShownWorlds>();
@@ -327,6 +367,7 @@ mod tests {
         app.init_resource::<ViewSettings>()
             .init_resource::<OrbitCamera>()
             .init_resource::<ShownWorlds>()
+            .init_resource::<Framed>()
             .add_systems(Update, steer);
         let mut places = Vec::new();
         for _ in 0..30 {

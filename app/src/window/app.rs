@@ -6,23 +6,20 @@
 use crate::headless::heard;
 use crate::simulation::{Simulation, SimulationPlugin};
 use crate::ui::{
-    Dock, PictureOf, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, show_look,
-    title_in_words,
+    Dock, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, show_look, title_in_words,
 };
 use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
 use crate::window::screenshot_job::{Failure, ScreenshotJobs, ScreenshotPlugin};
+use crate::window::second_set::over_everything;
 use crate::window::window_job::{Opened, PictureJob, WindowError, WindowJob};
 use bevy::app::{ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin};
-use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{CameraOutputMode, ClearColorConfig};
 use bevy::log::{Level, LogPlugin};
 use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
-use bevy::render::render_resource::BlendState;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use grainfall::lab::Options;
@@ -59,8 +56,9 @@ pub fn run(job: WindowJob) -> Result<(), WindowError> {
 fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     let mut app = App::new();
     // A person begins by looking; a picture is taken of a run that goes to its moment as fast as it
-    // can.
-    job.options.autoplay = job.picture.is_some();
+    // can, of two from their common start on.
+    let is_played = job.picture.is_some();
+    job.options.autoplay = is_played && job.compared.is_none();
     job.options.speed = match job.picture {
         Some(_) => f64::INFINITY,
         None => first_speed(job.opened.scene().duration),
@@ -74,11 +72,10 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         )),
         picture => app.add_plugins(window_plugins(title, picture.as_ref())),
     };
-    let is_plain = (job.picture.as_ref()).is_some_and(|picture| picture.of != PictureOf::Window);
     // Several samples a pixel are the processor's work where there is no graphics card.
     let smooth_edges = !software || job.picture.is_some();
     app.add_plugins(ScreenshotPlugin);
-    add_laboratory(&mut app, is_plain, smooth_edges, job.options.clone());
+    add_laboratory(&mut app, false, smooth_edges, job.options.clone());
     app.add_systems(Update, follow_title);
     let mut dock = app.world_mut().resource_mut::<Dock>();
     if job.picture.is_none() {
@@ -97,7 +94,6 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
         Opened::Session(session) => SessionLook::read(session.look()),
         _ => None,
     };
-    dock.is_hidden = is_plain;
     if let Some(look) = look {
         take_up(look, job.opened.scene(), app.world_mut());
     }
@@ -110,6 +106,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     app.insert_resource(job.opened.run(job.options))
         .insert_resource(OpeningComparison {
             wanted: job.compared,
+            is_played,
             refused: None,
         })
         .add_systems(Update, begin_comparison);
@@ -200,22 +197,7 @@ fn follow_title(
 
 /// The camera that draws the panels over everything.
 fn spawn_panel_camera(mut commands: Commands) {
-    commands.spawn((
-        PrimaryEguiContext,
-        Camera2d,
-        RenderLayers::none(),
-        Msaa::Off,
-        Camera {
-            // After those of both halves of the picture.
-            order: 2,
-            output_mode: CameraOutputMode::Write {
-                blend_state: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                clear_color: ClearColorConfig::None,
-            },
-            clear_color: ClearColorConfig::Custom(Color::NONE),
-            ..default()
-        },
-    ));
+    commands.spawn((PrimaryEguiContext, over_everything()));
 }
 
 /// Does `work`; if it panics, says what the panic said instead of printing it.

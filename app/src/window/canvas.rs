@@ -4,6 +4,7 @@
 //! ([`CanvasPlugin`]), and the request for a picture of it or of the window. When a picture is
 //! taken is not decided here.
 
+use crate::view::OfSecondPicture;
 use bevy::app::{PluginGroupBuilder, PluginsState};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::RenderTarget;
@@ -52,19 +53,39 @@ pub struct CanvasPlugin(pub UVec2);
 #[derive(Resource, Clone)]
 pub struct Canvas(Handle<Image>);
 
+impl Canvas {
+    /// The image.
+    pub fn image(&self) -> &Handle<Image> {
+        &self.0
+    }
+}
+
 impl Plugin for CanvasPlugin {
     fn build(&self, app: &mut App) {
-        let mut image =
-            Image::new_target_texture(self.0.x, self.0.y, TextureFormat::Rgba8UnormSrgb, None);
-        image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
-        image.asset_usage = RenderAssetUsages::default();
+        let image = target_image(self.0);
         let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
         app.insert_resource(Canvas(image)).add_observer(redirect);
     }
 }
 
-/// A camera that is added draws into the canvas.
-fn redirect(added: On<Add, Camera>, canvas: Res<Canvas>, mut commands: Commands) {
+/// An image of this `size` [pixels] that cameras can draw into and that can be taken a picture of.
+pub(super) fn target_image(size: UVec2) -> Image {
+    let mut image = Image::new_target_texture(size.x, size.y, TextureFormat::Rgba8UnormSrgb, None);
+    image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+    image.asset_usage = RenderAssetUsages::default();
+    image
+}
+
+/// A camera that is added draws into the canvas, but one that has an image of its own.
+fn redirect(
+    added: On<Add, Camera>,
+    canvas: Res<Canvas>,
+    second: Query<(), OfSecondPicture>,
+    mut commands: Commands,
+) {
+    if second.contains(added.entity) {
+        return;
+    }
     commands
         .entity(added.entity)
         .insert(RenderTarget::Image(canvas.0.clone().into()));

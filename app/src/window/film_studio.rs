@@ -5,13 +5,13 @@
 
 use crate::simulation::Simulation;
 use crate::ui::{Dock, FilmState, ScreenshotOrders, first_speed};
-use crate::view::{FILM_RATE, FilmKind, FilmWriter, GrainBuffer, Meshing, ViewSettings};
+use crate::view::{Drawn, FilmKind, FilmWriter, GrainBuffer, Meshing, Pace};
 use crate::window::app::{add_laboratory, log, quietly};
 use crate::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use crate::window::environment::{Missing, adapters};
-use crate::window::screenshot_subject::{UNTIL_DRAWN, free_area};
+use crate::window::screenshot_subject::UNTIL_DRAWN;
 use crate::window::window_job::FilmJob;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
@@ -79,9 +79,8 @@ pub(super) struct Film {
     writer: FilmWriter,
     path: PathBuf,
     pictures: usize,
-    /// Simulated time from picture to picture [s].
-    interval: f64,
-    /// Of the first picture [s].
+    pace: Pace,
+    /// Time of the first picture [s].
     from: f64,
     /// Why there is none.
     failure: Option<io::Error>,
@@ -100,13 +99,13 @@ impl Film {
         from: f64,
     ) -> Result<Self, RunnerError> {
         let speed = job.speed.unwrap_or_else(|| first_speed(scene.duration));
-        let path = job.path.clone();
-        let writer = FilmWriter::begin(path.clone(), kind, Provenance::of_scene(scene));
+        let (path, rate) = (job.path.clone(), kind.rate(job.rate));
+        let writer = FilmWriter::begin(path.clone(), kind, rate, Provenance::of_scene(scene));
         Ok(Self {
             writer: writer.map_err(|error| unwritten(&path, &error))?,
             path,
             pictures: 0,
-            interval: speed / f64::from(FILM_RATE),
+            pace: Pace { rate, speed },
             from: from.max(job.at),
             failure: None,
         })
@@ -114,7 +113,7 @@ impl Film {
 
     /// Simulated time of its next picture [s].
     pub(super) fn due(&self) -> f64 {
-        self.from + self.pictures as f64 * self.interval
+        self.from + self.pictures as f64 * self.pace.interval()
     }
 
     /// Takes its next picture: that of the state which the simulation of `app` holds. Where that
@@ -141,8 +140,8 @@ impl Film {
         let image = photographed(app, if pictures == 0 { WARM_UP } else { UNTIL_DRAWN });
         use_cameras(app, false);
         let image = image.ok_or_else(|| io::Error::other("the renderer gives no picture"))?;
-        let area = free_area(&image, app.world().resource::<ViewSettings>());
-        self.writer.add(image, area);
+        let shown = simulation(app).and_then(|simulation| simulation.provenance());
+        self.writer.add(Drawn::Whole(image), shown);
         Ok(())
     }
 
@@ -168,12 +167,12 @@ impl Film {
             self.writer.outcome()
         };
         outcome.map_err(|error| unwritten(&self.path, &error))?;
-        let time = self.pictures.saturating_sub(1) as f64 * self.interval;
+        let time = self.pictures.saturating_sub(1) as f64 * self.pace.interval();
         Ok(format!(
-            "film in {}: {} pictures, {time:.3} s of simulated time at {} × real time",
+            "film in {}: {} pictures, {time:.3} s of simulated time; {}",
             self.path.display(),
             self.pictures,
-            self.interval * f64::from(FILM_RATE)
+            self.pace.in_words()
         ))
     }
 }

@@ -10,6 +10,9 @@
 //! | `film_studio` | takes its pictures |
 //! | `app` | Bevy's app, built and run |
 //! | `screenshot_job`, `screenshot_subject` | takes pictures and films; what they are of |
+//! | `film_reel` | the pictures of a film in the window |
+//! | `seen` | how pictures are seen in the window |
+//! | `second_set` | the image and the cameras of a picture off screen |
 //! | `opening_comparison` | the second run that a window opens with |
 //! | `window_job` | what to open and how; why there may be no window |
 //! | `canvas` | an image to draw into where there is no display |
@@ -18,11 +21,14 @@
 mod app;
 pub mod canvas;
 pub mod environment;
+mod film_reel;
 mod film_studio;
 mod headless_film;
 mod opening_comparison;
 mod screenshot_job;
 mod screenshot_subject;
+mod second_set;
+mod seen;
 mod window_job;
 
 pub use app::run;

@@ -14,27 +14,35 @@
 //! picture is the [`ScreenshotSubject`]'s business.
 
 use crate::simulation::Simulation;
-use crate::ui::{Dock, FilmState, PictureOf, ScreenshotOrder, ScreenshotOrders, said};
-use crate::view::{GrainBuffer, Ground, Meshing, ViewSettings};
-use crate::window::canvas::{Canvas, screenshot};
-use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
-use crate::window::screenshot_subject::{
-    Before, FilmReel, Following, ScreenshotSubject, SinglePicture,
+use crate::ui::{
+    Dock, FilmState, PictureOf, PictureOrder, ScreenshotOrder, ScreenshotOrders, said,
 };
+use crate::view::{GrainBuffer, Meshing, SecondCamera, SecondOverlay, ViewSettings};
+use crate::window::canvas::{Canvas, screenshot};
+use crate::window::film_reel::FilmReel;
+use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
+use crate::window::screenshot_subject::{Following, ScreenshotSubject, SinglePicture};
+use crate::window::second_set::{self, SecondSet};
+use crate::window::seen::Seen;
 use crate::window::window_job::{PictureJob, WindowError};
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
+use bevy::window::PrimaryWindow;
 use grainfall::lab::Status;
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Frames for which the renderer is waited for at most: what it lacks then it will not have.
+const MOST_FRAMES_WAITED: u32 = 600;
 
 /// Takes the pictures that [`ScreenshotOrders`] ask for.
 pub struct ScreenshotPlugin;
 
 impl Plugin for ScreenshotPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<ScreenshotOrders>()
+        app.add_plugins(second_set::plugin)
+            .init_resource::<ScreenshotOrders>()
             .init_resource::<ScreenshotJobs>()
             .add_systems(Update, take_screenshots.after(begin_comparison));
     }
@@ -48,7 +56,12 @@ impl ScreenshotJobs {
     /// One picture for the command line, after which the app ends; why there is none is told to
     /// `failure`.
     pub(super) fn add_for_command_line(&mut self, picture: &PictureJob, failure: Failure) {
-        let subject = SinglePicture::at(picture.path.clone(), picture.of, picture.at);
+        let order = PictureOrder {
+            path: picture.path.clone(),
+            of: picture.of,
+            size: (picture.of != PictureOf::Window).then_some(picture.size),
+        };
+        let subject = SinglePicture::at(order, picture.at);
         let mut job = ScreenshotJob::of(ScreenshotSubject::Picture(subject));
         job.ends_app = Some(failure);
         self.0.push(job);
@@ -88,6 +101,8 @@ struct ScreenshotJob {
     subject: ScreenshotSubject,
     stage: JobStage,
     inbox: Inbox,
+    /// Frames for which the renderer was waited for.
+    frames_waited: u32,
     /// The app ends with it, for the command line.
     ends_app: Option<Failure>,
 }
@@ -108,14 +123,15 @@ enum JobStage {
 /// What it takes to take a picture.
 #[derive(SystemParam)]
 struct Studio<'w, 's> {
-    settings: ResMut<'w, ViewSettings>,
-    ground: Option<ResMut<'w, Ground>>,
+    settings: Res<'w, ViewSettings>,
+    second: SecondSet<'w, 's>,
+    window: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
     canvas: Option<Res<'w, Canvas>>,
     comparison: Option<Res<'w, OpeningComparison>>,
     meshing: Option<Res<'w, Meshing>>,
     grains: Option<Res<'w, GrainBuffer>>,
     dock: Option<ResMut<'w, Dock>>,
-    cameras: Query<'w, 's, &'static mut Camera>,
+    cameras: Query<'w, 's, &'static mut Camera, (Without<SecondCamera>, Without<SecondOverlay>)>,
     exit: MessageWriter<'w, AppExit>,
     commands: Commands<'w, 's>,
 }
@@ -140,44 +156,28 @@ impl Studio<'_, '_> {
             && self.grains.as_ref().is_none_or(|grains| grains.is_whole())
     }
 
-    /// Puts away what does not belong into the picture of `subject`.
-    fn arrange(&mut self, subject: &mut ScreenshotSubject) {
-        let ScreenshotSubject::Picture(picture) = subject else {
-            return;
-        };
-        let Some(wanted) = picture.ground() else {
-            return;
-        };
-        let is_hidden = self.dock.as_ref().is_some_and(|dock| dock.is_hidden);
-        picture.before.get_or_insert(Before {
-            is_hidden,
-            show_overlay: self.settings.show_overlay,
-            show_measured: self.settings.show_measured,
+    /// How pictures are seen in the window.
+    fn seen(&self) -> Seen {
+        let canvas = self.canvas.as_ref();
+        let canvas = canvas.and_then(|canvas| self.second.size_of(canvas.image()));
+        let window = self.window.iter().next().map(Window::physical_size);
+        let window = canvas.or(window).unwrap_or(UVec2::ONE);
+        let settings = &self.settings;
+        let free = settings.free_rect.map_or(window, |free| {
+            let size = Vec2::new(free.width(), free.height()) * settings.pixels_per_point;
+            size.round().max(Vec2::ONE).as_uvec2().min(window)
         });
-        (self.settings.show_overlay, self.settings.show_measured) = (false, false);
-        if let Some(dock) = &mut self.dock {
-            dock.is_hidden = true;
-        }
-        if let Some(ground) = &mut self.ground {
-            **ground = wanted;
+        Seen {
+            window,
+            free,
+            pixels_per_point: settings.pixels_per_point,
         }
     }
 
-    /// Puts back what was put away for the picture of `subject`.
-    fn put_back(&mut self, subject: &mut ScreenshotSubject) {
-        let ScreenshotSubject::Picture(picture) = subject else {
-            return;
-        };
-        let Some(before) = picture.before.take() else {
-            return;
-        };
-        self.settings.show_overlay = before.show_overlay;
-        self.settings.show_measured = before.show_measured;
-        if let Some(dock) = &mut self.dock {
-            dock.is_hidden = before.is_hidden;
-        }
-        if let Some(ground) = &mut self.ground {
-            **ground = Ground::Chosen;
+    /// Draws what the picture of `subject` is taken of, where that is not the window.
+    fn arrange(&mut self, subject: &mut ScreenshotSubject) {
+        if let Some(look) = subject.look(&self.seen()) {
+            self.second.show(look);
         }
     }
 
@@ -214,7 +214,8 @@ fn take_screenshots(
         && *stage != JobStage::Ending
         && (reel.is_cut_off(is_another_run) || reel.is_over(&simulation))
     {
-        end_film(reel, stage, &mut simulation);
+        reel.finish(&mut simulation, is_another_run);
+        *stage = JobStage::Ending;
     }
     let mut is_free = jobs.0.iter().all(|job| job.stage != JobStage::Taking);
     jobs.0.retain_mut(|job| {
@@ -230,50 +231,64 @@ fn take_screenshots(
     orders.film = match jobs.film() {
         None => FilmState::Idle,
         Some((reel, JobStage::Ending)) => FilmState::Writing(reel.unwritten()),
-        Some((reel, _)) => {
-            let (pictures, time) = reel.length();
-            FilmState::Recording { pictures, time }
-        }
+        Some((reel, _)) => reel.state(),
     };
+    if jobs.0.iter().all(|job| job.stage == JobStage::Ending) {
+        studio.second.put_away();
+    }
     jobs.rest_cameras(&mut studio);
-}
-
-/// Takes no further picture and lets the run go.
-fn end_film(reel: &mut FilmReel, stage: &mut JobStage, simulation: &mut Simulation) {
-    reel.finish(simulation);
-    *stage = JobStage::Ending;
 }
 
 impl ScreenshotJobs {
     fn obey(&mut self, order: ScreenshotOrder, simulation: &mut Simulation, studio: &mut Studio) {
         match order {
-            ScreenshotOrder::Picture(_, PictureOf::Grains | PictureOf::CutOut)
-                if self.film().is_some() =>
-            {
-                studio.say("A film is being recorded: stop it first".to_owned());
+            ScreenshotOrder::Picture(order) => {
+                let picture = SinglePicture::now(order);
+                match self
+                    .why_not_off_screen()
+                    .filter(|_| !picture.is_of_window())
+                {
+                    Some(reason) => studio.say(format!("No picture is taken: {reason}")),
+                    None => self.push(ScreenshotSubject::Picture(picture)),
+                }
             }
-            ScreenshotOrder::Picture(path, of) => {
-                let subject = ScreenshotSubject::Picture(SinglePicture::now(path, of));
-                self.0.push(ScreenshotJob::of(subject));
+            ScreenshotOrder::Film(order) => {
+                let reel = match self.why_not_off_screen() {
+                    None => FilmReel::begin(order, simulation),
+                    Some(reason) => Err(reason.to_owned()),
+                };
+                match reel {
+                    Ok(reel) => self.push(ScreenshotSubject::Film(reel)),
+                    Err(reason) => studio.say(format!("No film is recorded: {reason}")),
+                }
             }
-            ScreenshotOrder::Film(_) if self.film().is_some() => {
-                studio.say("A film is being recorded already".to_owned());
-            }
-            ScreenshotOrder::Film(path) => match FilmReel::begin(path, simulation) {
-                Ok(reel) => self
-                    .0
-                    .push(ScreenshotJob::of(ScreenshotSubject::Film(reel))),
-                Err(reason) => studio.say(format!("No film is recorded: {reason}")),
-            },
             ScreenshotOrder::EndFilm | ScreenshotOrder::CancelFilm => {
-                if let Some((reel, stage)) = self.film() {
-                    if order == ScreenshotOrder::CancelFilm {
-                        reel.cancel();
-                    }
-                    end_film(reel, stage, simulation);
+                let Some((reel, stage)) = self.film() else {
+                    return;
+                };
+                if order == ScreenshotOrder::CancelFilm {
+                    reel.cancel();
+                }
+                if std::mem::replace(stage, JobStage::Ending) != JobStage::Ending {
+                    reel.finish(simulation, false);
                 }
             }
         }
+    }
+
+    fn push(&mut self, subject: ScreenshotSubject) {
+        self.0.push(ScreenshotJob::of(subject));
+    }
+
+    /// Why nothing else can be drawn off screen now, where that is so.
+    fn why_not_off_screen(&self) -> Option<&'static str> {
+        (self.0.iter()).find_map(|job| match &job.subject {
+            ScreenshotSubject::Film(_) => Some("a film is being recorded: stop it first"),
+            ScreenshotSubject::Picture(picture) if picture.is_of_window() => None,
+            ScreenshotSubject::Picture(_) => {
+                Some("a picture is being taken: ask again in a moment")
+            }
+        })
     }
 
     /// Nobody watches without a display: until the moment of the picture comes the cores belong to
@@ -295,6 +310,7 @@ impl ScreenshotJob {
             subject,
             stage: JobStage::Waiting,
             inbox: Inbox::default(),
+            frames_waited: 0,
             ends_app: None,
         }
     }
@@ -312,10 +328,11 @@ impl ScreenshotJob {
                 return;
             }
         }
+        let is_drawing = matches!(self.stage, JobStage::Drawing(_));
+        let is_ready = self.subject.is_settled(simulation, studio.is_whole())
+            && (!is_drawing || self.has_pipelines(studio));
         self.stage = match self.stage {
-            JobStage::Drawing(_) if !self.subject.is_settled(simulation, studio.is_whole()) => {
-                JobStage::Drawing(frames)
-            }
+            JobStage::Drawing(_) if !is_ready => JobStage::Drawing(frames),
             JobStage::Drawing(0) if !*is_free => JobStage::Drawing(0),
             JobStage::Drawing(0) => {
                 *is_free = false;
@@ -329,10 +346,22 @@ impl ScreenshotJob {
         };
     }
 
-    /// Asks the renderer for a picture of the window, or of the canvas where there is one.
+    /// Whether the renderer has all that it draws with, or has not made it for long.
+    fn has_pipelines(&mut self, studio: &Studio) -> bool {
+        let is_ready = studio.second.is_ready() || self.frames_waited >= MOST_FRAMES_WAITED;
+        self.frames_waited += u32::from(!is_ready);
+        is_ready
+    }
+
+    /// Asks the renderer for the second picture where one is drawn, else for the window, or the
+    /// canvas where there is one.
     fn take_picture(&self, studio: &mut Studio) {
         let inbox = self.inbox.clone();
-        let picture = screenshot(studio.canvas.as_deref());
+        let second = match &self.subject {
+            ScreenshotSubject::Picture(picture) if picture.is_of_window() => None,
+            _ => studio.second.screenshot(),
+        };
+        let picture = second.unwrap_or_else(|| screenshot(studio.canvas.as_deref()));
         studio
             .commands
             .spawn(picture)
@@ -349,12 +378,12 @@ impl ScreenshotJob {
             return JobStage::Taking;
         };
         drop(inbox);
-        match self.subject.put_away(image, &studio.settings, simulation) {
-            Following::Next => JobStage::Waiting,
-            Following::End => {
-                studio.put_back(&mut self.subject);
-                JobStage::Ending
+        match self.subject.put_away(image, simulation) {
+            Following::Next => {
+                studio.second.rest();
+                JobStage::Waiting
             }
+            Following::End => JobStage::Ending,
         }
     }
 

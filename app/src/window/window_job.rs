@@ -110,7 +110,7 @@ pub struct PictureJob {
 /// A film that is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmJob {
-    /// The GIF or MP4, or the folder of pictures.
+    /// The GIF or video, or the folder of pictures.
     pub path: PathBuf,
     /// Simulated time of its first picture [s]; where there is no state yet by then, the first that
     /// there is.
@@ -118,6 +118,8 @@ pub struct FilmJob {
     /// Simulated seconds for each second of the film; as the window first plays the scene where
     /// none is given.
     pub speed: Option<f64>,
+    /// Frames a second.
+    pub rate: f64,
     /// Width and height of its pictures [pixels].
     pub size: UVec2,
     /// Whether it shows the grains alone, without clock and scale bar.

@@ -3,7 +3,10 @@
 
 use crate::timeline::carried_out;
 use crate::view::{Photograph, SIZE, laboratory, photographed, studio};
-use crate::window_of_panels::{Window, friction, prepared, sample, set, standing, type_number};
+use crate::window_of_panels::{
+    Window, asked, friction, prepared, put_beside, sample, set, standing, type_number,
+};
+use crate::windowless::{self, simulation, update_until};
 use bevy::math::{Vec2, Vec3};
 use bevy::prelude::*;
 use bevy_egui::egui::accesskit::Role;
@@ -14,25 +17,13 @@ use grainfall::lab::{DriverKind, Half, LabCommand, Options, Status};
 use grainfall::measure::{GrainQuantity, Series};
 use grainfall::run::{Command, Parameter};
 use grainfall_app::simulation::Simulation;
-use grainfall_app::ui::{AvalanchePlots, Curves, Dock, DockPlugin, Request, Requests};
+use grainfall_app::ui::{AvalanchePlots, Curves, Dock, DockPlugin, Request};
 use grainfall_app::view::{ColourBy, OrbitCamera, ViewSettings};
-use std::time::Duration;
-
-/// Starts a second run with a friction of 0.9.
-fn compare(simulation: &mut Simulation) {
-    simulation.send(LabCommand::Compare {
-        parameter: friction(),
-        value: 0.9.into(),
-    });
-    while simulation.comparison().is_none() {
-        simulation.tick(Duration::from_millis(16));
-    }
-}
 
 /// Three grains that fell, twice: with a friction of 0.4 on the left and of 0.9 on the right.
 fn pair() -> Simulation {
     let mut simulation = prepared();
-    compare(&mut simulation);
+    put_beside(&mut simulation);
     carried_out(&mut simulation, Command::Step(2000));
     simulation
 }
@@ -40,11 +31,6 @@ fn pair() -> Simulation {
 fn open_panel(harness: &mut Harness<'_, Window>) {
     harness.get_by_label("Compare two values").click();
     harness.run_steps(6);
-}
-
-fn asked(harness: &mut Harness<'_, Window>) -> Vec<Request> {
-    harness.run_steps(2);
-    std::mem::take(&mut harness.state_mut().asked)
 }
 
 #[test]
@@ -115,7 +101,7 @@ fn what_belongs_to_one_run_cannot_be_pressed() {
     let mut simulation = prepared();
     carried_out(&mut simulation, Command::Step(100));
     carried_out(&mut simulation, set(friction(), 0.3));
-    compare(&mut simulation);
+    put_beside(&mut simulation);
     assert!(
         simulation.past().undo.is_some(),
         "what the left run alone could take back"
@@ -227,21 +213,12 @@ pub fn falling_from_the_front() -> App {
     app
 }
 
-pub fn simulation(app: &App) -> &Simulation {
-    app.world().resource::<Simulation>()
-}
-
+/// Asks for `request` and waits until it is done and the run stands.
 pub fn ask(app: &mut App, request: Request, done: impl Fn(&Simulation) -> bool) {
-    app.world_mut().resource_mut::<Requests>().ask(request);
-    for _ in 0..20_000 {
-        app.update();
-        let simulation = simulation(app);
-        if done(simulation) && simulation.has_answered() && *simulation.status() == Status::Paused {
-            return;
-        }
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    panic!("still {:?}", simulation(app).status());
+    windowless::ask(app, request);
+    update_until(app, |simulation| {
+        done(simulation) && simulation.has_answered() && *simulation.status() == Status::Paused
+    });
 }
 
 /// Where the grain of this half lands in the whole picture.
@@ -256,8 +233,7 @@ pub fn place(app: &App, photograph: &Photograph, half: Half) -> Vec2 {
 
 #[test]
 fn each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends() {
-    let name = "each_half_shows_its_own_run_with_the_same_colours_until_the_comparison_ends";
-    let Some(_studio) = studio(name) else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut app = falling_from_the_front();

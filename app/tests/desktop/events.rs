@@ -2,7 +2,7 @@
 //! grains: by their accessible labels, and by what they tell of a run that is known.
 
 use crate::timeline::carried_out;
-use crate::window_of_panels::{Window, after, commands, prepared, ready, standing};
+use crate::window_of_panels::{self, Window, after, commands, prepared, ready, standing};
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -38,8 +38,7 @@ fn steps(simulation: &Simulation, kinds: &[EventKind]) -> Vec<u64> {
 
 /// What was asked for last.
 fn asked(harness: &mut Harness<'_, Window>) -> Vec<Command> {
-    harness.run_steps(3);
-    commands(&std::mem::take(&mut harness.state_mut().asked))
+    commands(&window_of_panels::asked(harness))
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Claims about films without a window: each has a picture for every 25th of a second, of the size
 //! asked for, and the run that is filmed is the one that is not.
 
+use crate::recording::pictures_in;
 use crate::view::studio;
 use bevy::math::UVec2;
 use grainfall::output::Ending;
@@ -19,6 +20,7 @@ fn film(path: PathBuf) -> FilmJob {
         path,
         at: 0.0,
         speed: Some(0.5),
+        rate: 25.0,
         size: SIZE,
         plain: false,
     }
@@ -38,18 +40,15 @@ fn job(out: &Path) -> Job {
 
 /// The pictures in the folder at `path`.
 fn pictures(path: &Path) -> Vec<image::RgbImage> {
-    let mut names: Vec<_> = std::fs::read_dir(path)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    names.sort();
-    let open = |name: &PathBuf| image::open(name).unwrap().to_rgb8();
-    names.iter().map(open).collect()
+    let names = pictures_in(path).into_iter();
+    names
+        .map(|name| image::open(name).unwrap().to_rgb8())
+        .collect()
 }
 
 #[test]
 fn film_of_a_run_has_its_pictures_and_the_run_its_bits() {
-    let Some(_studio) = studio("film_of_a_run_has_its_pictures_and_the_run_its_bits") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -85,7 +84,7 @@ fn film_of_a_run_has_its_pictures_and_the_run_its_bits() {
 
 #[test]
 fn interrupted_run_leaves_no_film() {
-    let Some(_studio) = studio("interrupted_run_leaves_no_film") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,9 @@
 //! A whole lesson in the app as a whole: played, changed, scrubbed, branched, taken back, compared,
 //! saved and verified, and at each moment the grain is drawn where the solver says.
 
-use crate::comparison::{ask, falling_from_the_front, place, simulation};
+use crate::comparison::{ask, falling_from_the_front, place};
 use crate::view::{photographed, studio};
+use crate::windowless::simulation;
 use bevy::prelude::*;
 use grainfall::lab::Half;
 use grainfall::run::{BedStore, Command, Parameter, RunRecord};
@@ -43,7 +44,7 @@ fn look(app: &mut App, moment: &str) {
 
 #[test]
 fn a_lesson_from_play_to_verify() {
-    let Some(_studio) = studio("a_lesson_from_play_to_verify") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut app = falling_from_the_front();

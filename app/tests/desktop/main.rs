@@ -5,6 +5,8 @@
     reason = "what is expected may be computed with the platform's own functions"
 )]
 
+mod by_keys;
+mod capture;
 mod comparison;
 mod events;
 mod ghosts;

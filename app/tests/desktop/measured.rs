@@ -1,14 +1,11 @@
 //! Claims about what is measured, drawn where it is measured: the line in the picture has the slope
 //! that the samples state, and a curve and its mark tell of each other.
 
-use crate::view::{Photograph, SIZE, drum_of_grains, photographed, studio};
+use crate::view::{Photograph, SIZE, drum_of_grains, panel_camera, photographed, studio};
 use crate::window_of_panels::{Window, after, ready, standing, with_samples};
-use bevy::camera::visibility::RenderLayers;
 use bevy::math::{Vec2, Vec3};
 use bevy::prelude::*;
-use bevy_egui::{
-    EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui,
-};
+use bevy_egui::{EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use grainfall::measure::Measure;
@@ -105,24 +102,10 @@ pub fn pictures(
 ) -> ([Photograph; 2], [ViewSettings; 2]) {
     let mut app = App::new();
     app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
-        .add_plugins(EguiPlugin::default())
-        .insert_resource(EguiGlobalSettings {
-            auto_create_primary_context: false,
-            ..default()
-        })
+        .add_plugins((EguiPlugin::default(), panel_camera))
         .add_plugins((CanvasPlugin(SIZE), ViewPlugin))
         .insert_resource(Pictured(world.clone()))
         .add_systems(EguiPrimaryContextPass, write_picture);
-    app.world_mut().spawn((
-        PrimaryEguiContext,
-        Camera2d,
-        RenderLayers::none(),
-        Camera {
-            order: 2,
-            clear_color: ClearColorConfig::None,
-            ..default()
-        },
-    ));
     let mut camera = OrbitCamera::default();
     camera.look_from(StandardView::Front);
     app.insert_resource(camera).insert_resource(ViewSettings {
@@ -183,8 +166,7 @@ fn slope_seen(pictures: &[Photograph; 2], [from, to]: [Vec2; 2]) -> f64 {
 
 #[test]
 fn the_line_in_the_picture_has_the_slope_that_its_number_states() {
-    let Some(_studio) = studio("the_line_in_the_picture_has_the_slope_that_its_number_states")
-    else {
+    let Some(_studio) = studio() else {
         return;
     };
     let world = Arc::new(drum_of_grains());

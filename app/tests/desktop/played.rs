@@ -95,7 +95,7 @@ fn a_run_goes_on_from_a_moment_of_a_recording() {
 
 #[test]
 fn a_film_of_a_recording_keeps_its_time_and_ends_with_it() {
-    let Some(_studio) = studio("a_film_of_a_recording_keeps_its_time_and_ends_with_it") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let (folder, out) = recorded();
@@ -104,11 +104,9 @@ fn a_film_of_a_recording_keeps_its_time_and_ends_with_it() {
     app.insert_resource(Simulation::play_back(recording, standing()));
     until(&mut app, |app| simulation(app).world().is_some());
     let film = folder.path().join("film");
-    let mut simulation = app.world_mut().resource_mut::<Simulation>();
-    simulation.send(Command::Speed(0.5));
     (app.world_mut().resource_mut::<ScreenshotOrders>())
         .asked
-        .push(ScreenshotOrder::Film(film.clone()));
+        .push(ScreenshotOrder::Film(crate::recording::film(&film, 0.5)));
     let state = |app: &App| app.world().resource::<ScreenshotOrders>().film;
     until(&mut app, |app| {
         matches!(state(app), FilmState::Recording { pictures: 1, .. })
@@ -121,7 +119,7 @@ fn a_film_of_a_recording_keeps_its_time_and_ends_with_it() {
 
 #[test]
 fn the_last_state_of_a_recording_is_drawn() {
-    let Some(_studio) = studio("the_last_state_of_a_recording_is_drawn") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let (folder, out) = recorded();

@@ -101,7 +101,7 @@ fn projected(photograph: &Photograph, at: DVec3, turn: DQuat) -> (Vec<Vec2>, f32
 
 #[test]
 fn cubes_cover_the_pixels_of_their_bodies() {
-    let Some(_studio) = studio("cubes_cover_the_pixels_of_their_bodies") else {
+    let Some(_studio) = studio() else {
         return;
     };
     for projection in [ProjectionKind::Orthographic, ProjectionKind::Perspective] {
@@ -144,7 +144,7 @@ fn cubes_cover_the_pixels_of_their_bodies() {
 
 #[test]
 fn cubes_have_the_colours_of_their_species() {
-    let Some(_studio) = studio("cubes_have_the_colours_of_their_species") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let cubes = two_cubes();
@@ -161,7 +161,7 @@ fn cubes_have_the_colours_of_their_species() {
 
 #[test]
 fn faces_of_a_cube_are_flat_and_differ_in_light() {
-    let Some(_studio) = studio("faces_of_a_cube_are_flat_and_differ_in_light") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let list = [(DVec3::ZERO, DQuat::IDENTITY, 0)];
@@ -193,7 +193,7 @@ fn faces_of_a_cube_are_flat_and_differ_in_light() {
 
 #[test]
 fn cubes_and_spheres_hide_each_other() {
-    let Some(_studio) = studio("cubes_and_spheres_hide_each_other") else {
+    let Some(_studio) = studio() else {
         return;
     };
     // A sphere before a cube, seen along z; from the back the other way round.
@@ -227,7 +227,7 @@ fn cubes_and_spheres_hide_each_other() {
 
 #[test]
 fn section_of_a_cut_cube_is_a_flat_square() {
-    let Some(_studio) = studio("section_of_a_cut_cube_is_a_flat_square") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let list = [(DVec3::ZERO, DQuat::IDENTITY, 0)];
@@ -261,7 +261,7 @@ fn section_of_a_cut_cube_is_a_flat_square() {
 
 #[test]
 fn a_quarter_is_cut_out_of_cubes_and_spheres() {
-    let Some(_studio) = studio("a_quarter_is_cut_out_of_cubes_and_spheres") else {
+    let Some(_studio) = studio() else {
         return;
     };
     for shape in [cube(), Polyhedron::sphere(HALF + ROUNDING)] {
@@ -352,9 +352,7 @@ fn column(rim: f64) -> World {
 
 #[test]
 fn floor_marks_where_a_column_stood_and_there_is_room_for_it_to_spread() {
-    let Some(_studio) =
-        studio("floor_marks_where_a_column_stood_and_there_is_room_for_it_to_spread")
-    else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut world = column(0.0);
@@ -388,7 +386,7 @@ fn floor_marks_where_a_column_stood_and_there_is_room_for_it_to_spread() {
 
 #[test]
 fn tube_rises_and_shows_what_is_inside() {
-    let Some(_studio) = studio("tube_rises_and_shows_what_is_inside") else {
+    let Some(_studio) = studio() else {
         return;
     };
     for rim in [0.0_f32, 0.03] {

@@ -1,52 +1,27 @@
 //! What becomes of work in no file when the program ends unasked.
 
-use crate::window_of_panels::{prepared, set, standing};
+use crate::window_of_panels::set;
+use crate::windowless::{open_three_grains, simulation, until, without_scene};
 use bevy::app::AppExit;
 use bevy::prelude::*;
-use grainfall::lab::{DriverKind, Options};
 use grainfall::run::{Command, Parameter, Rescue};
 use grainfall::world::StateHash;
-use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{DockPlugin, Request, Requests, RescuePlugin};
+use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::{Request, Requests, RescuePlugin};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A window of three grains, without panels, that keeps its work below `home`.
 fn window(home: &Path) -> (App, Arc<AtomicBool>) {
-    let options = Options {
-        driver: DriverKind::Thread,
-        ..standing()
-    };
     let stop = Arc::new(AtomicBool::new(false));
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, SimulationPlugin))
-        .add_plugins(DockPlugin {
-            options: options.clone(),
-        })
-        .add_plugins(RescuePlugin {
-            home: home.to_owned(),
-            stop: stop.clone(),
-        });
-    let scene = prepared().scene().clone();
-    app.insert_resource(Simulation::open(scene, options));
-    until(&mut app, |app| simulation(app).world().is_some());
+    let mut app = without_scene();
+    app.add_plugins(RescuePlugin {
+        home: home.to_owned(),
+        stop: stop.clone(),
+    });
+    open_three_grains(&mut app);
     (app, stop)
-}
-
-fn simulation(app: &App) -> &Simulation {
-    app.world().resource::<Simulation>()
-}
-
-fn until(app: &mut App, done: impl Fn(&App) -> bool) {
-    for _ in 0..20_000 {
-        app.update();
-        if done(app) {
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    panic!("still {:?}", simulation(app).status());
 }
 
 /// Changes the gravity and takes a step with it; the state then.
@@ -56,10 +31,10 @@ fn work(app: &mut App) -> StateHash {
     open.send(change);
     open.send(Command::Step(1));
     until(app, |app| {
-        let simulation = self::simulation(app);
+        let simulation = simulation(app);
         simulation.is_unsaved() && simulation.world().is_some_and(|world| world.clock.step > 0)
     });
-    self::simulation(app).world().unwrap().hash()
+    simulation(app).world().unwrap().hash()
 }
 
 #[test]

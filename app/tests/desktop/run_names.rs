@@ -1,7 +1,9 @@
 //! Claims about what runs are called: by what differs in them, or as a person named them.
 
 use crate::timeline::carried_out;
-use crate::window_of_panels::{Window, friction, prepared, press, ready, set, standing, wet};
+use crate::window_of_panels::{
+    Window, friction, prepared, press, put_beside, ready, set, standing, wet,
+};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
@@ -129,15 +131,46 @@ fn liquids_of_the_paper_are_called_by_their_names() {
 }
 
 #[test]
+fn runs_that_differ_in_nothing_are_told_by_their_numbers() {
+    let mut simulation = prepared();
+    let again = [Command::Step(300), Command::Reset, Command::Step(100)];
+    done(&mut simulation, again);
+    assert_eq!(called(&simulation), ["run 2", "run 1"]);
+    // Where others differ, the one that is shown is called by its value.
+    put_beside(&mut simulation);
+    let names = called(&simulation);
+    assert_eq!(names[..2], ["μ 0.4", "μ 0.9"]);
+    let numbered = |name: &String| name.starts_with("run ");
+    assert!(
+        !names[2..].is_empty() && names[2..].iter().all(numbered),
+        "{names:?}"
+    );
+}
+
+#[test]
+fn a_run_in_which_nothing_was_changed_is_the_scene_unchanged_among_many_changes() {
+    let mut simulation = prepared();
+    let commands = [
+        Command::Step(400),
+        Command::Seek(100),
+        set(friction(), 0.9),
+        set(other_friction(), 0.7),
+        set(Parameter::Gravity, 1.62),
+        Command::Step(100),
+    ];
+    done(&mut simulation, commands);
+    let names = called(&simulation);
+    assert!(
+        names[0].contains("0.9") && names[0].contains("1.62"),
+        "{names:?}"
+    );
+    assert_eq!(names[1], "the scene unchanged");
+}
+
+#[test]
 fn two_runs_side_by_side_are_called_by_what_they_differ_in() {
     let mut simulation = prepared();
-    simulation.send(LabCommand::Compare {
-        parameter: friction(),
-        value: 0.9.into(),
-    });
-    while simulation.comparison().is_none() {
-        simulation.tick(Duration::from_millis(16));
-    }
+    put_beside(&mut simulation);
     done(&mut simulation, [Command::Step(200)]);
     assert_eq!(called(&simulation), ["μ 0.4", "μ 0.9"]);
 }
@@ -153,6 +186,153 @@ fn with_a_run_left() -> Harness<'static, Window> {
     ];
     done(&mut simulation, commands);
     Window::of(simulation)
+}
+
+/// Calls the run shown and the one that was left by `name`.
+fn call_both(harness: &mut Harness<'_, Window>, [shown, left]: [&str; 2]) {
+    let simulation = &mut harness.state_mut().simulation;
+    let past = simulation.past();
+    let runs = [(past.number, shown), (past.kept[0].number, left)];
+    for (number, name) in runs {
+        let (half, name) = (Half::Left, name.to_owned());
+        simulation.send(LabCommand::NameBranch { half, number, name });
+    }
+    simulation.tick(Duration::from_millis(16));
+    harness.run_steps(4);
+}
+
+#[test]
+fn the_run_that_is_shown_is_named_above_the_timeline_and_is_read_in_every_window() {
+    let alone = Window::of(prepared());
+    assert!(
+        alone
+            .query_by_label_contains("Run on the timeline")
+            .is_none()
+    );
+    let mut harness = with_a_run_left();
+    let sizes = [
+        [1440.0, 900.0],
+        [1280.0, 800.0],
+        [1024.0, 640.0],
+        [700.0, 600.0],
+    ];
+    for size in sizes {
+        harness.set_size(egui::Vec2::from(size));
+        for given in [["μ 0.9 and steep", "short"], [LONG, "short"]] {
+            call_both(&mut harness, given);
+            harness.run_steps(8);
+            let line = harness.get_by_role_and_label(Role::Slider, "Moment shown");
+            let line = line.rect();
+            assert!(line.width() > 150.0 && line.right() < size[0], "{size:?}");
+            let label = format!("Run on the timeline: {}", given[0]);
+            let name = harness.get_by_label(&label).rect();
+            assert!(name.bottom() < line.top(), "{size:?}: {name:?} {line:?}");
+            let bar = harness.state().free;
+            let is_within = name.left() >= bar.left() - 1.0 && name.right() <= bar.right() + 1.0;
+            assert!(is_within, "{size:?}: {name:?} {bar:?}");
+            let drawn = written(&harness, given[0]);
+            if given[0] == LONG {
+                let (head, tail) = drawn.split_once('…').unwrap_or((LONG, ""));
+                assert!(LONG.starts_with(head) && LONG.ends_with(tail));
+                // A dozen letters at either end tell names apart.
+                assert!(head.chars().count() >= 12, "{size:?}: {drawn}");
+            } else {
+                assert_eq!(drawn, given[0], "{size:?}");
+            }
+        }
+    }
+}
+
+/// What is written of the run called `name` above the timeline.
+fn written(harness: &Harness<'_, Window>, name: &str) -> String {
+    let label = format!("Run on the timeline: {name}");
+    let place = harness.get_by_label(&label).rect();
+    let mut shapes = harness.output().shapes.iter();
+    let written = shapes.find_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) if place.expand(1.0).contains(text.pos) => {
+            Some(text.galley.text().to_owned())
+        }
+        _ => None,
+    });
+    written.unwrap()
+}
+
+/// A name of as many letters as one may have.
+const LONG: &str = "WWWWWWWWWW MMMMMMMMMM WWWWWWWWWW MMMMMMMMMM WWWWWWWWWW MMMMM";
+
+#[test]
+fn no_name_pushes_what_stands_beside_it_out_of_its_panel() {
+    let mut harness = with_a_run_left();
+    let names = [
+        [LONG, "\u{1f468}\u{200d}\u{1f52c}\u{1f30a} wet sand"],
+        ["שלום עולם", "\u{202e}turned\u{7}\nround"],
+        ["Z\u{0301}\u{0317}\u{0310}\u{035c}algo", "表面の角度"],
+    ];
+    for size in [[1440.0, 900.0], [1024.0, 640.0]] {
+        harness.set_size(egui::Vec2::from(size));
+        for given in names {
+            call_both(&mut harness, given);
+            harness.state_mut().show_panel("Changes and runs");
+            harness.run_steps(30);
+            let of = |harness: &Harness<'_, Window>| called(&harness.state().simulation);
+            let free = harness.state().free;
+            for name in of(&harness) {
+                let kept = ["Rename", "Show", "Forget"].map(|verb| format!("{verb} {name}"));
+                let found = kept
+                    .iter()
+                    .filter_map(|label| harness.query_by_label(label));
+                let rects: Vec<egui::Rect> = found.map(|node| node.rect()).collect();
+                assert!(!rects.is_empty(), "{name:?}");
+                let text = harness.get_all_by_label(&name).map(|node| node.rect());
+                let text = text.min_by(|a, b| a.left().total_cmp(&b.left())).unwrap();
+                let beside = rects[0].y_range().contains(text.center().y);
+                assert!(
+                    beside && text.right() < rects[0].left(),
+                    "{name:?} {text:?} {rects:?}"
+                );
+                for rect in rects {
+                    assert!(rect.right() < free.left(), "{name:?} {rect:?} {free:?}");
+                }
+            }
+        }
+    }
+    assert_eq!(called(&harness.state().simulation)[1], "表面の角度");
+}
+
+#[test]
+fn a_name_is_changed_by_keys_alone_and_an_automatic_one_stays_automatic() {
+    let mut harness = with_a_run_left();
+    press(&mut harness, "Rename μ 0.4");
+    let field = harness.get_by_role_and_label(Role::TextInput, "Name of the run");
+    assert!(field.is_focused());
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    assert!(harness.state().asked.is_empty(), "it was not changed");
+    let pencil = harness.get_by_label("Rename μ 0.4");
+    assert!(pencil.is_focused(), "from where it goes on");
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    // All of it is selected: what is typed takes its place.
+    harness.event(egui::Event::Text("steep".into()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    let asked = &harness.state().asked;
+    assert!(
+        matches!(&asked[..], [Request::NameRun { name, .. }] if name == "steep"),
+        "{asked:?}"
+    );
+    harness.state_mut().asked.clear();
+    press(&mut harness, "Rename μ 0.4");
+    harness.event(egui::Event::Text("x".repeat(200)));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    let asked = &harness.state().asked;
+    assert!(
+        matches!(&asked[..], [Request::NameRun { name, .. }] if name.len() <= 60),
+        "{asked:?}"
+    );
 }
 
 /// Types `text` in the place of the name of the run that is called `name`.
@@ -238,13 +418,7 @@ fn names_are_kept_in_a_session_and_with_the_runs_of_a_comparison() {
     let names = called(&again);
     assert!(names[0].starts_with("μ 0.2 from "), "{names:?}");
     assert!(names.contains(&"steep".to_owned()) && names.contains(&"flat".to_owned()));
-    again.send(LabCommand::Compare {
-        parameter: friction(),
-        value: 0.9.into(),
-    });
-    while again.comparison().is_none() {
-        again.tick(Duration::from_millis(16));
-    }
+    put_beside(&mut again);
     let (half, number) = (Half::Right, again.half(Half::Right).past().number);
     let name = "the right one".to_owned();
     again.send(LabCommand::NameBranch { half, number, name });

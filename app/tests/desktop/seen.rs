@@ -127,7 +127,7 @@ fn apart(a: [u8; 3], b: [u8; 3]) -> u32 {
 
 #[test]
 fn the_veil_has_the_colour_of_each_cell_s_temperature() {
-    let Some(_studio) = studio("the_veil_has_the_colour_of_each_cell_s_temperature") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let world = Arc::new(drum_of_grains());
@@ -179,8 +179,7 @@ fn share_seen(picture: &Photograph, x: DVec3) -> f64 {
 
 #[test]
 fn grains_keep_the_colour_of_where_they_began_wherever_they_are() {
-    let Some(_studio) = studio("grains_keep_the_colour_of_where_they_began_wherever_they_are")
-    else {
+    let Some(_studio) = studio() else {
         return;
     };
     let places = [-0.02, -0.01, 0.0, 0.01, 0.02];
@@ -260,7 +259,7 @@ fn a_run_knows_where_its_grains_began_wherever_it_is_looked_at() {
 
 #[test]
 fn a_force_has_the_colour_that_the_legend_gives_it() {
-    let Some(_studio) = studio("a_force_has_the_colour_that_the_legend_gives_it") else {
+    let Some(_studio) = studio() else {
         return;
     };
     // The reference is the next round number: 1 mN.
@@ -287,8 +286,7 @@ fn a_force_has_the_colour_that_the_legend_gives_it() {
 
 #[test]
 fn a_wet_grain_mirrors_the_light_in_a_spot_and_is_darker_around() {
-    let Some(_studio) = studio("a_wet_grain_mirrors_the_light_in_a_spot_and_is_darker_around")
-    else {
+    let Some(_studio) = studio() else {
         return;
     };
     let lightness = |is_wet: bool| {
@@ -321,8 +319,7 @@ fn a_wet_grain_mirrors_the_light_in_a_spot_and_is_darker_around() {
 
 #[test]
 fn the_floor_goes_on_under_what_the_colours_mean() {
-    let name = "the_floor_goes_on_under_what_the_colours_mean";
-    let Some(_studio) = studio(name) else {
+    let Some(_studio) = studio() else {
         return;
     };
     let shape = Shape::Column {
@@ -346,7 +343,7 @@ fn the_floor_goes_on_under_what_the_colours_mean() {
         view.grain_size = 1.0;
         view.camera_request = Some(CameraRequest::Home);
     };
-    let ([picture, _], [settings, _]) = pictures(&Arc::new(column), name, [&set, &set]);
+    let ([picture, _], [settings, _]) = pictures(&Arc::new(column), "wet-column", [&set, &set]);
     assert!(settings.margin > 50.0 && settings.margin_is_free);
     let edge = SIZE.x as f32 - settings.margin;
     let mut seen = 0;

@@ -1,7 +1,7 @@
 //! Claims about parameter sweeps in the window: asked for beside a parameter, run in the background,
 //! looked at as they go, stopped and gone on with.
 
-use crate::window_of_panels::{Window, friction, prepared, press, set, type_number};
+use crate::window_of_panels::{Window, asked, friction, prepared, press, set, type_number};
 use crate::windowless::{app, ask, until};
 use bevy::prelude::*;
 use egui_kittest::Harness;
@@ -83,11 +83,6 @@ fn table(out: &Path) -> Vec<Vec<String>> {
 fn open_panel(harness: &mut Harness<'_, Window>, parameter: &Parameter) {
     harness.state_mut().dock.ask_sweep(Some(parameter));
     harness.run_steps(30);
-}
-
-fn asked(harness: &mut Harness<'_, Window>) -> Vec<Request> {
-    harness.run_steps(2);
-    std::mem::take(&mut harness.state_mut().asked)
 }
 
 #[test]

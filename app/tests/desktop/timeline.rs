@@ -1,7 +1,9 @@
 //! The timeline, undo and the list of changes by their accessible labels, without Bevy's app and
 //! without a GPU.
 
-use crate::window_of_panels::{Window, commands, friction, prepared, ready, sample, set, standing};
+use crate::window_of_panels::{
+    self, Window, commands, friction, prepared, ready, sample, set, standing,
+};
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
@@ -85,8 +87,7 @@ fn the_numbers_beside_a_plot_are_those_of_the_moment_shown() {
 
 /// What was asked for last.
 fn asked(harness: &mut Harness<'_, Window>) -> Vec<Command> {
-    harness.run_steps(2);
-    commands(&std::mem::take(&mut harness.state_mut().asked))
+    commands(&window_of_panels::asked(harness))
 }
 
 #[test]

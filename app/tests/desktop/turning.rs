@@ -29,7 +29,7 @@ fn apart(a: f32, b: f32) -> f32 {
 
 #[test]
 fn how_far_a_sphere_has_turned_is_read_from_its_picture() {
-    let Some(_studio) = studio("how_far_a_sphere_has_turned_is_read_from_its_picture") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut app = App::new();

@@ -6,11 +6,14 @@
 
 use crate::window_of_panels::standing;
 use bevy::app::Plugins;
+use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::message::Messages;
 use bevy::math::{UVec2, Vec2, Vec3};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::ScreenshotCaptured;
-use bevy_egui::{EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
+use bevy_egui::{
+    EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui,
+};
 use glam::DVec3;
 use grainfall::lab::{Options, Status};
 use grainfall::measure::GrainQuantity;
@@ -31,6 +34,7 @@ use grainfall_app::window::canvas::{
 };
 use grainfall_app::window::environment::adapters;
 use std::io::Write;
+use std::panic::Location;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub const SIZE: UVec2 = UVec2::new(640, 360);
@@ -38,18 +42,23 @@ pub const SIZE: UVec2 = UVec2::new(640, 360);
 /// One picture at a time: a software driver takes every core.
 static STUDIO: Mutex<()> = Mutex::new(());
 
-/// Leave to draw, or a word that the test `name` did not run.
-pub fn studio(name: &str) -> Option<MutexGuard<'static, ()>> {
+/// Leave to draw, or a word that the test that asks did not run.
+#[track_caller]
+pub fn studio() -> Option<MutexGuard<'static, ()>> {
     let guard = STUDIO.lock().unwrap_or_else(PoisonError::into_inner);
     if !adapters().is_empty() {
         return Some(guard);
     }
     assert!(
         std::env::var_os("GRAINFALL_REQUIRE_VULKAN").is_none(),
-        "{name}: no Vulkan driver, though GRAINFALL_REQUIRE_VULKAN is set"
+        "no Vulkan driver, though GRAINFALL_REQUIRE_VULKAN is set"
     );
+    let test = Location::caller();
     // Straight to the stream: the test runner swallows what `eprintln!` says in a test that passes.
-    let _ = writeln!(std::io::stderr(), "{name} did not run: no Vulkan driver");
+    let _ = writeln!(
+        std::io::stderr(),
+        "the test at {test} did not run: no Vulkan driver"
+    );
     None
 }
 
@@ -134,6 +143,21 @@ pub fn laboratory<M>(size: UVec2, options: Options, plugins: impl Plugins<M>) ->
     app
 }
 
+/// A camera that draws panels over the picture.
+pub fn panel_camera(app: &mut App) {
+    app.insert_resource(EguiGlobalSettings {
+        auto_create_primary_context: false,
+        ..default()
+    });
+    let camera = Camera {
+        order: 2,
+        clear_color: ClearColorConfig::None,
+        ..default()
+    };
+    app.world_mut()
+        .spawn((PrimaryEguiContext, Camera2d, RenderLayers::none(), camera));
+}
+
 /// Words over the picture.
 #[derive(Resource)]
 struct Words(&'static str);
@@ -148,8 +172,7 @@ fn write_words(words: Res<Words>, mut contexts: EguiContexts) -> Result {
 /// holes.
 #[test]
 fn a_letter_is_there_in_the_frame_that_first_shows_it() {
-    let name = "a_letter_is_there_in_the_frame_that_first_shows_it";
-    let Some(_studio) = studio(name) else {
+    let Some(_studio) = studio() else {
         return;
     };
     let options = standing();
@@ -283,7 +306,7 @@ fn outline(camera: &OrbitCamera, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
 
 #[test]
 fn grains_are_where_and_as_large_as_the_camera_says() {
-    let Some(_studio) = studio("grains_are_where_and_as_large_as_the_camera_says") else {
+    let Some(_studio) = studio() else {
         return;
     };
     for projection in [ProjectionKind::Perspective, ProjectionKind::Orthographic] {
@@ -314,7 +337,7 @@ fn grains_are_where_and_as_large_as_the_camera_says() {
 
 #[test]
 fn colours_are_those_of_the_map() {
-    let Some(_studio) = studio("colours_are_those_of_the_map") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut world = five_grains();
@@ -352,7 +375,7 @@ pub fn cosine(a: [f32; 3], b: [f32; 3]) -> f32 {
 
 #[test]
 fn cut_takes_the_right_half_away() {
-    let Some(_studio) = studio("cut_takes_the_right_half_away") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let positions = five_grains().grains.position.to_vec();
@@ -376,7 +399,7 @@ fn cut_takes_the_right_half_away() {
 
 #[test]
 fn section_of_a_cut_grain_is_a_flat_disc() {
-    let Some(_studio) = studio("section_of_a_cut_grain_is_a_flat_disc") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let photograph = photograph("section", five_grains(), |settings, camera| {
@@ -403,7 +426,7 @@ fn section_of_a_cut_grain_is_a_flat_disc() {
 
 #[test]
 fn nearer_grains_hide_farther_ones_where_they_intersect() {
-    let Some(_studio) = studio("nearer_grains_hide_farther_ones_where_they_intersect") else {
+    let Some(_studio) = studio() else {
         return;
     };
     // Two equal spheres one in front of the other, seen along z: the nearer one hides the other
@@ -468,7 +491,7 @@ pub fn drum_of_grains() -> World {
 
 #[test]
 fn drum_fills_the_picture_and_one_sees_in() {
-    let Some(_studio) = studio("drum_fills_the_picture_and_one_sees_in") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let world = drum_of_grains();
@@ -488,7 +511,7 @@ fn drum_fills_the_picture_and_one_sees_in() {
 
 #[test]
 fn mark_turns_with_the_drum() {
-    let Some(_studio) = studio("mark_turns_with_the_drum") else {
+    let Some(_studio) = studio() else {
         return;
     };
     for angle in [0.4_f32, 2.0] {
@@ -546,7 +569,7 @@ fn half_thickness(photograph: &Photograph, place: Vec2) -> f32 {
 
 #[test]
 fn force_is_a_bar_as_thick_as_it_is_large() {
-    let Some(_studio) = studio("force_is_a_bar_as_thick_as_it_is_large") else {
+    let Some(_studio) = studio() else {
         return;
     };
     // The reference is the next round number: of 1 mN itself, of 0.6 mN again 1 mN.
@@ -569,7 +592,7 @@ fn force_is_a_bar_as_thick_as_it_is_large() {
 
 #[test]
 fn bridge_is_as_thick_as_its_volume_makes_it() {
-    let Some(_studio) = studio("bridge_is_as_thick_as_its_volume_makes_it") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut wet = pair(0.0);
@@ -600,7 +623,7 @@ fn bridge_is_as_thick_as_its_volume_makes_it() {
 
 #[test]
 fn arrows_point_where_grains_go() {
-    let Some(_studio) = studio("arrows_point_where_grains_go") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let mut moving = pair(0.0);

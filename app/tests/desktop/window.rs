@@ -34,7 +34,7 @@ fn job(path: &Path) -> WindowJob {
 }
 
 /// The texts in a picture by their names.
-fn words(path: &Path) -> BTreeMap<String, String> {
+pub fn words(path: &Path) -> BTreeMap<String, String> {
     let file = BufReader::new(File::open(path).unwrap());
     let reader = png::Decoder::new(file).read_info().unwrap();
     let texts = reader.info().utf8_text.iter();
@@ -59,7 +59,7 @@ fn state_at(step: &str) -> String {
 
 #[test]
 fn laboratory_draws_itself_without_a_display() {
-    let Some(_studio) = studio("laboratory_draws_itself_without_a_display") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("laboratory.png");
@@ -104,7 +104,7 @@ fn laid(front: image::Rgba<u8>, ground: [u8; 3]) -> [u8; 3] {
 
 #[test]
 fn grains_without_a_background_look_the_same_on_another_one() {
-    let Some(_studio) = studio("grains_without_a_background_look_the_same_on_another_one") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let taken = |name: &str, of: PictureOf| {
@@ -144,7 +144,7 @@ fn grains_without_a_background_look_the_same_on_another_one() {
 
 #[test]
 fn picture_that_cannot_be_written_is_told() {
-    let Some(_studio) = studio("picture_that_cannot_be_written_is_told") else {
+    let Some(_studio) = studio() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -89,6 +89,17 @@ pub fn with_samples() -> Simulation {
     after(prepared(), 0.4)
 }
 
+/// Puts a run with a friction of 0.9 beside that of `simulation`.
+pub fn put_beside(simulation: &mut Simulation) {
+    simulation.send(LabCommand::Compare {
+        parameter: friction(),
+        value: 0.9.into(),
+    });
+    while simulation.comparison().is_none() {
+        simulation.tick(Duration::from_millis(16));
+    }
+}
+
 /// A window with all panels, without a picture.
 pub struct Window {
     pub dock: Dock,
@@ -140,6 +151,12 @@ pub fn commands(asked: &[Request]) -> Vec<Command> {
         _ => None,
     };
     asked.iter().filter_map(command).collect()
+}
+
+/// What the window asked for since the last time.
+pub fn asked(harness: &mut Harness<'_, Window>) -> Vec<Request> {
+    harness.run_steps(3);
+    std::mem::take(&mut harness.state_mut().asked)
 }
 
 /// The friction of the grains among each other.

@@ -19,10 +19,15 @@ pub fn without_scene() -> App {
 /// With three grains at time zero.
 pub fn app() -> App {
     let mut app = without_scene();
+    open_three_grains(&mut app);
+    app
+}
+
+/// Opens three grains and waits until they stand.
+pub fn open_three_grains(app: &mut App) {
     let scene = prepared().scene().clone();
     app.insert_resource(Simulation::open(scene, options()));
-    update_until(&mut app, |simulation| simulation.world().is_some());
-    app
+    update_until(app, |simulation| simulation.world().is_some());
 }
 
 /// A run on a thread of its own, as in a window.

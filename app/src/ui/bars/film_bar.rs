@@ -6,7 +6,7 @@ use crate::ui::request::Request;
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrder};
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
-use bevy_egui::egui::{self, RichText};
+use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
 
 /// Draws the bar over the picture, which `root` keeps free, while a film is recorded or written; it
 /// says where nothing is recorded because the run `stands_still`.
@@ -29,21 +29,40 @@ pub fn film_bar_ui(
                 number::moment(time)
             )
         }
+        FilmState::Replaying { pictures, all } => {
+            format!("Filming what is recorded: {pictures} of {all} pictures")
+        }
         FilmState::Writing(left) => format!("Writing the film: {left} pictures left"),
     };
-    // A strip of its own: what lies over the picture would be in the film.
     egui::Panel::top("recording").show(root, |ui| {
         ui.horizontal_wrapped(|ui| {
             let red = Palette::of(ui.visuals()).error;
             ui.label(RichText::new("●").color(red));
             ui.label(text);
-            let recording = matches!(film, FilmState::Recording { .. });
-            if recording && ui.button("Stop and save").clicked() {
+            if let FilmState::Replaying { pictures, all } = film {
+                progress_ui(ui, pictures as f32 / all as f32);
+            }
+            let ends = matches!(
+                film,
+                FilmState::Recording { .. } | FilmState::Replaying { .. }
+            );
+            if ends && ui.button("Stop and save").clicked() {
                 out.push(Request::Screenshot(ScreenshotOrder::EndFilm));
             }
             if ui.button("Cancel the film").clicked() {
                 out.push(Request::Screenshot(ScreenshotOrder::CancelFilm));
             }
         });
+    });
+}
+
+/// How much of a film with an end is done, 0 … 1.
+fn progress_ui(ui: &mut egui::Ui, progress: f32) {
+    let bar = egui::ProgressBar::new(progress).desired_width(160.0);
+    let response = ui.add(bar.text(format!("{:.0} %", 100.0 * progress)));
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(WidgetType::ProgressIndicator, true, "Film");
+        info.value = Some(f64::from(progress));
+        info
     });
 }

@@ -12,9 +12,10 @@ use crate::ui::screenshot_orders::PictureOf;
 use crate::ui::shortcuts::SHORTCUTS;
 use crate::ui::text_size;
 use crate::ui::widgets::button::button_unless_ui;
+use crate::ui::widgets::focus::follow_focus;
 use crate::ui::words::number;
 use crate::view::{Background, CameraRequest, ProjectionKind, StandardView, ViewSettings};
-use bevy_egui::egui;
+use bevy_egui::egui::{self, ScrollArea};
 use grainfall::lab::Half;
 use grainfall::lesson::built_in_lessons;
 use grainfall::run::Command;
@@ -22,6 +23,8 @@ use grainfall::scene::built_in;
 
 /// Width of the View menu, in points: its longest entry fits.
 const VIEW_WIDTH: f32 = 250.0;
+/// Height of what stands round a list in a menu, with some air [points].
+const ROUND_A_LIST: f32 = 120.0;
 
 /// What the menus say of what is shown.
 pub struct Shown<'a> {
@@ -31,6 +34,8 @@ pub struct Shown<'a> {
     pub sides: &'a mut OpenSides,
     /// The panels that this simulation has, by their titles, and whether each is shown.
     pub panels: Vec<(&'static str, bool)>,
+    /// Whether it takes the keyboard's focus.
+    pub takes_focus: bool,
 }
 
 /// Draws the menu bar; `rest` is drawn at its right end, from right to left.
@@ -43,7 +48,10 @@ pub fn menu_ui(
     rest: impl FnOnce(&mut egui::Ui),
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_ui(ui, simulation, shown.recent, out));
+        let file = ui.menu_button("File", |ui| file_ui(ui, simulation, shown.recent, out));
+        if shown.takes_focus {
+            file.response.request_focus();
+        }
         ui.menu_button("Edit", |ui| edit_ui(ui, simulation, out));
         ui.menu_button("View", |ui| view_ui(ui, shown, view, out));
         ui.menu_button("Help", |ui| {
@@ -109,6 +117,9 @@ fn edit_ui(ui: &mut egui::Ui, simulation: Option<&Simulation>, out: &mut Vec<Req
         let why_not = what.is_none().then(|| number::capitalised(nothing));
         item_unless_ui(ui, name, Request::Command(command), why_not.as_deref(), out);
     }
+    let why_not = simulation.is_none().then_some("There is no run");
+    item_unless_ui(ui, "Go to a moment…", Request::TypeMoment, why_not, out);
+    item_unless_ui(ui, "Name the run…", Request::TypeName, why_not, out);
     ui.separator();
     let why_not = simulation.is_none().then_some("There is no run to compare");
     let compare = Request::Compare(None);
@@ -126,14 +137,12 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
     ui.set_width(VIEW_WIDTH);
     item_ui(ui, "Fit", Request::Camera(CameraRequest::Fit), out);
     item_ui(ui, "Home", Request::Camera(CameraRequest::Home), out);
-    for side in StandardView::ALL {
-        item_ui(
-            ui,
-            side.label(),
-            Request::Camera(CameraRequest::From(side)),
-            out,
-        );
-    }
+    ui.menu_button("Look from", |ui| {
+        for side in StandardView::ALL {
+            let look = CameraRequest::From(side);
+            item_ui(ui, side.label(), Request::Camera(look), out);
+        }
+    });
     ui.separator();
     item_ui(ui, "Ruler", Request::Ruler, out);
     let mut parallel = view.projection == ProjectionKind::Orthographic;
@@ -167,22 +176,25 @@ fn view_ui(ui: &mut egui::Ui, shown: &mut Shown, view: &mut ViewSettings, out: &
         ui.vertical(|ui| ui.weak(reason));
     }
     ui.menu_button("Panels", |ui| panels_ui(ui, &shown.panels, out));
-    ui.separator();
-    text_size::menu_ui(ui);
+    ui.menu_button("Size of text and controls", text_size::menu_ui);
 }
 
 /// Which panels are shown; their places are changed in the menus at their titles.
 fn panels_ui(ui: &mut egui::Ui, panels: &[(&'static str, bool)], out: &mut Vec<Request>) {
-    for (title, is_shown) in panels {
-        let mut shows = *is_shown;
-        if ui.checkbox(&mut shows, *title).changed() {
-            out.push(Request::Arrange(if shows {
-                Rearrangement::Show(title)
-            } else {
-                Rearrangement::Close(title)
-            }));
+    let height = ui.ctx().content_rect().height() - ROUND_A_LIST;
+    ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        for (title, is_shown) in panels {
+            let mut shows = *is_shown;
+            if ui.checkbox(&mut shows, *title).changed() {
+                out.push(Request::Arrange(if shows {
+                    Rearrangement::Show(title)
+                } else {
+                    Rearrangement::Close(title)
+                }));
+            }
         }
-    }
+        follow_focus(ui);
+    });
     ui.separator();
     let at_first = Request::Arrange(Rearrangement::AsAtFirst);
     item_ui(ui, "All as at first", at_first, out);

@@ -10,6 +10,7 @@ use crate::ui::playback::allows;
 use crate::ui::repeat::Repeat;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
+use crate::ui::widgets::elided::{elided, width};
 use crate::ui::words::names::parameter_name;
 use crate::ui::words::number;
 use crate::ui::words::run_names::RunNames;
@@ -28,6 +29,7 @@ pub fn timeline_ui(
     if simulation.world().is_none() {
         return;
     }
+    names_ui(ui, simulation);
     ui.horizontal(|ui| {
         if let Some(recording) = simulation.recording() {
             run_anew_ui(ui, out);
@@ -147,6 +149,34 @@ fn changed_name(what: &Changed, simulation: &Simulation) -> String {
     }
 }
 
+/// Which runs the line is of, where there are others or where a person named it: above the line. A
+/// long name keeps its beginning and its end, and is whole under the pointer.
+fn names_ui(ui: &mut egui::Ui, simulation: &Simulation) {
+    let names = RunNames::of(simulation);
+    if !names.are_told() {
+        return;
+    }
+    let palette = Palette::of(ui.visuals());
+    let colours = [ui.visuals().strong_text_color(), palette.compared];
+    let is_pair = simulation.comparison().is_some();
+    let shown = 1 + usize::from(is_pair);
+    ui.columns(shown, |places| {
+        for ((ui, half), colour) in places.iter_mut().zip(Half::ALL).zip(colours) {
+            let name = names.present(half);
+            let hint = if is_pair {
+                format!("{name}\nThe run on the {}", half.label())
+            } else {
+                format!("{name}\nThe run that is shown: Changes and runs lists them all")
+            };
+            let text = RichText::new(elided(ui, name)).color(colour);
+            let response = ui.add(egui::Label::new(text).extend());
+            let response = response.on_hover_text(hint);
+            let told = || format!("Run on the timeline: {name}");
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, told()));
+        }
+    });
+}
+
 /// The line itself.
 fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, repeat: &Repeat, out: &mut Vec<Request>) {
     let Some(world) = simulation.world() else {
@@ -208,13 +238,6 @@ fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
     let places = [end, end.min(0.1234)].map(|time| width(ui, &place_in_words(time, end)));
     let texts = places[0].max(places[1]) + width(ui, TO_THE_NEWEST);
     texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
-}
-
-/// Width of `text`.
-fn width(ui: &egui::Ui, text: &str) -> f32 {
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let words = (ui.painter()).layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
-    words.size().x
 }
 
 /// The moment shown out of the whole run, and the way back to the newest.

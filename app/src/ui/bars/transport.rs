@@ -7,6 +7,7 @@ use crate::ui::playback::{SPEEDS, allows, go_to, play_or_pause, step_back, step_
 use crate::ui::repeat::Repeat;
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
+use crate::ui::widgets::combo::list_ui;
 use crate::ui::widgets::field::Field;
 use crate::ui::widgets::touch;
 use crate::ui::words::number;
@@ -186,25 +187,20 @@ fn why_not(status: &Status) -> &'static str {
 }
 
 fn speed_ui(ui: &mut egui::Ui, speed: f64, out: &mut Vec<Request>) {
-    let response = egui::ComboBox::from_id_salt("speed")
+    let speeds = egui::ComboBox::from_id_salt("speed")
         .selected_text(speed_name(speed))
         .width(74.0)
-        .height(420.0)
-        .show_ui(ui, |ui| {
-            for choice in SPEEDS {
-                if ui
-                    .selectable_label(choice == speed, speed_name(choice))
-                    .clicked()
-                    && choice != speed
-                {
-                    out.push(Request::Command(Command::Speed(choice)));
-                }
+        .height(420.0);
+    let list = list_ui(ui, "Speed", speeds, |ui| {
+        for choice in SPEEDS {
+            let entry = ui.selectable_label(choice == speed, speed_name(choice));
+            if entry.clicked() && choice != speed {
+                out.push(Request::Command(Command::Speed(choice)));
             }
-        })
-        .response
-        .on_hover_text("Speed: simulated seconds per second");
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Speed"));
-    touch::mark_ui(ui, &Touch::Speed, response.rect);
+        }
+    });
+    let list = list.on_hover_text("Speed: simulated seconds per second");
+    touch::mark_ui(ui, &Touch::Speed, list.rect);
 }
 
 /// The button that marks what is played again and again, and how long that is.

@@ -7,14 +7,15 @@
 //! portal). Then the field appears, and also when the person asks again before the dialog has
 //! answered. Nothing here waits.
 
+use crate::ui::dialogs::capture_form::CaptureForm;
+use crate::ui::dialogs::dialog::dialog_ui;
 use crate::ui::request::{Request, SweepAct};
-use crate::ui::screenshot_orders::{PictureOf, ScreenshotOrder};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
+use crate::ui::widgets::focus::{begin_to_type, is_entered};
 use bevy::tasks::futures::check_ready;
 use bevy::tasks::{IoTaskPool, Task};
-use bevy_egui::egui::text::{CCursor, CCursorRange};
-use bevy_egui::egui::{self, Id, Key, Modal};
+use bevy_egui::egui;
 use grainfall::run::SESSION_EXTENSION;
 use rfd::{AsyncFileDialog, FileHandle};
 use std::path::{Path, PathBuf};
@@ -33,8 +34,8 @@ pub enum Purpose {
     Open,
     /// Where the whole session goes.
     Session,
-    /// Where a picture goes, and of what it is.
-    Picture(PictureOf),
+    /// Where a picture goes.
+    Picture,
     /// Where the list of changes goes.
     Changes,
     /// Where a plot goes.
@@ -51,7 +52,7 @@ impl Purpose {
         match self {
             Self::Open => "ron",
             Self::Session => SESSION_EXTENSION,
-            Self::Picture(_) => "png",
+            Self::Picture => "png",
             Self::Changes => "json",
             Self::Plot => "svg",
             Self::Film => "gif",
@@ -65,6 +66,8 @@ impl Purpose {
 pub struct PathDialog {
     asked: Option<SystemDialog>,
     typed: Option<TypedPath>,
+    /// Whether paths are typed even where the system has a dialog.
+    pub is_always_typed: bool,
 }
 
 /// A system dialog that has not answered yet.
@@ -86,6 +89,8 @@ struct TypedPath {
     /// Why it appeared.
     reason: &'static str,
     fresh: bool,
+    /// What is asked beside the path.
+    form: CaptureForm,
 }
 
 impl Purpose {
@@ -93,12 +98,10 @@ impl Purpose {
         match self {
             Self::Open => "Open a scene, a lesson, a session or a recording",
             Self::Session => "Save the session",
-            Self::Picture(PictureOf::Window) => "Save a picture of the window",
-            Self::Picture(PictureOf::Grains) => "Save a picture of the grains",
-            Self::Picture(PictureOf::CutOut) => "Save the grains without a background",
+            Self::Picture => "Save a picture",
             Self::Changes => "Save the list of changes",
             Self::Plot => "Export the plot",
-            Self::Film => "Record a film of the picture",
+            Self::Film => "Record a film",
             Self::SweepFolder => "Choose a folder for parameter sweeps",
         }
     }
@@ -109,11 +112,11 @@ impl Purpose {
                 "Path of a file or of a run's folder, or name of a built-in scene or lesson"
             }
             Self::Session => "Path of the session's file",
-            Self::Picture(_) => "Path of the PNG file",
+            Self::Picture => "Path of the PNG file",
             Self::Changes => "Path of the JSON file",
             Self::Plot => "Path; it ends in .svg or .png for a picture, in .csv for all samples",
             Self::Film => {
-                "Path; it ends in .gif, or in .mp4 where ffmpeg is installed; without an ending, a folder of PNG pictures"
+                "Path; it ends in .gif, or with ffmpeg in .mp4, .webm or .mov; without an ending, a folder of PNG pictures"
             }
             Self::SweepFolder => "Path of a folder, in which each sweep has one of its own",
         }
@@ -123,7 +126,7 @@ impl Purpose {
         match self {
             Self::Open | Self::SweepFolder => String::new(),
             Self::Session => free_name("session", self.extension()),
-            Self::Picture(_) => free_name("grainfall", self.extension()),
+            Self::Picture => free_name("grainfall", self.extension()),
             Self::Changes => free_name("changes", self.extension()),
             Self::Plot => free_name("plot", self.extension()),
             Self::Film => free_name("film", self.extension()),
@@ -137,20 +140,20 @@ impl Purpose {
         match self {
             Self::Open | Self::Film | Self::SweepFolder => path.to_owned(),
             Self::Plot if path.extension().is_some() => path.to_owned(),
-            Self::Session | Self::Picture(_) | Self::Changes | Self::Plot => ended(),
+            Self::Session | Self::Picture | Self::Changes | Self::Plot => ended(),
         }
     }
 
-    fn request(self, path: &Path) -> Request {
+    /// What is asked for with `path`; none where more must be known.
+    fn request(self, path: &Path) -> Option<Request> {
         let file = self.file(path);
         match self {
-            Self::Open => Request::Open(file.display().to_string()),
-            Self::Session => Request::SaveSession(file),
-            Self::Picture(of) => Request::Screenshot(ScreenshotOrder::Picture(file, of)),
-            Self::Changes => Request::SaveChanges(file),
-            Self::Plot => Request::SavePlot(file),
-            Self::Film => Request::Screenshot(ScreenshotOrder::Film(file)),
-            Self::SweepFolder => Request::Sweep(SweepAct::Folder(file)),
+            Self::Open => Some(Request::Open(file.display().to_string())),
+            Self::Session => Some(Request::SaveSession(file)),
+            Self::Changes => Some(Request::SaveChanges(file)),
+            Self::Plot => Some(Request::SavePlot(file)),
+            Self::SweepFolder => Some(Request::Sweep(SweepAct::Folder(file))),
+            Self::Picture | Self::Film => None,
         }
     }
 
@@ -193,7 +196,7 @@ impl PathDialog {
     pub fn ask(&mut self, purpose: Purpose) {
         if self.asked.take().is_some() {
             self.type_path(purpose, "The system's file dialog has not answered.");
-        } else if self.typed.is_none() && !dialogs_are_there() {
+        } else if self.typed.is_none() && (self.is_always_typed || !dialogs_are_there()) {
             self.type_path(purpose, NO_DIALOG);
         } else if self.typed.is_none() {
             let answer = IoTaskPool::get().spawn(ask_system(purpose));
@@ -208,7 +211,17 @@ impl PathDialog {
             text: purpose.suggestion(),
             reason,
             fresh: true,
+            form: CaptureForm::default(),
         });
+    }
+
+    /// Asks where a picture or a film goes and, in the `form`, what it is to be like.
+    pub fn ask_with(&mut self, purpose: Purpose, form: CaptureForm) {
+        self.asked = None;
+        self.type_path(purpose, "");
+        if let Some(typed) = &mut self.typed {
+            typed.form = form;
+        }
     }
 
     /// Whether a file is being chosen.
@@ -224,15 +237,28 @@ impl PathDialog {
     /// Takes the system dialog's answer, or draws the field; what was chosen goes into `out`.
     pub fn ui(&mut self, ctx: &egui::Context, out: &mut Vec<Request>) {
         self.take_answer(out);
-        if let Some(typed) = &mut self.typed {
-            match typed_ui(ctx, typed) {
-                Some(FieldAnswer::Path(path)) => {
-                    out.push(typed.purpose.request(&path));
-                    self.typed = None;
-                }
-                Some(FieldAnswer::Nothing) => self.typed = None,
-                None => {}
+        let Some(typed) = &mut self.typed else {
+            return;
+        };
+        match typed_ui(ctx, typed, !self.is_always_typed && dialogs_are_there()) {
+            Some(FieldAnswer::Request(request)) => {
+                out.push(request);
+                self.typed = None;
             }
+            Some(FieldAnswer::Choose) => self.choose(),
+            Some(FieldAnswer::Nothing) => (self.typed, self.asked) = (None, None),
+            None => {}
+        }
+    }
+
+    /// Lets the system's dialog fill the field.
+    fn choose(&mut self) {
+        if let Some(typed) = &mut self.typed
+            && self.asked.is_none()
+        {
+            let purpose = typed.purpose;
+            let answer = IoTaskPool::get().spawn(ask_system(purpose));
+            self.asked = Some(SystemDialog { purpose, answer });
         }
     }
 
@@ -245,9 +271,18 @@ impl PathDialog {
         };
         let purpose = asked.purpose;
         self.asked = None;
+        let is_gone = answer.after < SHORTEST_CHOICE;
+        let Some(typed) = &mut self.typed else {
+            match answer.file {
+                Some(file) => out.extend(purpose.request(file.path())),
+                None if is_gone => self.type_path(purpose, NO_DIALOG),
+                None => {}
+            }
+            return;
+        };
         match answer.file {
-            Some(file) => out.push(purpose.request(file.path())),
-            None if answer.after < SHORTEST_CHOICE => self.type_path(purpose, NO_DIALOG),
+            Some(file) => typed.text = file.path().display().to_string(),
+            None if is_gone => typed.reason = NO_DIALOG,
             None => {}
         }
     }
@@ -279,7 +314,7 @@ async fn ask_system(purpose: Purpose) -> DialogAnswer {
             let name = format!("session.{SESSION_EXTENSION}");
             dialog.set_file_name(name).save_file().await
         }
-        Purpose::Picture(_) => {
+        Purpose::Picture => {
             let dialog = dialog.add_filter("Pictures", &["png"]);
             dialog.set_file_name("grainfall.png").save_file().await
         }
@@ -288,7 +323,7 @@ async fn ask_system(purpose: Purpose) -> DialogAnswer {
             dialog.set_file_name("plot.svg").save_file().await
         }
         Purpose::Film => {
-            let dialog = dialog.add_filter("Films", &["gif", "mp4"]);
+            let dialog = dialog.add_filter("Films", &["gif", "mp4", "webm", "mov"]);
             dialog.set_file_name("film.gif").save_file().await
         }
         Purpose::SweepFolder => dialog.pick_folder().await,
@@ -305,60 +340,91 @@ async fn ask_system(purpose: Purpose) -> DialogAnswer {
 
 /// How the field was left.
 enum FieldAnswer {
-    Path(PathBuf),
+    Request(Request),
+    /// Let the system's dialog appear.
+    Choose,
     Nothing,
 }
 
-fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath) -> Option<FieldAnswer> {
-    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
-    let modal = Modal::new(Id::new("path")).frame(frame).show(ctx, |ui| {
-        ui.set_width(560.0_f32.min(0.9 * ui.ctx().content_rect().width()));
+/// Draws the field, and the way to the system's dialog where that `has_system`.
+fn typed_ui(ctx: &egui::Context, typed: &mut TypedPath, has_system: bool) -> Option<FieldAnswer> {
+    let (answer, is_left) = dialog_ui(ctx, "path", 560.0, |ui| {
         ui.heading(typed.purpose.title());
-        ui.weak(typed.reason);
-        let label = ui.label(typed.purpose.field());
-        let field = egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY);
-        let mut drawn = field.show(ui);
-        let field = drawn.response.response.clone().labelled_by(label.id);
-        if std::mem::take(&mut typed.fresh) {
-            field.request_focus();
-            // What is typed takes the place of what is suggested.
-            let all = CCursorRange::two(CCursor::new(0), CCursor::new(typed.text.chars().count()));
-            drawn.state.cursor.set_char_range(Some(all));
-            drawn.state.store(ui.ctx(), field.id);
+        if !typed.reason.is_empty() {
+            ui.weak(typed.reason);
         }
-        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let entered = path_ui(ui, typed) | typed.form.ui(ui);
         let path = PathBuf::from(typed.text.trim());
-        let outlook = typed.purpose.outlook(&path);
-        match &outlook {
-            Ok(text) => ui.weak(text),
-            Err(reason) => ui.colored_label(Palette::of(ui.visuals()).warning, reason),
-        };
-        let why_not = match outlook {
-            Ok(_) if path.as_os_str().is_empty() => Some("There is no path yet.".to_owned()),
-            outlook => outlook.err(),
-        };
+        let outcome = outlook_ui(ui, typed, &path);
         ui.add_space(4.0);
-        ui.horizontal(|ui| {
-            let verb = match typed.purpose {
-                Purpose::Open => "Open",
-                Purpose::Session | Purpose::Picture(_) | Purpose::Changes | Purpose::Plot => "Save",
-                Purpose::Film => "Record",
-                Purpose::SweepFolder => "Choose",
-            };
-            let possible = why_not.is_none();
-            let button = egui::Button::new(verb);
-            let done = button_unless_ui(ui, why_not.as_deref(), button).clicked();
-            let left = ui.button("Cancel").clicked();
-            match (done || (entered && possible), left) {
-                (true, _) => Some(FieldAnswer::Path(path)),
-                (false, true) => Some(FieldAnswer::Nothing),
-                (false, false) => None,
-            }
-        })
-        .inner
+        answers_ui(ui, typed, outcome, [entered, has_system])
     });
-    let closed = modal.should_close().then_some(FieldAnswer::Nothing);
-    modal.inner.or(closed)
+    answer.or(is_left.then_some(FieldAnswer::Nothing))
+}
+
+/// The field for the path; whether somebody has pressed Enter in it.
+fn path_ui(ui: &mut egui::Ui, typed: &mut TypedPath) -> bool {
+    let label = ui.label(typed.purpose.field());
+    let field = egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY);
+    let mut drawn = field.show(ui);
+    if std::mem::take(&mut typed.fresh) {
+        begin_to_type(ui, &mut drawn, &typed.text);
+    }
+    is_entered(&drawn.response.response.labelled_by(label.id))
+}
+
+/// Says what will be done; returns what is asked for then, or why that cannot be.
+fn outlook_ui(ui: &mut egui::Ui, typed: &TypedPath, path: &Path) -> Result<Request, String> {
+    let purpose = typed.purpose;
+    let order = typed.form.order(&purpose.file(path));
+    let told = purpose.outlook(path).and_then(|text| Ok((text, order?)));
+    let (text, order) = match told {
+        Ok(told) => told,
+        Err(reason) => {
+            ui.colored_label(Palette::of(ui.visuals()).warning, &reason);
+            return Err(reason);
+        }
+    };
+    ui.weak(text);
+    if path.as_os_str().is_empty() {
+        return Err("There is no path yet.".to_owned());
+    }
+    let Some((order, words)) = order else {
+        let request = purpose.request(path);
+        return request.ok_or_else(|| "It is not said what it is to be like.".to_owned());
+    };
+    if !words.is_empty() {
+        ui.weak(words);
+    }
+    Ok(Request::Screenshot(order))
+}
+
+/// The buttons.
+fn answers_ui(
+    ui: &mut egui::Ui,
+    typed: &TypedPath,
+    outcome: Result<Request, String>,
+    [entered, has_system]: [bool; 2],
+) -> Option<FieldAnswer> {
+    ui.horizontal(|ui| {
+        let verb = match typed.purpose {
+            Purpose::Open => "Open",
+            Purpose::Session | Purpose::Picture | Purpose::Changes | Purpose::Plot => "Save",
+            Purpose::Film => "Record",
+            Purpose::SweepFolder => "Choose",
+        };
+        let why_not = outcome.as_ref().err().map(String::as_str);
+        let done = button_unless_ui(ui, why_not, egui::Button::new(verb)).clicked();
+        let left = ui.button("Cancel").clicked();
+        let has_form = !matches!(typed.form, CaptureForm::Nothing);
+        let chooses = has_form && has_system && ui.button("Choose a file…").clicked();
+        match outcome {
+            Ok(request) if done || entered => Some(FieldAnswer::Request(request)),
+            _ if left => Some(FieldAnswer::Nothing),
+            _ => chooses.then_some(FieldAnswer::Choose),
+        }
+    })
+    .inner
 }
 
 /// `grainfall-1.png` in the working folder, or the next number that is free.

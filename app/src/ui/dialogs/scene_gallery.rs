@@ -4,13 +4,14 @@
 //! In: what is remembered. Out: a request to open one. The pictures are the program's own, made by
 //! `app/assets/gallery/make`.
 
+use crate::ui::dialogs::dialog::dialog_ui;
 use crate::ui::request::Request;
 use crate::ui::user_memory::UserMemory;
-use crate::ui::widgets::focus::follow_focus;
+use crate::ui::widgets::focus::{follow_focus, take_first_focus};
 use crate::ui::words::number;
 use bevy_egui::egui::{
-    self, ColorImage, Id, Modal, RichText, ScrollArea, Sense, TextureHandle, TextureOptions,
-    UiBuilder, WidgetInfo, WidgetType, vec2,
+    self, ColorImage, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, UiBuilder,
+    WidgetInfo, WidgetType, vec2,
 };
 use grainfall::lesson::{BuiltInLesson, Lesson, built_in_lessons};
 use grainfall::run::openings;
@@ -131,15 +132,13 @@ impl Gallery {
                 .chain(scenes.filter_map(|scene| Card::of(scene, ctx)))
                 .collect();
         }
-        let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
-        let modal = Modal::new(Id::new("gallery")).frame(frame).show(ctx, |ui| {
-            let room = ui.ctx().content_rect().size();
-            ui.set_width((0.9 * room.x).min(1080.0));
+        let (is_over, is_left) = dialog_ui(ctx, "gallery", 1080.0, |ui| {
+            let height = 0.72 * ui.ctx().content_rect().height();
             let mut chosen = None;
             ui.heading("Lessons and scenes");
             ScrollArea::vertical()
-                .max_height(0.72 * room.y)
-                .min_scrolled_height(0.72 * room.y)
+                .max_height(height)
+                .min_scrolled_height(height)
                 .show(ui, |ui| {
                     // Room for the scroll bar.
                     ui.set_width(ui.available_width() - 10.0);
@@ -160,7 +159,7 @@ impl Gallery {
             out.extend(chosen.map(Request::Open));
             closed
         });
-        !(modal.inner || modal.should_close())
+        !(is_over || is_left)
     }
 
     fn cards_ui(&self, ui: &mut egui::Ui, memory: &UserMemory) -> Option<String> {
@@ -275,6 +274,9 @@ impl Card {
         let label = format!("Open {}", self.title);
         let info = || WidgetInfo::labeled(WidgetType::Button, true, &label);
         card.response.widget_info(info);
+        if self.kind == Kind::ALL[0] {
+            take_first_focus(&card.response);
+        }
         card.response.clicked()
     }
 

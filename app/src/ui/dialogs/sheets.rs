@@ -4,14 +4,18 @@
 //! In: what is to be said or asked. Out: whether the sheet is still open, and the answer as a
 //! request.
 
+use crate::ui::dialogs::dialog::dialog_ui;
 use crate::ui::request::{Request, Sheet};
 use crate::ui::shortcuts::{GESTURES, SHORTCUTS};
 use crate::ui::theme::Palette;
-use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea};
+use crate::ui::widgets::focus::take_first_focus;
+use bevy_egui::egui::{self, Key, RichText, ScrollArea};
 use std::path::Path;
 
 /// Height of what stands round the content of a sheet, with some air [points].
 const AROUND_CONTENT: f32 = 140.0;
+/// How far an arrow scrolls [points].
+const LINE: f32 = 40.0;
 
 /// Draws `sheet`; false once it is closed.
 pub fn sheet_ui(ctx: &egui::Context, sheet: Sheet) -> bool {
@@ -91,17 +95,19 @@ fn question_ui<const N: usize>(
     answers: [(&str, Option<Request>); N],
     out: &mut Vec<Request>,
 ) -> bool {
-    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
-    let modal = Modal::new(Id::new(question)).frame(frame).show(ctx, |ui| {
-        ui.set_width(460.0_f32.min(0.9 * ui.ctx().content_rect().width()));
+    let (answered, left) = dialog_ui(ctx, question, 460.0, |ui| {
         ui.heading(question);
         ui.add_space(4.0);
         ui.label(text);
         ui.add_space(8.0);
         let mut answered = false;
         ui.horizontal(|ui| {
-            for (name, answer) in answers {
-                if ui.button(name).clicked() {
+            for (index, (name, answer)) in answers.into_iter().enumerate() {
+                let button = ui.button(name);
+                if index == 0 {
+                    take_first_focus(&button);
+                }
+                if button.clicked() {
                     out.extend(answer);
                     answered = true;
                 }
@@ -109,7 +115,7 @@ fn question_ui<const N: usize>(
         });
         answered
     });
-    !(modal.inner || modal.should_close())
+    !(answered || left)
 }
 
 /// How long ago something was, in words.
@@ -129,9 +135,7 @@ fn modal_ui(
     width: f32,
     content: impl FnOnce(&mut egui::Ui),
 ) -> bool {
-    let frame = egui::Frame::window(&ctx.style_of(ctx.theme()));
-    let modal = Modal::new(Id::new(title)).frame(frame).show(ctx, |ui| {
-        ui.set_width(width.min(0.9 * ui.ctx().content_rect().width()));
+    let (closed, left) = dialog_ui(ctx, title, width, |ui| {
         ui.heading(title);
         ui.add_space(4.0);
         // The title above and the button below are always in the window.
@@ -140,11 +144,36 @@ fn modal_ui(
             .id_salt(title)
             .max_height(height)
             .min_scrolled_height(height)
-            .show(ui, content);
+            .show(ui, |ui| {
+                content(ui);
+                scroll_by_keys(ui, height);
+            });
         ui.add_space(4.0);
-        ui.button("Close").clicked()
+        let close = ui.button("Close");
+        take_first_focus(&close);
+        close.clicked()
     });
-    !(modal.inner || modal.should_close())
+    !(closed || left)
+}
+
+/// Scrolls the text in `ui`, of which this `height` [points] is seen, by the keys that do so
+/// elsewhere.
+fn scroll_by_keys(ui: &egui::Ui, height: f32) {
+    let keys = [
+        (Key::ArrowDown, LINE),
+        (Key::ArrowUp, -LINE),
+        (Key::PageDown, height - LINE),
+        (Key::PageUp, LINE - height),
+        (Key::End, f32::MAX),
+        (Key::Home, f32::MIN),
+    ];
+    let pressed = |(key, _): &&(Key, f32)| ui.input(|input| input.key_pressed(*key));
+    if let Some((_, distance)) = keys.iter().find(pressed) {
+        let (text, seen) = (ui.min_rect(), ui.clip_rect());
+        let [above, below] = [seen.top() - text.top(), text.bottom() - seen.bottom()];
+        let way = distance.clamp(-above.max(0.0), below.max(0.0));
+        ui.scroll_with_delta(egui::vec2(0.0, -way));
+    }
 }
 
 fn shortcuts_ui(ui: &mut egui::Ui) {

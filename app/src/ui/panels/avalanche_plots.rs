@@ -10,6 +10,7 @@ use crate::simulation::Simulation;
 use crate::ui::panel::{Panel, has_bed};
 use crate::ui::playback::{Way, seek, to_avalanche};
 use crate::ui::plots::axes::height_of;
+use crate::ui::plots::labels::{LabelSide, PlotLabel};
 use crate::ui::plots::run_curves::{Curves, change_times, halves_ui};
 use crate::ui::plots::time_plot::{TimePlot, moment_ui, size_of_plots};
 use crate::ui::plots::time_window::{TimeWindow, clicked_time, near_start, per_point};
@@ -18,15 +19,13 @@ use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use crate::ui::words::run_names::RunNames;
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, Align2, RichText, Stroke, WidgetInfo, WidgetType};
-use egui_plot::{HLine, LineStyle, MarkerShape, PlotPoint, PlotUi, Points, Text, VLine};
+use bevy_egui::egui::{self, Stroke, WidgetInfo, WidgetType};
+use egui_plot::{HLine, LineStyle, MarkerShape, PlotUi, Points, VLine};
 use grainfall::measure::{Avalanche, Measure, NON_RIGID_TEMPERATURE, Series};
 use std::ops::RangeInclusive;
 
 /// Least distance between two labels of avalanches, in columns of pixels.
 const BETWEEN_LABELS: f64 = 46.0;
-/// How far above its avalanche's start a label stands, as a share of the plot's height.
-const LABEL_LIFT: f64 = 0.035;
 /// Smallest height of the θ plot [°], so that noise at rest does not fill it.
 const SMALLEST_ANGLE_SPAN: f64 = 2.0;
 /// Smallest height of the Tg plot with a logarithmic axis, in powers of ten.
@@ -151,7 +150,8 @@ impl AvalanchePlots {
         let palette = Palette::of(ui.visuals());
         let window = self.window.window(curves.series.time(), curves.shown);
         let marks = AvalancheMarks::within(curves, &window, columns, palette);
-        let angle = angle_curve(curves, &window, columns, palette);
+        let mut angle = angle_curve(curves, &window, columns, palette);
+        angle.labels = marks.drop_labels();
         let first = angle.ui(ui, &window, height, view, |plot| marks.angle_ui(plot));
         let temperature = self.temperature_curve(curves, &window, columns, palette);
         let decades = self.logarithmic;
@@ -203,6 +203,7 @@ impl AvalanchePlots {
             colour: palette.temperature,
             height: height_of(all, if decades { SMALLEST_DECADES } else { 0.0 }),
             lines,
+            labels: Vec::new(),
             decades,
             unit: "m²/s²",
             measure,
@@ -235,6 +236,7 @@ fn angle_curve(
         colour: palette.angle,
         height: height_of(lines.points(), SMALLEST_ANGLE_SPAN),
         lines,
+        labels: Vec::new(),
         decades: false,
         unit: "°",
         measure: Measure::SurfaceAngle,
@@ -300,16 +302,18 @@ impl<'a> AvalancheMarks<'a> {
                 .radius(4.5)
                 .color(self.palette.minimum),
         );
-        let lift = LABEL_LIFT * plot.plot_bounds().height();
-        for avalanche in labelled(self.avalanches, self.between_labels) {
-            plot.text(self.drop_label(avalanche, lift));
-        }
     }
 
-    fn drop_label(&self, avalanche: &Avalanche, lift: f64) -> Text {
-        let at = PlotPoint::new(avalanche.start, avalanche.theta_m * DEGREES + lift);
-        let drop = RichText::new(format!("{:.1}°", avalanche.drop() * DEGREES)).small();
-        Text::new("Δθ", at, drop.color(self.palette.maximum)).anchor(Align2::CENTER_BOTTOM)
+    /// How far the surface fell in each avalanche, the largest first.
+    fn drop_labels(&self) -> Vec<PlotLabel> {
+        let label = |avalanche: &Avalanche| PlotLabel {
+            text: format!("{:.1}°", avalanche.drop() * DEGREES),
+            at: [avalanche.start, avalanche.theta_m * DEGREES],
+            colour: self.palette.maximum,
+            side: LabelSide::Above,
+        };
+        let labelled = labelled(self.avalanches, self.between_labels).into_iter();
+        labelled.map(label).collect()
     }
 
     fn temperature_ui(&self, plot: &mut PlotUi, decades: bool) {

@@ -2,7 +2,8 @@
 
 use crate::ui::panel::is_column;
 use grainfall::lab::{RunView, SMALLEST_DROP};
-use grainfall::measure::{Summary, results, summarise};
+use grainfall::measure::{Series, Summary, results, summarise};
+use std::borrow::Cow;
 
 /// Averages are remade after this many new samples, half a simulated second. Results of a column
 /// are remade with every sample.
@@ -21,12 +22,18 @@ struct Key {
     run: u32,
     samples: usize,
     from: f64,
+    until: f64,
 }
 
 impl Averages {
     /// Averages over `simulation` from a time [s] on, or the results of its column, remade when
     /// enough has been added.
     pub fn over(&mut self, simulation: &RunView, from: f64) -> &Summary {
+        self.between(simulation, from, f64::INFINITY)
+    }
+
+    /// The same, `until` another time [s].
+    pub fn between(&mut self, simulation: &RunView, from: f64, until: f64) -> &Summary {
         let series = simulation.series();
         let between = if is_column(simulation) {
             1
@@ -38,14 +45,29 @@ impl Averages {
             run: simulation.past().number,
             samples: series.len() / between,
             from,
+            until,
         };
         if self.made.as_ref().is_some_and(|(made, _)| *made != key) {
             self.made = None;
         }
-        let make = || match simulation.world() {
-            Some(world) => (key, results(series, world, from, SMALLEST_DROP)),
-            None => (key, summarise(series, from, SMALLEST_DROP)),
+        let make = || {
+            let series = &first(series, until);
+            match simulation.world() {
+                Some(world) => (key, results(series, world, from, SMALLEST_DROP)),
+                None => (key, summarise(series, from, SMALLEST_DROP)),
+            }
         };
         &self.made.get_or_insert_with(make).1
     }
+}
+
+/// The samples of `series` until a time [s].
+fn first(series: &Series, until: f64) -> Cow<'_, Series> {
+    let count = series.time().partition_point(|time| *time <= until);
+    if count == series.len() {
+        return Cow::Borrowed(series);
+    }
+    let mut first = Series::default();
+    first.copy_first(series, count);
+    Cow::Owned(first)
 }

@@ -9,13 +9,14 @@ use crate::ui::panel::{Panel, has_bed};
 use crate::ui::panels::averages::Averages;
 use crate::ui::request::Request;
 use crate::ui::widgets::button::button_unless_ui;
+use crate::ui::widgets::combo::list_ui;
 use crate::ui::widgets::value_row::{ValueRow, value_ui};
 use crate::ui::words::names::value_in_words;
 use crate::ui::words::number;
 use crate::ui::words::run_names::half_title;
 use crate::ui::words::symbol;
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, RichText};
 use grainfall::lab::Half;
 use grainfall::measure::{LEFT_OUT, Measure, ResultKey, RunQuantity, Summary, difference_in_words};
 use grainfall::parameters::{Kind, Parameter, ParameterInfo, Preset, Value};
@@ -171,19 +172,16 @@ fn choice_ui(ui: &mut egui::Ui, list: &[&ParameterInfo], chosen: &mut Parameter)
     let before = chosen.clone();
     let label = |info: &ParameterInfo| number::capitalised(&info.label);
     let present = list.iter().find(|info| info.parameter == *chosen);
-    let response = egui::ComboBox::from_id_salt("compared")
+    let parameters = egui::ComboBox::from_id_salt("compared")
         .selected_text(present.map_or_else(String::new, |info| label(info)))
         .width(ui.available_width() - 8.0)
-        .height(360.0)
-        .show_ui(ui, |ui| {
-            for info in list {
-                ui.selectable_value(chosen, info.parameter.clone(), label(info))
-                    .on_hover_text(info.row().description);
-            }
-        })
-        .response;
-    response
-        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Parameter to compare"));
+        .height(360.0);
+    list_ui(ui, "Parameter to compare", parameters, |ui| {
+        for info in list {
+            ui.selectable_value(chosen, info.parameter.clone(), label(info))
+                .on_hover_text(info.row().description);
+        }
+    });
     *chosen != before
 }
 

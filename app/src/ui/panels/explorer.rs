@@ -46,9 +46,14 @@ impl Default for Explorer {
     }
 }
 
+impl Explorer {
+    /// What stands over it.
+    pub const TITLE: &'static str = "Any quantity";
+}
+
 impl Panel for Explorer {
     fn title(&self) -> &'static str {
-        "Any quantity"
+        Self::TITLE
     }
 
     fn choices(&self) -> String {

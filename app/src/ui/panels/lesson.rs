@@ -9,10 +9,11 @@ use crate::ui::request::{LessonAct, Request};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::widgets::field;
+use crate::ui::widgets::focus::is_entered;
 use crate::ui::widgets::touch;
 use crate::ui::words::names::{parameter_name, value_in_words};
 use crate::view::{CameraRequest, ColourBy, StandardView, ViewSettings};
-use bevy_egui::egui::{self, Key, RichText, ScrollArea, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, RichText, ScrollArea, WidgetInfo, WidgetType};
 use grainfall::lesson::{
     Change, Lesson, LessonLook, LessonStep, LessonUnderWay, LessonView, Prediction, Question,
     QuestionKind, Seen, Shown, Stage, Touch,
@@ -280,7 +281,7 @@ fn number_ui(
             edit.request_focus();
         }
         ui.label(unit.name);
-        entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        entered = is_entered(&edit);
         entered |= ui.button("Predict").clicked();
     });
     let number = field::read(typed, unit.name);

@@ -34,9 +34,14 @@ const VEIL_HINT: &str = "Tg of the grains in each cell of the cross-section, in 
 #[derive(Default)]
 pub struct PictureSettings;
 
+impl PictureSettings {
+    /// What stands over it.
+    pub const TITLE: &'static str = "Picture";
+}
+
 impl Panel for PictureSettings {
     fn title(&self) -> &'static str {
-        "Picture"
+        Self::TITLE
     }
 
     fn ui(

@@ -89,6 +89,8 @@ const ENERGIES: [(Measure, &str); 9] = [
 pub struct Results {
     /// Averages begin at this time [s].
     from: f64,
+    /// They end at this one [s]; with the newest sample where nobody chose an end.
+    until: Option<f64>,
     averages: Averages,
 }
 
@@ -132,22 +134,41 @@ impl Panel for Results {
 
 impl Results {
     fn averages_ui(&mut self, ui: &mut egui::Ui, run: &RunView) {
-        let field = Field {
-            label: "Averages from",
-            range: 0.0..=f64::INFINITY,
-            unit: "s",
-            decimals: 0..=1,
-            is_whole: false,
-            speed: 0.1,
-            size: None,
-        };
-        let typed = ui.horizontal(|ui| {
-            ui.label(RichText::new(field.label).strong());
-            field.ui(ui, &mut self.from)
+        let newest = run.series().time().last().copied().unwrap_or(0.0);
+        let mut until = self.until.unwrap_or(newest);
+        let ends = [
+            (
+                "Averages from",
+                "Only samples from this time on count. The paper leaves out the first 20 s.",
+                &mut self.from,
+            ),
+            (
+                "until",
+                "Only samples until this time count; until the newest one, as long as none is chosen or a later one is.",
+                &mut until,
+            ),
+        ];
+        ui.horizontal_wrapped(|ui| {
+            for (label, hint, time) in ends {
+                let field = Field {
+                    label,
+                    range: 0.0..=f64::INFINITY,
+                    unit: "s",
+                    decimals: 0..=1,
+                    is_whole: false,
+                    speed: 0.1,
+                    size: None,
+                };
+                ui.label(RichText::new(label).strong());
+                let typed = field.ui(ui, time);
+                slip_ui(ui, &typed.on_hover_text(hint));
+            }
         });
-        let hint = "Only samples from this time on count. The paper leaves out the first 20 s.";
-        slip_ui(ui, &typed.inner.on_hover_text(hint));
-        let summary = self.averages.over(run, self.from);
+        if until != self.until.unwrap_or(newest) {
+            self.until = Some(until).filter(|until| *until < newest);
+        }
+        let until = self.until.unwrap_or(f64::INFINITY);
+        let summary = self.averages.between(run, self.from, until);
         summary_ui(ui, summary, &AVERAGES);
         let lacks_error = |key: &ResultKey| {
             let mean = summary.estimate(*key);

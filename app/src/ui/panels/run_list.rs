@@ -7,27 +7,36 @@ use crate::simulation::Simulation;
 use crate::ui::plots::run_curves::line_sample_ui;
 use crate::ui::request::Request;
 use crate::ui::theme::{COMPARED_DASH, Palette, dash};
+use crate::ui::widgets::focus::begin_to_type;
 use crate::ui::words::names::{parameter_name, value_in_words};
 use crate::ui::words::number;
 use crate::ui::words::run_names::RunNames;
 use bevy_egui::egui::{self, Key, RichText, Stroke, WidgetInfo, WidgetType};
 use grainfall::lab::{Half, RunView};
-use grainfall::run::{Branch, Command};
+use grainfall::run::{Branch, BranchNames, Command};
 
 /// Why kept runs have to wait.
 const OF_ONE_RUN: &str = "Two runs stand side by side, and it would take the place of one of them: end the comparison first";
 /// How a name is changed.
 const RENAME: &str = "Double-click, or ✏, to call it something else";
+/// Width of the field in which it is, in points.
+const FIELD_WIDTH: f32 = 190.0;
+/// Room for the pencil behind a name, in points.
+const ROOM_FOR_PENCIL: f32 = 36.0;
 
 /// The list.
 #[derive(Default)]
 pub struct RunList {
     edited: Option<Edited>,
+    /// The run of which the pencil takes the focus again, after its name was changed by keys.
+    left: Option<Place>,
 }
 
 /// A name that is being changed.
 struct Edited {
     run: Place,
+    /// What it was before.
+    before: String,
     text: String,
     /// Whether the field has not been drawn yet.
     is_new: bool,
@@ -75,7 +84,7 @@ impl RunList {
             Half::Right => (Some(COMPARED_DASH), palette.compared),
         };
         let number = simulation.half(half).past().number;
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             line_sample_ui(ui, dash, Stroke::new(1.8, colour));
             let hint = "The run that is shown";
             self.name_ui(ui, Place { half, number }, names.present(half), hint, out);
@@ -101,7 +110,8 @@ impl RunList {
                 number: branch.number,
             };
             self.name_ui(ui, place, name, &describe(branch, simulation), out);
-            ui.weak(format!("to {}", number::moment(branch.end.time)));
+            let until = RichText::new(format!("to {}", number::moment(branch.end.time)));
+            ui.add(egui::Label::new(until.weak()).extend());
             let buttons = [
                 ("Show", "Take this run up again", Command::Return(index)),
                 ("Forget", "Keep this run no longer", Command::Forget(index)),
@@ -132,14 +142,27 @@ impl RunList {
         if self.edited.as_ref().is_some_and(|edited| edited.run == run) {
             return self.field_ui(ui, out);
         }
-        let label = egui::Label::new(name).sense(egui::Sense::click());
-        let label = ui.add(label).on_hover_text(format!("{hint}\n{RENAME}"));
+        let label = egui::Label::new(name)
+            .sense(egui::Sense::click())
+            .truncate();
+        // A long one leaves room for what stands behind it.
+        let room = (ui.available_size_before_wrap().x - ROOM_FOR_PENCIL).max(ROOM_FOR_PENCIL);
+        let label = ui.scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(label.show_tooltip_when_elided(false))
+        });
+        let label = (label.inner).on_hover_text(format!("{name}\n{hint}\n{RENAME}"));
         let pencil = ui.add(egui::Button::new("✏").small().frame(false));
         let action = format!("Rename {name}");
         pencil.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &action));
+        if self.left == Some(run) {
+            pencil.request_focus();
+            self.left = None;
+        }
         if label.double_clicked() || pencil.on_hover_text(RENAME).clicked() {
             self.edited = Some(Edited {
                 run,
+                before: name.to_owned(),
                 text: name.to_owned(),
                 is_new: true,
             });
@@ -152,25 +175,44 @@ impl RunList {
         let Some(edited) = &mut self.edited else {
             return;
         };
-        let field = egui::TextEdit::singleline(&mut edited.text)
+        let mut field = edited.ui(ui);
+        if std::mem::take(&mut edited.is_new) {
+            begin_to_type(ui, &mut field, &edited.text);
+        } else if field.response.response.lost_focus() {
+            let is_left = ui.input(|input| input.key_pressed(Key::Escape));
+            let is_by_key = is_left || ui.input(|input| input.key_pressed(Key::Enter));
+            self.left = is_by_key.then_some(edited.run);
+            if let Some(Edited {
+                run,
+                before,
+                text: name,
+                ..
+            }) = self.edited.take()
+                && !is_left
+                && name != before
+            {
+                let Place { half, number } = run;
+                out.push(Request::NameRun { half, number, name });
+            }
+        }
+    }
+}
+
+impl Edited {
+    /// Draws the field of the name.
+    fn ui(&mut self, ui: &mut egui::Ui) -> egui::text_edit::TextEditOutput {
+        let field = egui::TextEdit::singleline(&mut self.text)
             .hint_text("by what differs")
-            .desired_width(150.0);
-        let response = ui.add(field);
-        let text = edited.text.clone();
-        response.widget_info(|| {
+            .char_limit(BranchNames::LONGEST)
+            .desired_width(FIELD_WIDTH.min(ui.available_size_before_wrap().x - ROOM_FOR_PENCIL));
+        let field = field.show(ui);
+        let text = self.text.clone();
+        field.response.response.widget_info(|| {
             let mut info = WidgetInfo::text_edit(true, "", &text, "by what differs");
             info.label = Some("Name of the run".into());
             info
         });
-        if std::mem::take(&mut edited.is_new) {
-            response.request_focus();
-        } else if response.lost_focus() {
-            let (Place { half, number }, name) = (edited.run, std::mem::take(&mut edited.text));
-            if !ui.input(|input| input.key_pressed(Key::Escape)) {
-                out.push(Request::NameRun { half, number, name });
-            }
-            self.edited = None;
-        }
+        field
     }
 }
 

@@ -3,25 +3,21 @@
 //! In: the curves and the part of the run in view. Out: the plot, and what the pointer did on it.
 
 use crate::ui::plots::axes::{SPARSE_X, SPARSE_Y, round_marks, tick, tidy};
+use crate::ui::plots::labels::{LabelSide, PlotLabel, labels_ui};
 use crate::ui::plots::run_curves::{Lines, compared_line};
 use crate::ui::theme::{Palette, dash};
 use crate::ui::words::number;
 use crate::view::ViewSettings;
-use bevy_egui::egui::{self, Align2, Color32, RichText, Stroke, Vec2b};
-use egui_plot::{
-    AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotUi, Text, VLine,
-};
+use bevy_egui::egui::{self, Color32, RichText, Stroke, Vec2b};
+use egui_plot::{AxisHints, HoverPosition, Line, LineStyle, Plot, PlotBounds, PlotUi, VLine};
 use grainfall::measure::Measure;
 use std::ops::RangeInclusive;
 
 /// Room for half of the last label of the time axis.
 const ROOM_AT_THE_RIGHT: f32 = 14.0;
-/// Height of the name of a kept run, as a share of the plot.
-const LABEL_HEIGHT: f64 = 0.1;
-/// Width of a letter of it, about, in points.
-const LETTER_WIDTH: f32 = 5.6;
-/// Longest name on a plot, in letters; the pointer tells the rest.
-const LONGEST_NAME: usize = 22;
+/// A curve of a kept run that is shorter than this has no name: there is nothing to be named, in
+/// points across.
+const SHORTEST_NAMED: f64 = 6.0;
 /// Width of the line whose mark in the picture is under the pointer, in points.
 const LIT_WIDTH: f32 = 3.4;
 /// Room for the value of a run beside the title, in points.
@@ -39,6 +35,8 @@ pub struct TimePlot {
     pub colour: Color32,
     /// Its lines.
     pub lines: Lines,
+    /// Texts beside its marks, the most important first.
+    pub labels: Vec<PlotLabel>,
     /// The range of the vertical axis.
     pub height: RangeInclusive<f64>,
     /// Whether its numbers are powers of ten.
@@ -92,11 +90,13 @@ impl TimePlot {
         let width = if is_lit { LIT_WIDTH } else { 1.7 };
         let line = Line::new(name, own).color(self.colour).width(width);
         let compared = compared.map(|points| compared_line("right", points, palette));
+        let mut labels = self.labels;
+        let shortest = SHORTEST_NAMED * (window.end() - window.start()) / f64::from(room.x);
+        labels.extend(names(&kept, window, shortest, palette.kept));
         let shown = plot.show(ui, move |plot| {
             plot.set_plot_bounds(bounds);
-            let mut labels = Vec::new();
             for (index, (name, points)) in kept.into_iter().enumerate() {
-                kept_ui(plot, index, &name, points, palette.kept, &mut labels);
+                plot.line(kept_line(index, name, points, palette.kept));
             }
             plot.line(line);
             if let Some(line) = compared {
@@ -104,6 +104,7 @@ impl TimePlot {
             }
             marks(plot);
         });
+        labels_ui(ui, &shown.transform, &labels);
         if shown.response.hovered() {
             view.lit_by_plot = Some(measure);
         }
@@ -183,62 +184,34 @@ fn head_ui(
     }
 }
 
-/// A kept run as a dashed line with its name at the end, below the `labels` that stand there already.
-fn kept_ui(
-    plot: &mut PlotUi,
-    index: usize,
-    name: &str,
-    points: Vec<[f64; 2]>,
+/// A kept run as a dashed line.
+fn kept_line<'a>(index: usize, name: String, points: Vec<[f64; 2]>, colour: Color32) -> Line<'a> {
+    let length = dash(index);
+    let line = Line::new(name, points).color(colour).width(1.2);
+    line.style(LineStyle::Dashed { length })
+}
+
+/// The names of kept runs where their lines end in `window` [s]; of lines that are seen of less than
+/// `shortest` [s], none.
+fn names(
+    kept: &[(String, Vec<[f64; 2]>)],
+    window: &RangeInclusive<f64>,
+    shortest: f64,
     colour: Color32,
-    labels: &mut Vec<[f64; 3]>,
-) {
-    let Some([time, value]) = points.last().copied() else {
-        return;
+) -> Vec<PlotLabel> {
+    let name = |(name, points): &(String, Vec<[f64; 2]>)| {
+        let begin = points.first()?[0].max(*window.start());
+        // One sample beyond the window is there to lead the line to its edge.
+        let end = points.last()?[0].min(*window.end());
+        let [_, value] = points.iter().rfind(|[time, _]| *time <= end)?;
+        (end - begin >= shortest).then(|| PlotLabel {
+            text: name.clone(),
+            at: [end, *value],
+            colour,
+            side: LabelSide::End,
+        })
     };
-    plot.line(
-        Line::new(name, points)
-            .color(colour)
-            .width(1.2)
-            .style(LineStyle::Dashed {
-                length: dash(index),
-            }),
-    );
-    let shown = shortened(name);
-    let bounds = plot.plot_bounds();
-    let share = LETTER_WIDTH * shown.chars().count() as f32 / plot.transform().frame().width();
-    let width = f64::from(share) * bounds.width();
-    // Right-aligned at the end of its line, where it is not cut off on the left.
-    let end = time.max(bounds.min()[0] + width).min(bounds.max()[0]);
-    let place = free_place([end, value, width], LABEL_HEIGHT * bounds.height(), labels);
-    labels.push(place);
-    let at = PlotPoint::new(place[0], place[1]);
-    let label = RichText::new(shown).small().color(colour);
-    plot.text(Text::new(name, at, label).anchor(Align2::RIGHT_BOTTOM));
-}
-
-/// `name` as far as a plot has room for it.
-fn shortened(name: &str) -> String {
-    if name.chars().count() <= LONGEST_NAME {
-        return name.to_owned();
-    }
-    let kept: String = name.chars().take(LONGEST_NAME - 1).collect();
-    format!("{}…", kept.trim_end())
-}
-
-/// Where a label that belongs at `wanted` (its right end, its height, its width) stands without lying
-/// over others, each label so `high`.
-fn free_place(wanted: [f64; 3], high: f64, others: &[[f64; 3]]) -> [f64; 3] {
-    let is_taken = |place: &[f64; 3]| {
-        let covers = |other: &[f64; 3]| {
-            let beside = place[0] - place[2] < other[0] && other[0] - other[2] < place[0];
-            beside && (other[1] - place[1]).abs() < 0.99 * high
-        };
-        others.iter().any(covers)
-    };
-    let below = |rows: usize| [wanted[0], wanted[1] - rows as f64 * high, wanted[2]];
-    // Each of them may cover two rows.
-    let mut places = (0..=2 * others.len()).map(below);
-    places.find(|place| !is_taken(place)).unwrap_or(wanted)
+    kept.iter().filter_map(name).collect()
 }
 
 /// A mark at the moment shown.
@@ -281,29 +254,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_runs_that_end_together_stand_below_each_other() {
-        // A tenth of a plot that is 10 high, and names of 3.
-        let (high, width) = (1.0, 3.0);
-        let mut labels = Vec::new();
-        for value in [5.0, 5.1, 4.9, 9.0] {
-            let place = free_place([18.0, value, width], high, &labels);
-            let is_free = |other: &[f64; 3]| (place[1] - other[1]).abs() >= 0.99;
-            assert!(labels.iter().all(is_free), "{place:?} {labels:?}");
-            labels.push(place);
-        }
-        let kept = (labels[0], labels[3]);
-        assert_eq!(kept, ([18.0, 5.0, width], [18.0, 9.0, width]));
-        for free in [[14.9, 5.0, width], [2.0, 5.0, 1.0]] {
-            assert_eq!(free_place(free, high, &labels), free);
-        }
-        // A long name reaches over to the others.
-        assert!(free_place([21.0, 5.0, 4.0], high, &labels)[1] < 5.0);
-    }
-
-    #[test]
-    fn long_names_are_cut_on_a_plot() {
-        assert_eq!(shortened("μ 0.8 from 3.20 s"), "μ 0.8 from 3.20 s");
-        let long = shortened("glycerol from 3.20 s, N 470");
-        assert_eq!(long, "glycerol from 3.20 s,…");
+    fn a_run_of_which_no_curve_is_seen_has_no_name() {
+        let line = |name: &str, times: &[f64]| {
+            let points = times.iter().map(|time| [*time, 0.4]).collect();
+            (name.to_owned(), points)
+        };
+        let kept = [
+            line("not begun", &[]),
+            line("a sample", &[0.0]),
+            line("a step", &[0.0, 2e-5]),
+            line("before it", &[0.0, 4.0, 9.9]),
+            line("in it", &[0.0, 12.0, 15.0]),
+            line("beyond it", &[12.0, 29.0, 31.0]),
+        ];
+        let named = |window: RangeInclusive<f64>| -> Vec<(String, f64)> {
+            let labels = names(&kept, &window, 0.2, Color32::WHITE).into_iter();
+            labels.map(|label| (label.text, label.at[0])).collect()
+        };
+        let expected = [("in it", 15.0), ("beyond it", 30.0)];
+        assert_eq!(
+            named(10.0..=30.0),
+            expected.map(|(name, time)| (name.to_owned(), time))
+        );
+        let expected = [("before it", 1.0), ("in it", 1.0)];
+        assert_eq!(
+            named(0.0..=1.0),
+            expected.map(|(name, time)| (name.to_owned(), time))
+        );
     }
 }

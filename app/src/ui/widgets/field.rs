@@ -154,6 +154,30 @@ pub fn read(text: &str, unit: &str) -> Option<f64> {
     plain.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
+/// The number in `text`, which `what` is.
+///
+/// # Errors
+/// Why it is none that can be, in a sentence.
+pub fn number_of(
+    what: &str,
+    text: &str,
+    range: &RangeInclusive<f64>,
+    unit: &str,
+) -> Result<f64, String> {
+    let expected = between(range, unit);
+    match read(text, unit) {
+        None => Err(format!(
+            "{what}: “{}” is not a number. Expected: {expected}",
+            text.trim()
+        )),
+        Some(number) if !range.contains(&number) => Err(format!(
+            "{what}: {} cannot be. Expected: {expected}",
+            text.trim()
+        )),
+        Some(number) => Ok(number),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,7 @@
 
 pub mod button;
 pub mod combo;
+pub mod elided;
 pub mod field;
 pub mod focus;
 pub mod row_button;

@@ -3,7 +3,8 @@
 //!
 //! In: the simulation. Out: a name for each run, no two alike, for plots, lists, exports and the
 //! picture. A name that a person gave wins; else a run is called by the values of the parameters in
-//! which the runs differ, a value that came later with its moment.
+//! which the runs differ, a value that came later with its moment. Of runs that do not differ the
+//! first is called so, the others by their numbers: `run 2`.
 
 use crate::simulation::Simulation;
 use crate::ui::words::names::{parameter_name, value_in_words};
@@ -69,6 +70,12 @@ impl RunNames {
         }
     }
 
+    /// Whether there is more than one run, or one that has a name of its own: then it is worth being
+    /// told.
+    pub fn are_told(&self) -> bool {
+        self.halves.len() + self.kept.len() > 1 || self.present(Half::Left) != THIS_RUN
+    }
+
     /// What the present run in `half` is called.
     pub fn present(&self, half: Half) -> &str {
         (self.halves.get(half.index())).map_or(THIS_RUN, String::as_str)
@@ -77,6 +84,8 @@ impl RunNames {
 
 /// What a run is called that is alone.
 const THIS_RUN: &str = "this run";
+/// What a run is called in which nothing was changed, among those in which much was.
+const UNCHANGED: &str = "the scene unchanged";
 
 /// What one of two runs side by side is called.
 pub fn half_title(simulation: &Simulation, half: Half) -> String {
@@ -110,8 +119,14 @@ struct Differing {
 fn labels(runs: &[Unnamed], run: &RunView) -> Vec<String> {
     let courses: Vec<Courses> = runs.iter().map(|own| Courses::of(own, run)).collect();
     let differing = differing(&courses, run);
+    let unnamed = |index: &usize| runs[*index].given.is_none();
+    let is_again = |index: usize| {
+        let mut before = (0..index).filter(unnamed);
+        before.any(|other| courses[other].are_those_of(&courses[index], run))
+    };
     let own = |index: usize, is_long: bool| match runs[index].given {
         Some(given) => given.to_owned(),
+        None if is_again(index) => String::new(),
         None => courses[index].label(&differing, run, is_long),
     };
     let short: Vec<String> = (0..runs.len()).map(|index| own(index, false)).collect();
@@ -126,7 +141,8 @@ fn labels(runs: &[Unnamed], run: &RunView) -> Vec<String> {
     unlike((0..runs.len()).map(told).collect(), runs)
 }
 
-/// The `labels` with the number of the run behind those that another run has, too.
+/// The `labels` with the number of the run behind those that another run has, too, and in the place
+/// of those that say nothing.
 fn unlike(labels: Vec<String>, runs: &[Unnamed]) -> Vec<String> {
     let mut seen = BTreeSet::new();
     let mut own = |(label, run): (String, &Unnamed)| {
@@ -164,6 +180,12 @@ impl Courses {
         own.unwrap_or_else(|| begin(parameter, run))
     }
 
+    /// Whether all parameters have the same values at the same times in `other`.
+    fn are_those_of(&self, other: &Self, run: &RunView) -> bool {
+        let mut changed = self.0.keys().chain(other.0.keys());
+        changed.all(|parameter| self.course(parameter, run) == other.course(parameter, run))
+    }
+
     /// The last value of `parameter`.
     fn last(&self, parameter: &Parameter, run: &RunView) -> Option<f64> {
         let course = self.course(parameter, run);
@@ -184,7 +206,7 @@ impl Courses {
             differing_ones.iter().filter(was_changed).collect()
         };
         if told.is_empty() && !differing_ones.is_empty() {
-            return "unchanged".to_owned();
+            return UNCHANGED.to_owned();
         }
         let parts = told.iter().take(MOST);
         let parts = parts.map(|parameter| self.part(parameter, differing, run, is_long));

@@ -173,6 +173,15 @@ fn a_film_that_is_recorded_can_be_ended_or_cancelled() {
     harness.run_steps(2);
     let orders = [ScreenshotOrder::EndFilm, ScreenshotOrder::CancelFilm].map(Request::Screenshot);
     assert_eq!(harness.state().1, orders);
+    harness.state_mut().0 = FilmState::Replaying {
+        pictures: 3,
+        all: 12,
+    };
+    harness.run_steps(2);
+    harness.get_by_label("Filming what is recorded: 3 of 12 pictures");
+    let progress = harness.get_by_role_and_label(Role::ProgressIndicator, "Film");
+    assert_eq!(progress.accesskit_node().numeric_value(), Some(0.25));
+    harness.get_by_label("Stop and save");
     harness.state_mut().0 = FilmState::Writing(3);
     harness.run_steps(2);
     harness.get_by_label("Writing the film: 3 pictures left");

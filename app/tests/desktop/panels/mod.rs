@@ -2,6 +2,7 @@
 //! value asks for.
 
 mod bars;
+mod capture;
 mod dialogs;
 mod keys;
 mod lesson;
@@ -10,5 +11,6 @@ mod parameters;
 mod picture;
 mod plots;
 mod remembered;
+mod results;
 mod room;
 mod start_values;

@@ -9,12 +9,13 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use grainfall::measure::{Avalanche, Series};
 use grainfall::output::{FLOW, flow_table};
 use grainfall::recording::Recording;
-use grainfall::run::Command;
+use grainfall::run::{Branch, Command};
 use grainfall::runner::{self, Job};
 use grainfall::scene::Scene;
 use grainfall_app::simulation::Simulation;
 use grainfall_app::ui::{AvalanchePlots, Curves, Request};
 use grainfall_app::view::ViewSettings;
+use std::sync::Arc;
 
 /// Ten thousand samples of a sawtooth, with its avalanches.
 struct Sawtooth {
@@ -98,6 +99,94 @@ fn plots_without_samples_draw_nothing_and_do_not_fail() {
     });
     harness.run_steps(3);
     harness.get_by_label("Surface angle θ [°]");
+}
+
+/// The texts among `shapes`: what they say, where they stand, and what is seen of them.
+fn texts(shapes: &[egui::epaint::ClippedShape]) -> Vec<(String, egui::Rect, egui::Rect)> {
+    let text = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
+        Shape::Text(text) => {
+            let place = text.galley.rect.translate(text.pos.to_vec2());
+            Some((text.galley.job.text.clone(), place, clipped.clip_rect))
+        }
+        _ => None,
+    };
+    shapes.iter().filter_map(text).collect()
+}
+
+/// A run of this `number` with samples from zero until `end` [s].
+fn kept_run(name: &str, number: u32, end: f64) -> (String, Arc<Branch>) {
+    let mut series = Series::default();
+    for i in 0..=(end / 0.02).round() as u32 {
+        series.push(sample(0.02 * f64::from(i), 0.42, 1e-6));
+    }
+    let branch = Branch {
+        number,
+        series: Arc::new(series),
+        ..Branch::default()
+    };
+    (name.to_owned(), Arc::new(branch))
+}
+
+#[test]
+fn names_of_runs_are_whole_and_apart_and_a_run_of_no_length_has_none() {
+    let long = "a name of a run that nobody could read on a plot this wide";
+    let data = Sawtooth::new();
+    let mut series = Series::default();
+    for i in 0..=750 {
+        series.push(sample(f64::from(i) * 0.02, 0.45, 1e-6));
+    }
+    let kept = [
+        kept_run("not gone on", 1, 0.0),
+        kept_run("η 1.01 mPa s", 2, 12.0),
+        kept_run("μ 0.8", 3, 12.0),
+        kept_run("glycerol", 4, 0.6),
+        kept_run(long, 5, 15.0),
+        kept_run("μ 0.9 from 3.20 s", 6, 15.0),
+    ];
+    let named = [1, 2, 3, 4, 5].map(|index: usize| kept[index].0.clone());
+    for (width, scale) in [(240.0, 1.0), (400.0, 1.0), (700.0, 2.0)] {
+        let (own, kept) = (series.clone(), kept.clone());
+        let avalanches = data.avalanches.clone();
+        let mut plots = AvalanchePlots::default();
+        let mut harness = Harness::builder()
+            .with_size([width, 600.0])
+            .with_pixels_per_point(scale)
+            .build_ui(move |ui| {
+                let curves = Curves {
+                    series: &own,
+                    compared: None,
+                    avalanches: &avalanches,
+                    changes: &[],
+                    kept: &kept,
+                    shown: None,
+                };
+                plots.curves_ui(ui, &curves, &mut ViewSettings::default());
+            });
+        harness.run_steps(4);
+        let drawn = texts(&harness.output().shapes);
+        let is_name = |text: &String| named.contains(text);
+        let is_drop = |text: &String| text == "2.9°";
+        let labels: Vec<_> = (drawn.into_iter())
+            .filter(|(text, ..)| is_name(text) || is_drop(text) || text == "not gone on")
+            .collect();
+        let count = |wanted: &dyn Fn(&String) -> bool| {
+            labels.iter().filter(|(text, ..)| wanted(text)).count()
+        };
+        // On both plots.
+        assert_eq!(count(&is_name), 2 * named.len(), "{width}: {labels:?}");
+        assert_eq!(count(&|text| text == "not gone on"), 0);
+        assert!(count(&is_drop) > 2, "{width}");
+        for (index, (text, place, seen)) in labels.iter().enumerate() {
+            assert!(
+                seen.contains_rect(*place),
+                "{text} is cut: {place:?} of {seen:?}"
+            );
+            for (other, its, _) in &labels[..index] {
+                let apart = !its.shrink(0.6).intersects(place.shrink(0.6));
+                assert!(apart, "{width}: {text} {place:?} over {other} {its:?}");
+            }
+        }
+    }
 }
 
 /// Points of the longest line among `shapes`.

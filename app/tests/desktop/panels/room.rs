@@ -90,12 +90,17 @@ fn text_is_twice_as_large_in_a_window_of_four_times_the_pixels() {
         assert_eq!(harness.ctx.zoom_factor(), scale);
     }
     let entry = "As large as suits the window";
+    let sizes = "Size of text and controls";
     harness.get_by_label("View").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains(sizes).click();
     harness.run_steps(4);
     harness.get_by_label_contains("Smaller").click();
     harness.run_steps(4);
     assert_eq!(harness.ctx.zoom_factor(), 1.9);
     harness.get_by_label("View").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains(sizes).click();
     harness.run_steps(4);
     harness.get_by_label_contains(entry).click();
     harness.run_steps(4);
