@@ -84,7 +84,9 @@ fn focused(window: &Window) -> Option<(String, Rect)> {
 /// Asserts that what is called `label` has the focus and is seen with a ring round it.
 #[track_caller]
 fn assert_focused(window: &Window, label: &str) {
-    let (name, place) = focused(window).unwrap_or_else(|| panic!("nothing, not {label}"));
+    let Some((name, place)) = focused(window) else {
+        panic!("nothing, not {label}");
+    };
     assert_eq!(name, label);
     assert_seen(window, &name, place);
 }
@@ -163,7 +165,7 @@ fn every_dialog_is_opened_walked_and_left_by_keys() {
         assert_walked(&mut window, controls);
         press(&mut window, NONE, Key::Escape);
         assert!(!is_there(&window, title), "{title}");
-        assert!(focused(&window).is_none(), "{title}: as before");
+        assert_eq!(focused(&window), None, "{title}: as before");
     }
     let app = &window.state().app;
     assert_eq!(simulation(app).step(), 0);
@@ -245,7 +247,7 @@ fn a_menu_is_opened_walked_and_left_by_keys() {
         press(&mut window, NONE, Key::ArrowUp);
         press(&mut window, NONE, Key::Escape);
         assert!(!is_there(&window, "About Grainfall"));
-        assert!(focused(&window).is_none(), "who leaves a menu plays on");
+        assert_eq!(focused(&window), None, "who leaves a menu plays on");
     }
     press(&mut window, NONE, Key::F10);
     for key in [Key::Tab, Key::Tab, Key::Tab, Key::Enter] {
@@ -256,7 +258,7 @@ fn a_menu_is_opened_walked_and_left_by_keys() {
     }
     assert_walked(&mut window, &["Close"]);
     press(&mut window, NONE, Key::Enter);
-    assert!(focused(&window).is_none());
+    assert_eq!(focused(&window), None);
     // Space plays then, and opens no menu.
     press(&mut window, NONE, Key::Space);
     until(&mut window.state_mut().app, |app| {

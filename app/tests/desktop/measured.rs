@@ -102,8 +102,8 @@ pub fn pictures(
 ) -> ([Photograph; 2], [ViewSettings; 2]) {
     let mut app = App::new();
     app.add_plugins(offscreen_plugins().disable::<bevy::log::LogPlugin>())
-        .add_plugins((EguiPlugin::default(), panel_camera))
-        .add_plugins((CanvasPlugin(SIZE), ViewPlugin))
+        .add_plugins(EguiPlugin::default())
+        .add_plugins((CanvasPlugin(SIZE), ViewPlugin, panel_camera))
         .insert_resource(Pictured(world.clone()))
         .add_systems(EguiPrimaryContextPass, write_picture);
     let mut camera = OrbitCamera::default();

@@ -223,7 +223,10 @@ fn the_run_that_is_shown_is_named_above_the_timeline_and_is_read_in_every_window
             harness.run_steps(8);
             let line = harness.get_by_role_and_label(Role::Slider, "Moment shown");
             let line = line.rect();
-            assert!(line.width() > 150.0 && line.right() < size[0], "{size:?}");
+            assert!(
+                line.width() > 150.0 && line.right() < size[0],
+                "{size:?}: {line:?}"
+            );
             let label = format!("Run on the timeline: {}", given[0]);
             let name = harness.get_by_label(&label).rect();
             assert!(name.bottom() < line.top(), "{size:?}: {name:?} {line:?}");

@@ -180,9 +180,10 @@ pub fn in_the_lab(simulation: Simulation) -> Harness<'static, Window> {
 
 /// Types `text` into a field of a number: a click begins the edit, Return ends it.
 pub fn type_number<S>(harness: &mut Harness<'_, S>, label: &str, text: &str) {
-    harness
-        .get_by_role_and_label(Role::SpinButton, label)
-        .click();
+    let spin = Role::SpinButton;
+    harness.get_by_role_and_label(spin, label).scroll_to_me();
+    harness.run_steps(30);
+    harness.get_by_role_and_label(spin, label).click();
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.event(egui::Event::Text(text.to_owned()));

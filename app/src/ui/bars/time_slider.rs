@@ -37,8 +37,9 @@ pub fn timeline_ui(
             state_ui(ui, simulation, recording);
         } else {
             undo_ui(ui, simulation, out);
+            let place = Place::of(ui, simulation);
             line_ui(ui, simulation, repeat, out);
-            place_ui(ui, simulation, out);
+            place.ui(ui, simulation, out);
         }
     });
 }
@@ -192,7 +193,7 @@ fn line_ui(ui: &mut egui::Ui, simulation: &Simulation, repeat: &Repeat, out: &mu
     let mut time = times.time_at(shown.min(end.step));
     let room = match simulation.recording() {
         Some(recording) => width(ui, &state_in_words(recording, end.step)) + 24.0,
-        None => room_for_place(ui, end.time),
+        None => Place::of(ui, simulation).room(ui, end.time),
     };
     ui.spacing_mut().slider_width = (ui.available_width() - room).max(80.0);
     let slider = egui::Slider::new(&mut time, 0.0..=end.time.max(time_step)).show_value(false);
@@ -223,47 +224,78 @@ fn line_in_words(simulation: &Simulation) -> String {
     format!("{}\n{hint}", names.present(Half::Left))
 }
 
-/// Shows the newest state of the run.
-const TO_THE_NEWEST: &str = "To the newest";
+/// The least width of the line [points].
+const SHORTEST_LINE: f32 = 160.0;
 
 /// `2.04 of 17.22 s`.
 fn place_in_words(time: f64, end: f64) -> String {
     format!("{} of {}", number::moment(time), number::moment(end))
 }
 
-/// Width of the text and the button right of the line. It does not depend on the moment shown, so
-/// the line does not jump.
-fn room_for_place(ui: &egui::Ui, end: f64) -> f32 {
-    let spacing = ui.spacing();
-    let places = [end, end.min(0.1234)].map(|time| width(ui, &place_in_words(time, end)));
-    let texts = places[0].max(places[1]) + width(ui, TO_THE_NEWEST);
-    texts + 2.0 * spacing.button_padding.x + 3.0 * spacing.item_spacing.x
+/// What stands right of the line: the moment shown out of the whole run, and the way back to the
+/// newest. Where there is no room for both, the way alone; the picture tells the moment.
+#[derive(Clone, Copy)]
+enum Place {
+    MomentAndWay,
+    Way,
 }
 
-/// The moment shown out of the whole run, and the way back to the newest.
-fn place_ui(ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
-    let end = simulation.past().end;
-    if !simulation.looks_back() {
-        ui.weak("newest")
-            .on_hover_text("The newest state of the run is shown");
-        return;
+impl Place {
+    /// What there is room for in the rest of this row.
+    fn of(ui: &egui::Ui, simulation: &Simulation) -> Self {
+        let room = Self::MomentAndWay.room(ui, simulation.past().end.time);
+        if ui.available_width() < room + SHORTEST_LINE {
+            Self::Way
+        } else {
+            Self::MomentAndWay
+        }
     }
-    let Some(times) = simulation.step_times() else {
-        return;
-    };
-    let time = times.time_at(simulation.step());
-    let palette = Palette::of(ui.visuals());
-    let text = place_in_words(time, end.time);
-    ui.label(RichText::new(text).color(palette.warning))
-        .on_hover_text(
-            "An earlier moment is shown: Play shows what followed, a change begins another run",
-        );
-    let enabled = allows(simulation.status(), &Command::Seek(end.step));
-    let button = ui.add_enabled(enabled, egui::Button::new(TO_THE_NEWEST));
-    if button
-        .on_hover_text("Show the newest state (End)")
-        .clicked()
-    {
-        out.push(Request::Command(Command::Seek(end.step)));
+
+    /// What the button says.
+    fn way(self) -> &'static str {
+        match self {
+            Self::MomentAndWay => "To the newest",
+            Self::Way => "Newest",
+        }
+    }
+
+    /// Its width. It does not depend on the moment shown, so the line does not jump.
+    fn room(self, ui: &egui::Ui, end: f64) -> f32 {
+        let spacing = ui.spacing();
+        let moments = [end, end.min(0.1234)].map(|time| width(ui, &place_in_words(time, end)));
+        let moment = match self {
+            Self::MomentAndWay => moments[0].max(moments[1]) + spacing.item_spacing.x,
+            Self::Way => 0.0,
+        };
+        let button = width(ui, self.way()) + 2.0 * spacing.button_padding.x;
+        moment + button + 2.0 * spacing.item_spacing.x
+    }
+
+    fn ui(self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
+        let end = simulation.past().end;
+        if !simulation.looks_back() {
+            ui.weak("newest")
+                .on_hover_text("The newest state of the run is shown");
+            return;
+        }
+        let Some(times) = simulation.step_times() else {
+            return;
+        };
+        if matches!(self, Self::MomentAndWay) {
+            let text = place_in_words(times.time_at(simulation.step()), end.time);
+            let palette = Palette::of(ui.visuals());
+            ui.label(RichText::new(text).color(palette.warning))
+                .on_hover_text(
+                    "An earlier moment is shown: Play shows what followed, a change begins another run",
+                );
+        }
+        let enabled = allows(simulation.status(), &Command::Seek(end.step));
+        let button = ui.add_enabled(enabled, egui::Button::new(self.way()));
+        if button
+            .on_hover_text("Show the newest state (End)")
+            .clicked()
+        {
+            out.push(Request::Command(Command::Seek(end.step)));
+        }
     }
 }

@@ -367,9 +367,8 @@ fn path_ui(ui: &mut egui::Ui, typed: &mut TypedPath) -> bool {
     let label = ui.label(typed.purpose.field());
     let field = egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY);
     let mut drawn = field.show(ui);
-    if std::mem::take(&mut typed.fresh) {
-        begin_to_type(ui, &mut drawn, &typed.text);
-    }
+    let is_new = std::mem::take(&mut typed.fresh);
+    begin_to_type(ui, &mut drawn, &typed.text, is_new);
     is_entered(&drawn.response.response.labelled_by(label.id))
 }
 

@@ -99,9 +99,8 @@ impl TypedLine {
                 .desired_width(width)
                 .char_limit(BranchNames::LONGEST)
                 .show(ui);
-            if std::mem::take(&mut self.is_new) {
-                begin_to_type(ui, &mut field, &self.text);
-            }
+            let is_new = std::mem::take(&mut self.is_new);
+            begin_to_type(ui, &mut field, &self.text, is_new);
             ui.label(unit);
             is_entered(&field.response.response.labelled_by(label.id))
         })

@@ -176,9 +176,9 @@ impl RunList {
             return;
         };
         let mut field = edited.ui(ui);
-        if std::mem::take(&mut edited.is_new) {
-            begin_to_type(ui, &mut field, &edited.text);
-        } else if field.response.response.lost_focus() {
+        let is_new = std::mem::take(&mut edited.is_new);
+        begin_to_type(ui, &mut field, &edited.text, is_new);
+        if !is_new && field.response.response.lost_focus() {
             let is_left = ui.input(|input| input.key_pressed(Key::Escape));
             let is_by_key = is_left || ui.input(|input| input.key_pressed(Key::Enter));
             self.left = is_by_key.then_some(edited.run);

@@ -15,6 +15,9 @@ pub struct FocusBelow {
     covers: usize,
     /// What has the focus under all of them, over the first, and so on.
     kept: [Option<Id>; 3],
+    /// What gets the focus back, as long as egui still keeps it from all that lies below a dialog:
+    /// some frames longer than the dialog is there.
+    owed: Option<Id>,
     /// Whether the focus was moved back, not on, the last time.
     goes_back: bool,
 }
@@ -26,11 +29,18 @@ impl FocusBelow {
         let focused = ctx.memory(egui::Memory::focused);
         let is_left = focused.is_none() || focused == self.kept[self.covers];
         if covers < self.covers && is_left {
-            ctx.memory_mut(|memory| match (self.kept[covers], focused) {
-                (Some(below), _) => memory.request_focus(below),
-                (None, Some(gone)) => memory.surrender_focus(gone),
-                (None, None) => {}
-            });
+            self.owed = self.kept[covers];
+            if let (None, Some(gone)) = (self.owed, focused) {
+                ctx.memory_mut(|memory| memory.surrender_focus(gone));
+            }
+        }
+        if let Some(below) = self.owed {
+            self.owed = None;
+            if let Some(control) = ctx.read_response(below) {
+                control.request_focus();
+                let may_have_it = ctx.memory(|memory| memory.allows_interaction(control.layer_id));
+                self.owed = Some(below).filter(|_| !may_have_it);
+            }
         } else if covers > 0 || !is_within(ctx, focused, menu_bar) {
             self.kept[covers] = focused;
         }
@@ -86,8 +96,12 @@ fn is_within(ctx: &egui::Context, focused: Option<Id>, place: Rect) -> bool {
     control.is_some_and(|control| place.contains(control.rect.center()))
 }
 
-/// Gives the focus to `control` where nothing in the dialog that it stands in has it.
+/// Gives the focus to `control` where nothing in the dialog that it stands in has it. Where Tab has
+/// just led on from it, egui gives the focus to what comes next, and would do so later otherwise.
 pub fn take_first_focus(control: &Response) {
+    if control.lost_focus() {
+        return;
+    }
     let ctx = &control.ctx;
     let focused = ctx.memory(egui::Memory::focused);
     let layer = focused
@@ -98,10 +112,15 @@ pub fn take_first_focus(control: &Response) {
     }
 }
 
-/// Gives the focus to a `field` that has just been drawn, all of its `text` selected: what is typed
-/// takes its place.
-pub fn begin_to_type(ui: &egui::Ui, field: &mut TextEditOutput, text: &str) {
-    let id = field.response.response.id;
+/// Selects all of the `text` of a `field` that has just been drawn, so that what is typed takes its
+/// place: where a key led to it, and where it `is_new`, in which case it gets the focus, too.
+pub fn begin_to_type(ui: &egui::Ui, field: &mut TextEditOutput, text: &str, is_new: bool) {
+    let response = &field.response.response;
+    let by_key = response.gained_focus() && !response.is_pointer_button_down_on();
+    if !is_new && !by_key {
+        return;
+    }
+    let id = response.id;
     ui.memory_mut(|memory| memory.request_focus(id));
     let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
     field.state.cursor.set_char_range(Some(all));

@@ -23,9 +23,9 @@ fn the_share_of_flow_is_told_as_the_paper_takes_it_and_in_the_drum() {
     let harness = Window::of(with_samples());
     for frame in ["the paper's", "in the drum"] {
         let shares = harness.query_all_by_label_contains("Flowing share");
-        let label = |node: egui_kittest::Node<'_>| node.accesskit_node().label();
-        let mut labels = shares.filter_map(label);
-        assert!(labels.any(|label| label.contains(frame)), "{frame}");
+        let text = |node: egui_kittest::Node<'_>| node.accesskit_node().value();
+        let texts: Vec<String> = shares.filter_map(text).collect();
+        assert!(texts.iter().any(|text| text.contains(frame)), "{texts:?}");
     }
 }
 
