@@ -72,6 +72,29 @@ fn refusal(request: &Request, simulation: Option<&Simulation>, opener: &Opener) 
         .then(|| "What is recorded is being filmed: cancel the film first".to_owned())
 }
 
+/// The request, where nothing speaks against it; else the person is told what does, or asked.
+fn admitted(
+    request: Request,
+    simulation: Option<&Simulation>,
+    dock: &mut Dock,
+    opener: &Opener,
+) -> Option<Request> {
+    if let Some(reason) = refusal(&request, simulation, opener) {
+        dock.notify(reason);
+        return None;
+    }
+    match request {
+        Request::Anyway(request) => Some(*request),
+        request => match doubt(&request, &dock.sweeps) {
+            Some(reason) => {
+                dock.doubt(reason, request);
+                None
+            }
+            None => Some(request),
+        },
+    }
+}
+
 /// Asks where to put a picture, and how large it is to be.
 fn choose_picture(of: PictureOf, dock: &mut Dock) {
     let form = CaptureForm::picture(of, dock.memory.capture());
@@ -92,15 +115,8 @@ fn fulfil(
     opener: &mut Opener,
     exit: &mut MessageWriter<AppExit>,
 ) {
-    if let Some(reason) = refusal(&request, simulation.as_deref(), opener) {
-        return dock.notify(reason);
-    }
-    let request = match request {
-        Request::Anyway(request) => *request,
-        request => match doubt(&request, &dock.sweeps) {
-            Some(reason) => return dock.doubt(reason, request),
-            None => request,
-        },
+    let Some(request) = admitted(request, simulation.as_deref(), dock, opener) else {
+        return;
     };
     match (request, simulation) {
         (Request::Command(command), Some(simulation)) => simulation.send(command),

@@ -41,7 +41,9 @@ fn update(app: &mut App, ui: &mut egui::Ui) {
             });
         });
     let mut requests = app.world_mut().resource_mut::<Requests>();
-    asked.into_iter().for_each(|request| requests.ask(request));
+    for request in asked {
+        requests.ask(request);
+    }
     app.update();
 }
 
