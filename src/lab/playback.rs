@@ -12,7 +12,7 @@ use crate::measure::MeanFlow;
 use crate::recording::{
     FlowSurvey, Follower, Recording, RecordingFacts, RunNews as News, RunProgress,
 };
-use crate::run::{Command, CommandError, Past, Sampling};
+use crate::run::{Command, CommandError, KeptMemory, Past, Sampling};
 use crate::solver::Profile;
 use crate::world::{self, World};
 use std::collections::{BTreeSet, VecDeque};
@@ -279,6 +279,7 @@ impl Playback {
                     end: branch.end,
                     ..Past::default()
                 },
+                memory: KeptMemory::default(),
                 fault: None,
                 flow: self.flow.clone(),
                 profile: Profile::default(),

@@ -9,8 +9,8 @@ use crate::measure::{
     Avalanche, FlowHistory, LEFT_OUT, MeanFlow, Measure, Sample, Series, avalanches,
 };
 use crate::run::{
-    Branch, Command, Event, Meeting, Parameter, ParameterInfo, Past, Sampling, StampedCommand,
-    StepTimes, Turned, Value, events, time_step,
+    Branch, Command, Event, KeptMemory, Meeting, Parameter, ParameterInfo, Past, Sampling,
+    StampedCommand, StepTimes, Turned, Value, events, time_step,
 };
 use crate::scene::Scene;
 use crate::solver::{Extremes, Fault, Profile, TimeStepAdvice, advise};
@@ -189,6 +189,11 @@ impl RunView {
     /// What lies behind and ahead of the state shown.
     pub fn past(&self) -> &Past {
         &self.past
+    }
+
+    /// What the run keeps in memory by design, as of the last second: samples, states …
+    pub fn kept_memory(&self) -> KeptMemory {
+        (self.news.as_ref()).map_or_else(KeptMemory::default, |news| news.memory)
     }
 
     /// The step that is shown, or the one that was asked for and is still on its way.

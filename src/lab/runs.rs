@@ -13,7 +13,8 @@ use super::Half;
 use super::clock::LabClock;
 use super::update::{RunNews, RunsNews};
 use crate::run::{
-    Branch, Command, CommandError, Parameter, Run, Session, Stored, Timeline, Turned, Value,
+    Branch, Command, CommandError, KeptMemory, Parameter, Run, Session, Stored, Timeline, Turned,
+    Value,
 };
 use crate::scene::Scene;
 use crate::solver::{Fault, Profile};
@@ -31,6 +32,8 @@ pub const ONE_STEP: &str = "Two runs side by side have the same time step";
 /// ms for a minute's samples and 3 ms for those of ten minutes: so it takes two parts in a hundred
 /// of the time at most.
 const TIME_PER_SAMPLE: Duration = Duration::from_micros(15);
+/// Wall-clock time from one look at what a run keeps in memory to the next.
+const TIME_PER_LOOK: Duration = Duration::from_secs(1);
 
 /// The runs of a lab, one at least.
 pub struct Runs {
@@ -54,6 +57,9 @@ struct LabRun {
     /// The branch as it is shared with the outside, and since when.
     branch: Arc<Branch>,
     shared_at: Instant,
+    /// What the run keeps in memory, and when that was looked at.
+    memory: KeptMemory,
+    looked_at: Option<Instant>,
 }
 
 /// What came of a piece of work.
@@ -74,6 +80,8 @@ impl LabRun {
             shown_at: timeline.steps_and_commands(),
             branch: Arc::new(timeline.branch().clone()),
             shared_at: Instant::now(),
+            memory: KeptMemory::default(),
+            looked_at: None,
             timeline,
             fault: None,
             profile: Profile::default(),
@@ -91,6 +99,7 @@ impl LabRun {
             self.shown_at = self.timeline.steps_and_commands();
         }
         self.share_branch(rests);
+        self.look_at_memory();
         RunNews {
             world: self.shown.clone(),
             reached: self.shown.clock.step,
@@ -101,9 +110,18 @@ impl LabRun {
             latest: self.timeline.branch().series.last(),
             sampling: self.timeline.run().sampling(),
             past: self.timeline.past(),
+            memory: self.memory,
             flow: None,
             fault: self.fault.clone(),
             profile: self.profile.clone(),
+        }
+    }
+
+    /// Counts what is kept in memory, once a second.
+    fn look_at_memory(&mut self) {
+        if (self.looked_at).is_none_or(|looked| looked.elapsed() >= TIME_PER_LOOK) {
+            self.memory = self.timeline.kept_memory(&self.branch);
+            self.looked_at = Some(Instant::now());
         }
     }
 

@@ -7,7 +7,7 @@
 use super::Status;
 use crate::measure::{MeanFlow, Sample};
 use crate::recording::RecordingFacts;
-use crate::run::{Branch, Parameter, ParameterInfo, Past, Sampling, Turned};
+use crate::run::{Branch, KeptMemory, Parameter, ParameterInfo, Past, Sampling, Turned};
 use crate::solver::{Fault, Profile};
 use crate::world::World;
 use std::path::PathBuf;
@@ -61,6 +61,8 @@ pub struct RunNews {
     pub sampling: Sampling,
     /// What lies behind and ahead of the state.
     pub past: Past,
+    /// What the run keeps in memory by design, as of the last second.
+    pub memory: KeptMemory,
     /// What stopped it, if something did.
     pub fault: Option<Fault>,
     /// The mean flow of a recording, where its run wrote one or it was asked for.

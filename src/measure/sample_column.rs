@@ -107,11 +107,11 @@ impl Column {
         }
     }
 
-    /// Memory that the values take [bytes].
+    /// Memory that the values take [bytes], without room for more.
     pub fn memory(&self) -> usize {
         let kept = match self {
-            Self::Same(_, _, slice) => slice.get().map_or(0, Vec::capacity),
-            Self::Values(values) => values.capacity(),
+            Self::Same(_, _, slice) => slice.get().map_or(0, Vec::len),
+            Self::Values(values) => values.len(),
         };
         kept * size_of::<f64>()
     }

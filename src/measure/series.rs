@@ -81,10 +81,10 @@ impl Series {
         self.forgotten + self.steps.partition_point(|taken| *taken <= step)
     }
 
-    /// Memory that it takes [bytes].
+    /// Memory that its samples take [bytes], without room for more.
     pub fn memory(&self) -> usize {
         let columns = self.columns.iter().map(Column::memory);
-        8 * (self.steps.capacity() + self.time.capacity()) + columns.sum::<usize>()
+        8 * (self.steps.len() + self.time.len()) + columns.sum::<usize>()
     }
 
     /// Whether its columns are of one length and its samples in order, as a file may not say.

@@ -15,6 +15,7 @@
 //! | `soundness` | whether what a file kept of a run is what a run can be |
 //! | `archive`, `keyframes` | a timeline as a file keeps it; states along all branches |
 //! | `events` | what happened, and when: impacts, avalanches, changes … |
+//! | `kept_memory` | what a run keeps in memory by design |
 //! | `past`, `undo` | what is told of a timeline; what can be taken back |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero; where beds are kept |
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
@@ -46,6 +47,7 @@ mod command;
 mod estimate;
 mod events;
 mod history;
+mod kept_memory;
 mod keyframes;
 mod machine;
 mod measured;
@@ -90,7 +92,9 @@ pub use command::{Command, StampedCommand};
 pub use estimate::{BeyondMachine, Estimate};
 pub use events::{Event, EventKind, Happening, Pair, events};
 pub use history::{History, Moment};
+pub use kept_memory::KeptMemory;
 pub(crate) use machine::give_way;
+pub use machine::resident_memory;
 pub use measured::{Measured, Stored};
 pub use meetings::{MOST_MEETINGS, Meeting, MeetingKind};
 pub use method::method;

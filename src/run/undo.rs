@@ -71,6 +71,15 @@ impl UndoList {
         }
     }
 
+    /// The other branches that entries lead to.
+    pub fn branches(&self) -> impl Iterator<Item = &Branch> {
+        let entries = self.undo.iter().chain(&self.redo);
+        entries.filter_map(|entry| match &entry.destination {
+            Destination::Other { branch, .. } => Some(&**branch),
+            Destination::Earlier { .. } => None,
+        })
+    }
+
     /// What an undo would take back.
     pub fn next_undo(&self) -> Option<&Changed> {
         self.undo.last().map(|entry| &entry.what)

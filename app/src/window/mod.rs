@@ -17,6 +17,7 @@
 //! | `window_job` | what to open and how; why there may be no window |
 //! | `canvas` | an image to draw into where there is no display |
 //! | `environment` | what a window needs of the machine |
+//! | `memory_log` | where its memory goes, in the log |
 
 mod app;
 pub mod canvas;
@@ -24,6 +25,7 @@ pub mod environment;
 mod film_reel;
 mod film_studio;
 mod headless_film;
+mod memory_log;
 mod opening_comparison;
 mod screenshot_job;
 mod screenshot_subject;

@@ -14,6 +14,7 @@ mod filed;
 use super::branch::Branch;
 use super::branch_names::BranchNames;
 use super::history::Position;
+use super::kept_memory::KeptMemory;
 use super::keyframes::Keyframes;
 use super::measured::Stored;
 use super::past::{Journey, News, Past};
@@ -102,6 +103,14 @@ impl Timeline {
             names: self.names.clone(),
             memory: self.keyframes.memory(),
         }
+    }
+
+    /// What it keeps in memory, with the branch as it was `shared` with others.
+    pub(crate) fn kept_memory(&self, shared: &Branch) -> KeptMemory {
+        let kept = self.kept.iter().map(Arc::as_ref);
+        let branches = [self.branch(), shared].into_iter();
+        let branches = branches.chain(kept).chain(self.changes.branches());
+        KeptMemory::of(branches, self.keyframes.memory())
     }
 
     /// What came about since this was last called.

@@ -2,6 +2,7 @@
 //! goes on to the same bits as the one that brought it there.
 //!
 //! `GRAINFALL_RESUMES=5000` resumes each scene that often; in a test it is [`AS_A_TEST`] times.
+//! `GRAINFALL_RESUMES_OF=small-column,column` resumes these scenes alone.
 
 use super::*;
 use grainfall::scene::{BuiltIn, built_in};
@@ -80,7 +81,7 @@ fn scenes_that_are_shipped_go_on_to_the_same_bits_wherever_they_are_resumed() {
     let series: Option<u64> = std::env::var("GRAINFALL_RESUMES")
         .ok()
         .map(|text| text.parse().expect("GRAINFALL_RESUMES is a whole number"));
-    let mut scenes: Vec<_> = built_in().iter().map(beginning).collect();
+    let mut scenes: Vec<_> = wanted_scenes().into_iter().map(beginning).collect();
     // The quickest first: a long series that is stopped has seen most scenes.
     scenes.sort_by_key(|(_, world)| (world.polyhedra.is_some(), world.grains.len()));
     let (mut touched, mut resumed) = (0, 0);
@@ -101,6 +102,18 @@ fn scenes_that_are_shipped_go_on_to_the_same_bits_wherever_they_are_resumed() {
         touched += tally.contacts;
     }
     assert!(touched > 0, "grains touch");
+}
+
+/// The scenes that `GRAINFALL_RESUMES_OF` names, or all.
+fn wanted_scenes() -> Vec<&'static BuiltIn> {
+    let Ok(names) = std::env::var("GRAINFALL_RESUMES_OF") else {
+        return built_in().iter().collect();
+    };
+    let named = |name: &str| built_in().iter().find(|scene| scene.name == name);
+    let scenes = names
+        .split(',')
+        .map(|name| named(name).unwrap_or_else(|| panic!("{name} is no scene")));
+    scenes.collect()
 }
 
 /// A scene's name and its world as placed.
