@@ -9,7 +9,7 @@
 
 use super::estimate::Estimate;
 use super::numeral::{self, NOTHING};
-use crate::physics::{Unit, units};
+use crate::physics::{DisplayUnit, Unit, units};
 use serde::{Serialize, Serializer};
 
 /// Row of the registry: all that people and files need to know of one quantity.
@@ -149,6 +149,19 @@ impl Quantity {
             format.plain(number * unit.shown.factor)
         } else {
             NOTHING.into()
+        }
+    }
+
+    /// The name of the unit, and shown value per SI value, of an axis on which magnitudes up to
+    /// `largest` [SI unit] stand: with the prefix with which [`Self::text`] writes that.
+    pub fn unit_up_to(&self, largest: f64) -> (String, f64) {
+        let DisplayUnit { name, factor } = self.unit.shown;
+        match self.format {
+            Format::Prefixed => {
+                let (prefix, prefixed) = numeral::prefix_for(largest * factor);
+                (format!("{prefix}{name}"), factor * prefixed)
+            }
+            _ => (name.to_owned(), factor),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::ui::words::number;
 use crate::view::save_drawing;
 use grainfall::files::write_whole;
 use grainfall::measure::{Measure, Series};
-use grainfall::physics::{Unit, units};
+use grainfall::physics::{DisplayUnit, units};
 use grainfall::run::Provenance;
 use grainfall::run::{Cells, Column, Table, write_metadata};
 use grainfall::sweep::chart;
@@ -27,21 +27,49 @@ impl PlotAxis {
         }
     }
 
-    /// The unit it is shown in.
-    pub fn unit(self) -> Unit {
-        (self.0).map_or(units::TIME, |measure| measure.quantity().unit)
-    }
-
-    /// Name and unit: `Surface angle θ [°]`.
-    pub fn label(self) -> String {
-        let name = self.0.map_or_else(|| "Time t".to_owned(), number::title);
-        self.unit().beside(&name)
+    /// How `values` [SI unit] are shown on it.
+    pub fn scale<'a>(self, values: impl IntoIterator<Item = &'a f64>) -> AxisScale {
+        let magnitudes = values.into_iter().map(|value| value.abs());
+        let largest = magnitudes
+            .filter(|value| value.is_finite())
+            .fold(0.0, f64::max);
+        let Some(measure) = self.0 else {
+            let DisplayUnit { name, factor } = units::TIME.shown;
+            return AxisScale::new("Time t", name.to_owned(), factor);
+        };
+        let (unit, factor) = measure.quantity().unit_up_to(largest);
+        AxisScale::new(&number::title(measure), unit, factor)
     }
 
     /// Its column, as in the files of a run.
     fn column(self) -> Column {
         let time = || Column::numbers("time", "s");
         (self.0).map_or_else(time, |measure| Column::of(measure.quantity()))
+    }
+}
+
+/// How the values on an axis are shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisScale {
+    /// Name and unit: `Kinetic energy Ekin [µJ]`.
+    pub label: String,
+    /// The unit, with its prefix.
+    pub unit: String,
+    /// Shown value per SI value.
+    pub factor: f64,
+}
+
+impl AxisScale {
+    fn new(name: &str, unit: String, factor: f64) -> Self {
+        let label = match unit.as_str() {
+            "" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        };
+        Self {
+            label,
+            unit,
+            factor,
+        }
     }
 }
 
@@ -98,7 +126,11 @@ impl Export {
     }
 
     fn svg(&self) -> io::Result<String> {
-        let (fx, fy) = (self.x.unit().shown.factor, self.y.unit().shown.factor);
+        let [x, y] = [(self.x, 0), (self.y, 1)].map(|(axis, index)| {
+            let points = self.runs.iter().flat_map(|run| &run.points);
+            axis.scale(points.map(|point| &point[index]))
+        });
+        let (fx, fy) = (x.factor, y.factor);
         let line = |run: &ExportedRun| {
             let points = run.points.iter().map(|[x, y]| (x * fx, y * fy));
             let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
@@ -112,9 +144,9 @@ impl Export {
         let is_curve = |line: &chart::Line| line.points.len() > 1;
         let plot = chart::Plot {
             file: String::new(),
-            title: format!("{} over {}", self.y.label(), self.x.label()),
-            x: chart::ChartAxis::linear(&self.x.label()),
-            y: chart::ChartAxis::linear(&self.y.label()),
+            title: format!("{} over {}", y.label, x.label),
+            x: chart::ChartAxis::linear(&x.label),
+            y: chart::ChartAxis::linear(&y.label),
             lines: self.runs.iter().map(line).filter(is_curve).collect(),
         };
         if !plot.has_points() {
@@ -189,6 +221,19 @@ mod tests {
         assert!(!svg.contains("NaN"));
         export.runs[0].points.clear();
         assert!(export.svg().is_err());
+    }
+
+    #[test]
+    fn energies_stand_in_the_unit_in_which_results_write_them() {
+        let mut export = export(None);
+        export.y = PlotAxis(Some(Measure::KineticEnergy));
+        export.runs[0].points = vec![[0.0, 0.0], [0.5, 2.5e-4]];
+        let svg = export.svg().unwrap();
+        assert!(svg.contains("[µJ] over Time t [s]"), "{svg}");
+        let mut lines = svg.lines().map(str::trim);
+        assert!(lines.any(|line| ["200", "250"].contains(&line)), "{svg}");
+        let written = Measure::KineticEnergy.quantity().text(2.5e-4);
+        assert!(written.ends_with("µJ"), "{written}");
     }
 
     #[test]

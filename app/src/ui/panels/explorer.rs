@@ -7,7 +7,7 @@
 use crate::simulation::Simulation;
 use crate::ui::panel::{Panel, energy_comes_first};
 use crate::ui::playback::{moment_shown, seek};
-use crate::ui::plot_export::{Export, ExportedRun, PlotAxis};
+use crate::ui::plot_export::{AxisScale, Export, ExportedRun, PlotAxis};
 use crate::ui::plots::axes::{fitting_plot, height_of};
 use crate::ui::plots::decimate::decimate;
 use crate::ui::plots::run_curves::{compared_line, halves_ui};
@@ -125,10 +125,23 @@ impl Explorer {
         (PlotAxis(self.over), PlotAxis(Some(self.quantity)))
     }
 
-    /// The curve of `series` in the units of the axes, with no more points than a plot shows.
-    fn points(&self, series: &Series, columns: usize) -> Vec<[f64; 2]> {
+    /// How the values of all runs are shown, across and upright.
+    fn scales(&self, simulation: &Simulation) -> [AxisScale; 2] {
+        let compared = simulation.comparison();
+        let compared = compared.map(|comparison| comparison.right.series());
+        let kept = &simulation.past().kept;
+        let series = || {
+            let kept = kept.iter().map(|record| &*record.series);
+            kept.chain([simulation.series()]).chain(compared)
+        };
         let (x, y) = self.axes();
-        let (fx, fy) = (x.unit().shown.factor, y.unit().shown.factor);
+        [x, y].map(|axis| axis.scale(series().flat_map(|series| axis.values(series))))
+    }
+
+    /// The curve of `series` in the units of the axes, with no more points than a plot shows.
+    fn points(&self, series: &Series, columns: usize, scales: &[AxisScale; 2]) -> Vec<[f64; 2]> {
+        let (x, y) = self.axes();
+        let [fx, fy] = [scales[0].factor, scales[1].factor];
         let (xs, ys) = (x.values(series), y.values(series));
         if self.over.is_none() {
             let end = series.time().last().copied().unwrap_or(0.0);
@@ -143,20 +156,26 @@ impl Explorer {
     }
 
     /// The lines of all runs, in the order in which they are drawn.
-    fn lines(&self, simulation: &Simulation, columns: usize, palette: Palette) -> Vec<Line<'_>> {
+    fn lines(
+        &self,
+        simulation: &Simulation,
+        columns: usize,
+        scales: &[AxisScale; 2],
+        palette: Palette,
+    ) -> Vec<Line<'_>> {
         let names = RunNames::of(simulation);
         let own = Line::new(
             names.present(Half::Left),
-            self.points(simulation.series(), columns),
+            self.points(simulation.series(), columns, scales),
         );
         let compared = simulation.comparison().map(|comparison| {
-            let points = self.points(comparison.right.series(), columns);
+            let points = self.points(comparison.right.series(), columns, scales);
             compared_line(names.present(Half::Right), points, palette)
         });
         let kept = names.kept.into_iter().enumerate();
         let kept = kept.map(|(index, (name, record))| {
             let length = dash(index);
-            Line::new(name, self.points(&record.series, columns))
+            Line::new(name, self.points(&record.series, columns, scales))
                 .color(palette.kept)
                 .style(LineStyle::Dashed { length })
         });
@@ -169,8 +188,9 @@ impl Explorer {
     fn plot_ui(&self, ui: &mut egui::Ui, simulation: &Simulation, out: &mut Vec<Request>) {
         let palette = Palette::of(ui.visuals());
         let columns = (ui.available_width() * ui.ctx().pixels_per_point()) as usize;
-        let (x, y) = self.axes();
-        let lines = self.lines(simulation, columns, palette);
+        let scales = self.scales(simulation);
+        let lines = self.lines(simulation, columns, &scales, palette);
+        let [x, y] = scales;
         let over_time = self.over.is_none();
         let avalanches = if over_time {
             simulation.avalanches()
@@ -178,14 +198,14 @@ impl Explorer {
             &[]
         };
         let shown = moment_shown(simulation).filter(|_| over_time);
-        let units = [x.unit().shown.name, y.unit().shown.name];
+        let units = [x.unit, y.unit];
         // Another pair of quantities begins with bounds of its own.
-        let name = format!("{} over {}", y.label(), x.label());
+        let name = format!("{} over {}", y.label, x.label);
         ui.label(RichText::new(&name).strong());
         let plot = fitting_plot(ui, &name);
         let plot = within(plot, &points_of(&lines), over_time)
             .show_crosshair(true)
-            .label_formatter(move |hover| Some(cursor(hover, units)));
+            .label_formatter(move |hover| Some(cursor(hover, &units)));
         let drawn = plot.show(ui, |plot| {
             for avalanche in avalanches {
                 plot.vline(avalanche_line(avalanche, palette));
@@ -198,8 +218,8 @@ impl Explorer {
             }
         });
         let response = drawn.response;
-        let latest = y.values(simulation.series()).last().copied();
-        let latest = latest.unwrap_or(f64::NAN) * y.unit().shown.factor;
+        let latest = simulation.series().column(self.quantity).last().copied();
+        let latest = latest.unwrap_or(f64::NAN) * y.factor;
         response.widget_info(|| {
             let text = format!("{name}, now {}", number::short(latest));
             WidgetInfo::labeled(WidgetType::Image, true, text)
@@ -277,7 +297,7 @@ fn avalanche_line(avalanche: &Avalanche, palette: Palette) -> VLine {
 }
 
 /// The numbers under the pointer.
-fn cursor(hover: &HoverPosition, [x, y]: [&str; 2]) -> String {
+fn cursor(hover: &HoverPosition, [x, y]: &[String; 2]) -> String {
     let (name, at) = match hover {
         HoverPosition::NearDataPoint {
             plot_name,

@@ -276,7 +276,7 @@ fn any_quantity_is_plotted_over_any_other_and_can_be_taken_home() {
     let mut harness = Window::of(with_samples());
     harness.get_by_label("Any quantity").click();
     harness.run_steps(10);
-    harness.get_by_label_contains("Kinetic energy E_kin [J] over Time t [s], now ");
+    harness.get_by_label_contains("Kinetic energy E_kin [µJ] over Time t [s], now ");
     harness
         .get_by_role_and_label(Role::ComboBox, "Over")
         .click();
@@ -285,7 +285,7 @@ fn any_quantity_is_plotted_over_any_other_and_can_be_taken_home() {
         .get_by_role_and_label(Role::Button, "Coordination number Z")
         .click();
     harness.run_steps(5);
-    harness.get_by_label_contains("Kinetic energy E_kin [J] over Coordination number Z, now ");
+    harness.get_by_label_contains("Kinetic energy E_kin [µJ] over Coordination number Z, now ");
     harness.get_by_label("Export…").click();
     harness.run_steps(2);
     let asked = std::mem::take(&mut harness.state_mut().asked);
@@ -311,7 +311,7 @@ fn grains_without_a_bed_are_seen_by_their_energy() {
     let mut simulation = ready(Simulation::open(scene, standing()));
     carried_out(&mut simulation, Command::Step(2000));
     let harness = Window::of(simulation);
-    harness.get_by_label("Kinetic energy E_kin [J] over Time t [s]");
+    harness.get_by_label("Kinetic energy E_kin [µJ] over Time t [s]");
     harness.get_by_label_contains("Where the energy is and went");
     assert!(harness.query_by_label("Surface angle θ [°]").is_none());
     let bed = Window::of(prepared());
