@@ -5,8 +5,8 @@
 use crate::ui::widgets::value_table::TableRow;
 use crate::ui::words::number;
 use glam::DVec3;
-use grainfall::measure::{GrainQuantity, coordinations, walls_touched};
-use grainfall::world::World;
+use grainfall::measure::GrainQuantity;
+use grainfall::world::{Contact, Partner, World};
 
 const MILLIMETRES: f64 = 1e3;
 
@@ -16,8 +16,14 @@ fn vector(v: DVec3, factor: f64, unit: &str) -> String {
     format!("({x}, {y}, {z}) {unit}")
 }
 
-/// The numbers of one grain.
-pub(super) fn numbers(world: &World, i: usize) -> Vec<TableRow> {
+/// The numbers of one grain with these `contacts`, all that it has.
+pub(super) fn numbers(world: &World, i: usize, contacts: &[&Contact]) -> Vec<TableRow> {
+    let touched = |is_wall: bool| {
+        let is_such = |contact: &&&Contact| {
+            contact.touching && matches!(contact.partner, Partner::Wall(_)) == is_wall
+        };
+        contacts.iter().filter(is_such).count().to_string()
+    };
     let grains = &world.grains;
     let species = &world.species[usize::from(grains.species[i].0)];
     let (x, v, spin) = (grains.position[i], grains.velocity[i], grains.spin[i]);
@@ -41,10 +47,10 @@ pub(super) fn numbers(world: &World, i: usize) -> Vec<TableRow> {
         TableRow::of("Mass", number::with_prefix(1e3 * mass, "g"), ""),
         TableRow::of(
             GrainQuantity::Coordination.name(),
-            coordinations(world)[i].to_string(),
+            touched(false),
             GrainQuantity::Coordination.quantity().description,
         ),
-        TableRow::of("Walls touched", walls_touched(world, i).to_string(), ""),
+        TableRow::of("Walls touched", touched(true), ""),
     ];
     if world.wetting().is_some() {
         rows.push(TableRow::of(

@@ -85,9 +85,10 @@ impl Panel for Microscope {
         let Some(grain) = view.selected.filter(|grain| *grain < world.grains.len()) else {
             return;
         };
-        table_ui(ui, numbers(world, grain).into_iter());
         let contacts = contacts_of(world, grain as u32);
-        self.contacts_ui(ui, world, grain as u32, &contacts, view);
+        table_ui(ui, numbers(world, grain, &contacts).into_iter());
+        let contacts = &contacts[..contacts.len().min(LONGEST_LIST)];
+        self.contacts_ui(ui, world, grain as u32, contacts, view);
         let chosen = contacts
             .iter()
             .find(|contact| match other_side(contact, grain as u32) {
@@ -189,12 +190,11 @@ fn trails_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
     });
 }
 
-/// The contacts and bridges of a grain.
+/// All contacts and bridges of a grain.
 fn contacts_of(world: &World, grain: u32) -> Vec<&Contact> {
     let concerns =
         |contact: &&Contact| contact.grain == grain || contact.partner == Partner::Grain(grain);
-    let contacts = world.contacts.iter().filter(concerns);
-    contacts.take(LONGEST_LIST).collect()
+    world.contacts.iter().filter(concerns).collect()
 }
 
 /// The partner of `grain` in `contact`.
