@@ -19,6 +19,7 @@ pub static KASPER2021: Paper = Paper {
     scene: "wet",
     settings: &["duration=50s"],
     keys: &["bridge-law", "radius", "liquid"],
+    readings: &[],
     batches: &[
         Batch::new("r3", R3, &["0", "1", "3", "5", "7"], (1, 2)),
         Batch::new("r3", R3, &["2", "4", "6"], (1, 2)),

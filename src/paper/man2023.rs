@@ -26,6 +26,7 @@ pub static MAN2023: Paper = Paper {
         "output-interval=20ms",
     ],
     keys: &["mu11", "mu22", "height", "mix"],
+    readings: &[],
     batches: &[
         Batch::new("h1", H1, MIXES, (1, 3)),
         Batch::new("frictions", &["0.1", "0.1", "10mm"], &["0.3"], (1, 3)),

@@ -17,6 +17,7 @@
 //! | `kept_line` | what a line holds, and by what a case is known |
 //! | `registry` | the papers by name |
 //! | `kasper2021` | Kasper et al. 2021: its cases and tables |
+//! | `readings` | the readings of Kasper et al. 2021: likewise |
 //! | `man2023` | Man et al. 2023: likewise |
 //! | `document` | tables between the markers of a document |
 //! | `markdown` | rows of tables |
@@ -30,9 +31,10 @@ mod kept_line;
 mod man2023;
 mod markdown;
 mod plan;
+mod readings;
 mod registry;
 
 pub use document::{DocumentError, marked, replace};
 pub use job::{Listed, PaperJob, Papered, list, run, set_beside};
-pub use plan::{Batch, Paper, PaperTable, Selection};
+pub use plan::{Batch, Paper, PaperTable, Reading, Selection};
 pub use registry::{PAPERS, paper};

@@ -7,7 +7,7 @@
 use crate::run::BedStore;
 use crate::runner::RunnerError;
 use crate::scene::Scene;
-use crate::sweep::{CaseResult, Sweep, Variation};
+use crate::sweep::{CaseResult, READING, Sweep, Variation};
 use std::path::PathBuf;
 
 /// A paper: its cases, and how its tables are made.
@@ -22,6 +22,8 @@ pub struct Paper {
     pub settings: &'static [&'static str],
     /// The varied keys; the last but one is that along which a batch goes. The seed follows them.
     pub keys: &'static [&'static str],
+    /// What the values of the key `reading` stand for, where it is one of the keys.
+    pub readings: &'static [Reading],
     /// The cases, in the order in which they are run.
     pub batches: &'static [Batch],
     /// What is set beside that where the paper is made small.
@@ -30,6 +32,16 @@ pub struct Paper {
     pub small_batches: &'static [Batch],
     /// Its tables from what its cases came to.
     pub(crate) tables: fn(&Sweep, &[CaseResult]) -> Vec<PaperTable>,
+}
+
+/// A reading of what a paper leaves open, or states twice.
+pub struct Reading {
+    /// What it is called among the values of the key `reading`: `coulomb-total`.
+    pub name: &'static str,
+    /// What it reads otherwise, in words.
+    pub text: &'static str,
+    /// What is set for it, as `--set` has it.
+    pub settings: &'static [&'static str],
 }
 
 /// Cases that are begun together: every value of a list from every one of some seeds.
@@ -158,6 +170,13 @@ impl Paper {
         names
     }
 
+    /// What is set where the reading is the one called `name`.
+    fn settings_of(&self, name: &str) -> Vec<String> {
+        let reading = self.readings.iter().find(|own| own.name == name);
+        let settings = reading.map_or(&[][..], |own| own.settings);
+        settings.iter().map(|&own| own.to_owned()).collect()
+    }
+
     fn case_name(&self, row: &Row) -> String {
         let keys = self.keys.iter().copied().chain([SEED]);
         let values = keys.zip(&row.values);
@@ -181,10 +200,19 @@ impl Paper {
         let small = if is_small { self.small_settings } else { &[] };
         let settings = self.settings.iter().chain(small);
         let keys = self.keys.iter().copied().chain([SEED]);
-        let variations = keys.enumerate().map(|(index, key)| Variation {
-            key: key.to_owned(),
-            values: rows.iter().map(|row| row.values[index].clone()).collect(),
-            is_tied: index > 0,
+        let variations = keys.enumerate().map(|(index, key)| {
+            let values: Vec<String> = rows.iter().map(|row| row.values[index].clone()).collect();
+            let settings = if key == READING {
+                values.iter().map(|value| self.settings_of(value)).collect()
+            } else {
+                Vec::new()
+            };
+            Variation {
+                key: key.to_owned(),
+                values,
+                settings,
+                is_tied: index > 0,
+            }
         });
         Ok(Sweep {
             name: self.scene.to_owned(),

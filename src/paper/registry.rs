@@ -3,10 +3,11 @@
 use super::kasper2021::KASPER2021;
 use super::man2023::MAN2023;
 use super::plan::Paper;
+use super::readings::KASPER2021_READINGS;
 use crate::runner::RunnerError;
 
 /// Every paper that the program can run.
-pub static PAPERS: [&Paper; 2] = [&KASPER2021, &MAN2023];
+pub static PAPERS: [&Paper; 3] = [&KASPER2021, &KASPER2021_READINGS, &MAN2023];
 
 /// The paper called `name`.
 ///

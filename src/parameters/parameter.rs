@@ -5,7 +5,9 @@
 //! `rows`, and its line in the list below. Nothing else lists parameters.
 
 use super::parameter_row::{Kind, Names, ParameterRow};
-use super::rows::{driving, liquid_and_bridges, material_pairs, material_properties, run, sizes};
+use super::rows::{
+    bridge_choices, driving, liquid_and_bridges, material_pairs, material_properties, run, sizes,
+};
 use super::value::Value;
 use crate::physics::Materials;
 use serde::{Deserialize, Serialize};
@@ -122,8 +124,20 @@ parameters! {
     ContactAngle => liquid_and_bridges::CONTACT_ANGLE,
     /// Volume of all the liquid [m³].
     LiquidVolume => liquid_and_bridges::VOLUME,
-    /// How bridges act: as printed or as coded.
+    /// How bridges act: as printed, as coded, or by choices of one's own.
     BridgeLaw => liquid_and_bridges::BRIDGE_LAW,
+    /// What a bridge holds of both grains' films.
+    BridgeVolume => bridge_choices::BRIDGE_VOLUME,
+    /// Which contact angle two grains have together.
+    PairAngle => bridge_choices::PAIR_ANGLE,
+    /// Smallest gap of the viscous forces.
+    ViscousGap => bridge_choices::VISCOUS_GAP,
+    /// Gap of the capillary force of grains that touch or nearly do.
+    CapillaryGap => bridge_choices::CAPILLARY_GAP,
+    /// When a bridge breaks.
+    Rupture => bridge_choices::RUPTURE,
+    /// Which normal force bounds friction.
+    CoulombBound => bridge_choices::COULOMB,
     /// The liquid of the paper's Table 1, or none.
     Liquid => liquid_and_bridges::CASE,
     /// Number of grains of a filling.

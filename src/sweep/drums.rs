@@ -4,7 +4,7 @@
 //! liquids and along the radii, as the paper's statements compare them.
 
 use super::ensemble::Ensemble;
-use crate::measure::{Estimate, ResultKey};
+use crate::measure::{DropThreshold, Estimate, Measure, ResultKey, RunQuantity};
 use crate::scene::SceneGrains;
 
 /// A drum of the paper.
@@ -15,12 +15,44 @@ pub struct Drum<'a> {
     pub viscosity: f64,
     /// Its runs.
     pub ensemble: &'a Ensemble<'a>,
+    /// By which measures.
+    pub measured_by: MeasuredBy,
+}
+
+/// Which of several measures stand for the drop, the granular temperature and the non-rigid share.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MeasuredBy {
+    /// Drops from 1° on, velocities in the laboratory.
+    #[default]
+    Usual,
+    /// Drops from this threshold on.
+    Drops(DropThreshold),
+    /// Velocities in the drum's frame.
+    CorotatingFrame,
+}
+
+impl MeasuredBy {
+    /// The result that stands for `key`.
+    fn key(self, key: ResultKey) -> ResultKey {
+        match (self, key) {
+            (Self::Drops(threshold), ResultKey::OfRun(RunQuantity::Drop)) => {
+                ResultKey::OfAvalanches(RunQuantity::Drop, threshold)
+            }
+            (Self::CorotatingFrame, ResultKey::OfRun(RunQuantity::NonRigidShare)) => {
+                ResultKey::OfRun(RunQuantity::CorotatingShare)
+            }
+            (Self::CorotatingFrame, ResultKey::OfSamples(Measure::GranularTemperature)) => {
+                ResultKey::OfSamples(Measure::CorotatingTemperature)
+            }
+            _ => key,
+        }
+    }
 }
 
 impl Drum<'_> {
     /// The result `key`.
     pub fn get(&self, key: ResultKey) -> Option<Estimate> {
-        self.ensemble.estimate(key)
+        self.ensemble.estimate(self.measured_by.key(key))
     }
 
     /// Whether it has no liquid.
@@ -60,6 +92,7 @@ impl<'a> Drums<'a> {
                 radius: round(1e3 * species.first()?.radius),
                 viscosity: (scene.liquid.as_ref()).map_or(0.0, |own| round(1e3 * own.viscosity)),
                 ensemble,
+                measured_by: MeasuredBy::default(),
             })
         };
         let mut drums: Vec<Drum> = ensembles.into_iter().filter_map(drum).collect();

@@ -10,14 +10,14 @@ use super::drums::{Drum, Drums};
 use super::ensemble::Ensemble;
 use super::kasper_parts::{DROP, RATIO, along, beside_the_law, between, flows_always, share};
 use super::statements::{Part, Statement};
-use super::variation::SEED;
+use super::variation::{READING, SEED};
 use crate::measure::{Estimate, Measure, ResultKey, RunQuantity, Verdict};
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// The law of bridges: a reading of the paper, not a case of it.
-const READING: &str = "bridge-law";
-/// The keys that the paper varies, and that of its readings.
-const VARIED: [&str; 5] = ["liquid", "viscosity", "radius", SEED, READING];
+const BRIDGE_LAW: &str = "bridge-law";
+/// The keys that the paper varies, and those of its readings.
+const VARIED: [&str; 6] = ["liquid", "viscosity", "radius", SEED, READING, BRIDGE_LAW];
 /// Viscosity up to which a liquid counts as water [mPa s].
 const WATER: f64 = 2.0;
 
@@ -54,7 +54,7 @@ pub fn statements_by_reading(sweep: &Sweep, ensembles: &[Ensemble]) -> Vec<State
 fn readings<'a>(ensembles: &'a [Ensemble]) -> Vec<Option<&'a str>> {
     let wet = ensembles.iter().filter(|own| !is_dry(own));
     let mut readings: Vec<Option<&str>> = Vec::new();
-    for reading in wet.map(|own| own.value_of(READING)) {
+    for reading in wet.map(reading_of) {
         if !readings.contains(&reading) {
             readings.push(reading);
         }
@@ -66,11 +66,19 @@ fn readings<'a>(ensembles: &'a [Ensemble]) -> Vec<Option<&'a str>> {
 }
 
 /// Whether a drum belongs to `reading`: of wet ones those under it, of dry ones likewise, where any
-/// was run under it.
+/// was run under it, else those of the first reading that has any.
 fn is_of_reading(drum: &Ensemble, reading: Option<&str>, all: &[Ensemble]) -> bool {
-    let is_under = |own: &Ensemble| reading.is_none() || own.value_of(READING) == reading;
+    let is_under = |own: &Ensemble| reading.is_none() || reading_of(own) == reading;
     let is_dry_under = |own: &Ensemble| is_dry(own) && is_under(own);
-    is_under(drum) || (is_dry(drum) && !all.iter().any(is_dry_under))
+    let first_dry = || all.iter().find(|own| is_dry(own)).map(reading_of);
+    let is_first = || is_dry(drum) && Some(reading_of(drum)) == first_dry();
+    is_under(drum) || (is_first() && !all.iter().any(is_dry_under))
+}
+
+/// The reading that sets `ensemble` apart from others, if one does.
+fn reading_of<'a>(ensemble: &'a Ensemble) -> Option<&'a str> {
+    let of = |key| ensemble.value_of(key);
+    of(READING).or_else(|| of(BRIDGE_LAW))
 }
 
 fn is_dry(ensemble: &Ensemble) -> bool {

@@ -101,7 +101,11 @@ pub fn cases(sweep: &Sweep) -> Result<Vec<Case>, RunnerError> {
 fn refuse_what_undoes(sweep: &Sweep) -> Result<(), RunnerError> {
     let mut varied = HashSet::new();
     for variation in &sweep.variations {
-        let is_set = |setting: &&String| key_of(setting) == variation.key;
+        let varies = |key: &str| {
+            let mut named = variation.settings.iter().flatten();
+            variation.key == key || named.any(|own| key_of(own) == key)
+        };
+        let is_set = |setting: &&String| varies(key_of(setting));
         if let Some(setting) = sweep.settings.iter().find(is_set) {
             return Err(RunnerError::Input(format!(
                 "--set {setting} undoes the variation of {}: leave one of them out",
@@ -133,13 +137,13 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
         rest /= count;
     }
     let mut scene = sweep.scene.clone();
-    let varied: Vec<String> = sweep
-        .variations
-        .iter()
-        .zip(&values)
-        .map(|(variation, value)| format!("{}={value}", variation.key))
+    let varied = || sweep.variations.iter().zip(&values);
+    let names = varied().map(|(variation, value)| format!("{}={value}", variation.key));
+    let name = names.collect::<Vec<_>>().join("_");
+    let set: Vec<String> = varied()
+        .flat_map(|(variation, value)| variation.settings_of(value))
         .collect();
-    let settings: Vec<&String> = varied.iter().chain(&sweep.settings).collect();
+    let settings: Vec<&String> = set.iter().chain(&sweep.settings).collect();
     let (of_wet, of_all): (Vec<&String>, Vec<&String>) = settings
         .iter()
         .partition(|setting| is_for_wet_cases(setting));
@@ -156,7 +160,7 @@ fn case(sweep: &Sweep, index: usize) -> Result<Case, RunnerError> {
         .collect();
     let script = apply_settings(&mut scene, &settings)?;
     Ok(Case {
-        name: varied.join("_").replace(['/', '\\'], "-"),
+        name: name.replace(['/', '\\'], "-"),
         values,
         time_step: advise(&scene).time_step,
         scene,

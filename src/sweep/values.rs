@@ -73,6 +73,7 @@ impl ValueRange {
         Variation {
             key: parameter.to_string(),
             values,
+            settings: Vec::new(),
             is_tied: false,
         }
     }

@@ -7,6 +7,8 @@ use crate::runner::RunnerError;
 
 /// The varied key whose values repeat one experiment.
 pub const SEED: &str = "seed";
+/// The varied key whose values are names of readings, each for several settings.
+pub const READING: &str = "reading";
 /// Cases a sweep may have.
 pub const MOST_CASES: usize = 10_000;
 
@@ -17,6 +19,9 @@ pub struct Variation {
     pub key: String,
     /// Its values as text.
     pub values: Vec<String>,
+    /// The settings, as `--set` has them, that each value is a name for; none where `key` is a key
+    /// of `--set` itself.
+    pub settings: Vec<Vec<String>>,
     /// Whether it goes value by value with the one before it, instead of being combined with that.
     pub is_tied: bool,
 }
@@ -60,8 +65,19 @@ impl Variation {
         Ok(Self {
             key: key.trim().to_owned(),
             values,
+            settings: Vec::new(),
             is_tied: false,
         })
+    }
+
+    /// What is set where it has this `value`, as `--set` has it.
+    pub fn settings_of(&self, value: &str) -> Vec<String> {
+        if self.settings.is_empty() {
+            return vec![format!("{}={value}", self.key)];
+        }
+        let index = self.values.iter().position(|own| own == value);
+        let named = index.and_then(|index| self.settings.get(index));
+        named.cloned().unwrap_or_default()
     }
 
     /// So many seeds from `first` on: the same experiment, repeated.
@@ -70,6 +86,7 @@ impl Variation {
         Self {
             key: SEED.to_owned(),
             values: seeds.collect(),
+            settings: Vec::new(),
             is_tied: false,
         }
     }

@@ -89,8 +89,8 @@ pub static VOLUME: ParameterRow = ParameterRow {
     ..OF_LIQUID
 };
 
-/// The two bridge laws that have a name; choices of one's own have none.
-pub static BRIDGE_LAWS: [Choice; 2] = [
+/// The two bridge laws that have a name, and any other, which is set choice by choice.
+pub static BRIDGE_LAWS: [Choice; 3] = [
     Choice {
         key: "as-printed",
         name: "as printed",
@@ -101,6 +101,11 @@ pub static BRIDGE_LAWS: [Choice; 2] = [
         name: "as coded",
         number: 1.0,
     },
+    Choice {
+        key: "own",
+        name: "own choices",
+        number: 2.0,
+    },
 ];
 
 pub static BRIDGE_LAW: ParameterRow = ParameterRow {
@@ -110,22 +115,17 @@ pub static BRIDGE_LAW: ParameterRow = ParameterRow {
     kind: Kind::Choice(&BRIDGE_LAWS),
     expected: "`as-printed` or `as-coded`, in a scene with a liquid",
     description: "As printed: the paper's equations. As coded: what the public LIGGGHTS 3.8 computes, with far weaker viscous \
-                  forces.",
+                  forces. Own choices: any others, each set by itself.",
     equation: |_| "Eqs. 11–17 of Kasper et al. 2021",
-    exists: |scene, _| {
-        scene
-            .liquid
-            .is_some_and(|liquid| law_choice(liquid.law).is_some())
-    },
     in_scene: Some(InScene {
-        read: |scene, _| law_choice(scene.liquid?.law),
+        read: |scene, _| Some(law_choice(scene.liquid?.law)),
         write: |scene, _, value| {
             scene.liquid.as_mut()?.law = chosen_law(value)?;
             Some(())
         },
     }),
     in_world: Some(InWorld {
-        read: |world, _| law_choice(world.liquid?.law),
+        read: |world, _| Some(law_choice(world.liquid?.law)),
         write: |world, _, _, value| {
             if let Some(law) = chosen_law(value) {
                 change(world, |liquid| liquid.law = law);
@@ -200,7 +200,7 @@ static CASES: [Preset<'static>; 7] = {
 };
 
 /// What these rows have in common.
-const OF_LIQUID: ParameterRow = ParameterRow {
+pub(super) const OF_LIQUID: ParameterRow = ParameterRow {
     section: PanelSection::Liquid,
     is_of_liquid: true,
     exists: |scene, _| scene.liquid.is_some(),
@@ -216,13 +216,13 @@ fn with_amount_of(old: &Liquid, case: &LiquidCase) -> Liquid {
     }
 }
 
-fn law_choice(law: BridgeLaw) -> Option<Value> {
-    let index = [BridgeLaw::AS_PRINTED, BridgeLaw::AS_CODED]
-        .iter()
-        .position(|own| *own == law)?;
-    BRIDGE_LAWS.get(index).map(Value::Choice)
+fn law_choice(law: BridgeLaw) -> Value {
+    let named = [BridgeLaw::AS_PRINTED, BridgeLaw::AS_CODED];
+    let index = named.iter().position(|own| *own == law);
+    Value::Choice(&BRIDGE_LAWS[index.unwrap_or(named.len())])
 }
 
+/// The law that a choice names; none where that leaves the law as it is.
 fn chosen_law(value: Value) -> Option<BridgeLaw> {
     match value {
         Value::Choice(choice) if *choice == BRIDGE_LAWS[0] => Some(BridgeLaw::AS_PRINTED),

@@ -2,6 +2,7 @@
 
 use super::parameter_row::{ANY, PanelSection, ParameterRow, Scale};
 
+pub mod bridge_choices;
 pub mod driving;
 pub mod liquid_and_bridges;
 pub mod material_pairs;
