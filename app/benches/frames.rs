@@ -3,7 +3,7 @@
 //! column of as many polyhedra as the tallest one of Man et al. 2023; and what it costs to make the
 //! meshes of those polyhedra, once for a scene. Then the same for the whole window, every panel
 //! open, a grain under the microscope, flowing layer, temperatures, forces and ghosts drawn, with
-//! what a frame allocates.
+//! what a frame allocates; once also while a parameter sweep computes on every core.
 //!
 //! `cargo bench -p grainfall --bench frames`, see `benches/README.md`.
 
@@ -30,11 +30,13 @@ use grainfall::lab::{Options, Status};
 use grainfall::measure::GrainQuantity;
 use grainfall::run::{BedStore, Command};
 use grainfall::scene::Scene;
+use grainfall::sweep::{BackgroundSweep, Sweep, Variation};
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
 use grainfall_app::simulation::{Simulation, SimulationPlugin};
 use grainfall_app::ui::{Dock, UiPlugin};
 use grainfall_app::view::{ColourBy, GrainBuffer, Meshing, ShownWorlds, ViewPlugin, ViewSettings};
 use grainfall_app::window::canvas::CanvasPlugin;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -250,17 +252,35 @@ fn count_allocations(name: &str, app: &mut App) {
     );
 }
 
+/// Drums of eight frictions, one on each core, into `folder`: more than a measurement takes.
+fn sweep(folder: &Path) -> BackgroundSweep {
+    let variation = Variation::parse("friction.glass.glass=0.1..0.8:0.1");
+    BackgroundSweep::start(Sweep {
+        name: "dry-r3".into(),
+        scene: Scene::open("dry-r3").expect("a built-in scene"),
+        settings: Vec::new(),
+        variations: vec![variation.expect("a variation")],
+        out: folder.join("sweep"),
+        jobs: std::thread::available_parallelism().map_or(1, usize::from),
+        beds: BedStore::user(),
+        restart: false,
+    })
+}
+
 fn windows(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("window");
     let scene = |name: &str| Scene::open(name).expect("a built-in scene");
     let mut column = scene("column");
     column.set("height", "35cm").expect("a height");
-    for (name, scene) in [
-        ("470 spheres", scene("dry-r3")),
-        ("6494 spheres", scene("dry-r1.25")),
-        ("68722 polyhedra", column),
+    for (name, scene, has_sweep) in [
+        ("470 spheres", scene("dry-r3"), false),
+        ("6494 spheres", scene("dry-r1.25"), false),
+        ("68722 polyhedra", column, false),
+        ("6494 spheres beside a sweep", scene("dry-r1.25"), true),
     ] {
         group.sample_size(20);
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut beside = None;
         // Made when it is asked for: a column takes its time.
         let mut made = None;
         group.bench_function(name, |b| {
@@ -269,6 +289,9 @@ fn windows(criterion: &mut Criterion) {
                 count_allocations(name, &mut app);
                 app
             });
+            if has_sweep && beside.is_none() {
+                beside = Some(sweep(folder.path()));
+            }
             b.iter_custom(|frames| {
                 let mut spent = Duration::ZERO;
                 for _ in 0..frames {
@@ -280,6 +303,9 @@ fn windows(criterion: &mut Criterion) {
                 spent
             });
         });
+        if let Some(sweep) = beside {
+            assert!(sweep.is_running(), "the sweep ended before the measurement");
+        }
     }
     group.finish();
 }

@@ -162,33 +162,36 @@ impl Deposit {
 
 impl DepositOutline {
     /// That of the heap in `world`; none where no column stood, or without grains. Grains that
-    /// another one surely hides are passed over, so that it can be taken for every frame.
+    /// another one surely hides are passed over, so that it can be taken for every frame: a grain
+    /// reaches at least as far as its centre, and at most as far as the sphere round it.
     pub fn of(world: &World) -> Option<Self> {
         let Shape::Column { radius, .. } = world.container.shape else {
             return None;
         };
         let middle = MIDDLE * radius;
-        let mut sectors = [f64::NAN; SECTORS];
-        // The front is nowhere nearer than this.
-        let (mut nearest, mut height) = (f64::NEG_INFINITY, 0.0_f64);
-        for (i, (centre, bound)) in
-            (world.grains.position.iter().zip(&world.grains.radius)).enumerate()
-        {
+        let grains = || world.grains.position.iter().zip(&world.grains.radius);
+        let (mut known, mut height) = (KnownFront::NOWHERE, 0.0_f64);
+        for (centre, _) in grains() {
             let distance = from_axis(*centre);
-            let is_inside = distance <= middle;
-            if distance + bound <= nearest && !(is_inside && centre.y + bound > height) {
+            known.reach(*centre, distance);
+            if distance <= middle {
+                height = height.max(centre.y);
+            }
+        }
+        let mut sectors = [f64::NAN; SECTORS];
+        for (i, (centre, bound)) in grains().enumerate() {
+            let distance = from_axis(*centre);
+            let is_high = distance <= middle && centre.y + bound > height;
+            if !is_high && !known.is_below(*centre, distance + bound) {
                 continue;
             }
             let extent = Extent::of(world, i);
-            if is_inside {
+            if is_high {
                 height = height.max(extent.top);
             }
             let front = &mut sectors[extent.sector()];
-            if front.is_nan() || extent.reach > *front {
-                *front = extent.reach;
-                let known = |r: &f64| if r.is_nan() { f64::NEG_INFINITY } else { *r };
-                nearest = sectors.iter().map(known).fold(f64::INFINITY, f64::min);
-            }
+            *front = front.max(extent.reach);
+            known.reach(*centre, extent.reach);
         }
         (!world.grains.is_empty()).then(|| Self {
             sectors,
@@ -200,10 +203,48 @@ impl DepositOutline {
     }
 }
 
+/// How far the front reaches at least in each sector [m].
+struct KnownFront {
+    sectors: [f64; SECTORS],
+    /// The least of them.
+    nearest: f64,
+}
+
+impl KnownFront {
+    /// Nothing is known of it.
+    const NOWHERE: Self = Self {
+        sectors: [f64::NEG_INFINITY; SECTORS],
+        nearest: f64::NEG_INFINITY,
+    };
+
+    /// Takes note that a grain about `centre` reaches as far as `distance`.
+    fn reach(&mut self, centre: DVec3, distance: f64) {
+        if self.is_below(centre, distance) {
+            self.sectors[sector_of(turn_of(centre))] = distance;
+            self.nearest = self.sectors.iter().copied().fold(f64::INFINITY, f64::min);
+        }
+    }
+
+    /// Whether it is not known to reach as far as `distance` in the sector of `centre`.
+    fn is_below(&self, centre: DVec3, distance: f64) -> bool {
+        distance > self.nearest && distance > self.sectors[sector_of(turn_of(centre))]
+    }
+}
+
+/// Azimuth of a point, as a share of the turn, 0 … 1.
+fn turn_of(x: DVec3) -> f64 {
+    x.z.atan2(x.x) / TAU + 0.5
+}
+
+/// Which of the sectors this share of the turn lies in.
+fn sector_of(turn: f64) -> usize {
+    ((turn * SECTORS as f64) as usize).min(SECTORS - 1)
+}
+
 impl Extent {
     /// Which of the sectors its centre lies in.
     fn sector(&self) -> usize {
-        ((self.turn * SECTORS as f64) as usize).min(SECTORS - 1)
+        sector_of(self.turn)
     }
 
     fn of(world: &World, i: usize) -> Self {
@@ -221,7 +262,7 @@ impl Extent {
         }
         Self {
             distance: from_axis(centre),
-            turn: centre.z.atan2(centre.x) / TAU + 0.5,
+            turn: turn_of(centre),
             reach: reach + rounding,
             top: top + rounding,
         }

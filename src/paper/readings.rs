@@ -35,8 +35,10 @@ pub static KASPER2021_READINGS: Paper = Paper {
         "liquid-volume=0.3ml",
     ],
     small_batches: &[
-        Batch::new("r3", &[AS_PRINTED, "3mm"], &["0", "1", "7"], (1, 2)),
-        Batch::new("walls", &["walls-as-grains", "3mm"], &["0", "7"], (1, 2)),
+        Batch::new("r3", &[AS_PRINTED, "3mm"], &["0", "1", "7"], (1, 1)),
+        Batch::new("walls", &["walls-as-grains", "3mm"], &["0", "7"], (1, 1)),
+        Batch::new("r3", &[AS_PRINTED, "3mm"], &["0", "1", "7"], (2, 2)),
+        Batch::new("walls", &["walls-as-grains", "3mm"], &["0", "7"], (2, 2)),
     ],
     tables,
 };

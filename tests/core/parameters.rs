@@ -137,7 +137,7 @@ fn numbers_that_stood_for_choices_are_read_and_others_refused() {
         let parameter = Parameter::BridgeLaw;
         assert_eq!(read, Command::Set { parameter, value });
     }
-    for wrong in ["0.37", "2.0", "\"as-told\"", "\"full\""] {
+    for wrong in ["0.37", "3.0", "\"as-told\"", "\"full\""] {
         let message = serde_json::from_str::<Command>(&text(wrong))
             .unwrap_err()
             .to_string();

@@ -55,6 +55,12 @@ impl<'a> Ink<'a> {
         self.grounded(at, Align2::CENTER_BOTTOM, text, font, colour, SHADE);
     }
 
+    /// Where text at the `anchor` of `at` has its ground.
+    pub(super) fn ground_of(&self, at: Pos2, anchor: Align2, text: &str, font: FontId) -> Rect {
+        let text = (self.painter).layout_no_wrap(text.to_owned(), font, self.text);
+        ground_behind(anchor.anchor_size(at, text.size()))
+    }
+
     /// Text at the `anchor` of `at` on a ground of this colour; returns where it stands.
     pub(super) fn grounded(
         &self,
@@ -67,7 +73,7 @@ impl<'a> Ink<'a> {
     ) -> Rect {
         let text = (self.painter).layout_no_wrap(text.to_owned(), font, colour);
         let place = anchor.anchor_size(at, text.size());
-        let covered = place.expand2(vec2(4.0, 0.0));
+        let covered = ground_behind(place);
         self.painter
             .rect_filled(covered, CornerRadius::same(4), ground);
         self.painter.galley(place.min, text, colour);
@@ -81,6 +87,11 @@ impl<'a> Ink<'a> {
         self.painter
             .add(Shape::line(points, Stroke::new(width, colour)));
     }
+}
+
+/// The ground of a text that stands at `place`.
+fn ground_behind(place: Rect) -> Rect {
+    place.expand2(vec2(4.0, 0.0))
 }
 
 pub(super) fn srgb(colour: Color) -> [u8; 3] {

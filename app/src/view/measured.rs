@@ -33,11 +33,13 @@ impl Measured {
         temperature: None,
     };
 
-    /// What is measured of `world`.
+    /// What is measured of `world`: of a heap its outline, of a bed its surface.
     pub fn of(world: &World) -> Self {
+        let deposit = DepositOutline::of(world);
+        let is_bed = deposit.is_none();
         Self {
-            surface: surface_line(world, MIDDLE_SHARE),
-            deposit: DepositOutline::of(world),
+            surface: is_bed.then(|| surface_line(world, MIDDLE_SHARE)).flatten(),
+            deposit,
             ..Self::NOTHING
         }
     }

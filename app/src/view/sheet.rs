@@ -7,7 +7,7 @@
 use crate::view::camera::OrbitCamera;
 use crate::view::ink::Ink;
 use bevy::math::Vec3;
-use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Shape as Drawn, Stroke, vec2};
+use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Shape as Drawn, Stroke, Vec2, vec2};
 use grainfall::measure::Measure;
 
 /// How near to a mark the pointer lies on it, in points.
@@ -16,6 +16,8 @@ const NEAR: f32 = 9.0;
 pub(super) const WIDTHS: [f32; 2] = [2.2, 4.5];
 /// Length of an arrow's head, in points.
 const HEAD: f32 = 9.0;
+/// Between two labels, in points.
+const BETWEEN_LABELS: f32 = 2.0;
 /// Length of dashes and of the gaps between them, in points.
 const DASHES: [f32; 2] = [6.0, 5.0];
 
@@ -101,6 +103,8 @@ pub(super) struct Sheet<'a> {
     pub(super) lit: Option<Measure>,
     /// What can be pointed at.
     pub(super) marks: Vec<Mark>,
+    /// Where labels stand already.
+    pub(super) labels: Vec<Rect>,
 }
 
 impl Sheet<'_> {
@@ -148,15 +152,26 @@ impl Sheet<'_> {
         }
     }
 
+    /// Text at the `anchor` of the point `at`, raised by `lift` points; where other labels stand
+    /// there, above or below them.
     pub(super) fn label(
-        &self,
+        &mut self,
         at: Vec3,
         (anchor, lift): (Align2, f32),
         text: &str,
         colour: Color32,
     ) {
         let Some(place) = self.place(at) else { return };
-        let (font, lift) = (FontId::proportional(16.0), vec2(0.0, -lift));
-        (self.ink).grounded(place + lift, anchor, text, font, colour, self.ink.veil);
+        let (font, place) = (FontId::proportional(16.0), place - vec2(0.0, lift));
+        let ground = self.ink.ground_of(place, anchor, text, font.clone());
+        let line = vec2(0.0, ground.height() + BETWEEN_LABELS);
+        let shifts = [0.0, -1.0, 1.0, -2.0, 2.0].map(|lines| lines * line);
+        let is_free = |shift: &Vec2| {
+            let wanted = ground.translate(*shift);
+            !self.labels.iter().any(|other| other.intersects(wanted))
+        };
+        let shift = shifts.into_iter().find(is_free).unwrap_or(Vec2::ZERO);
+        let ground = (self.ink).grounded(place + shift, anchor, text, font, colour, self.ink.veil);
+        self.labels.push(ground);
     }
 }

@@ -112,6 +112,7 @@ fn measured(
         camera,
         lit: settings.lit_by_plot,
         marks: Vec::new(),
+        labels: Vec::new(),
     };
     if let (Some(map), Some(legend)) = (&shown.temperature, &settings.veil) {
         draw_veil(&sheet, world, map, legend);

@@ -120,6 +120,35 @@ fn the_mark_of_a_drum_says_what_it_is_and_how_far_it_has_turned() {
     assert!(drawn, "0.5 rad");
 }
 
+#[test]
+fn labels_stand_apart_wherever_the_drum_has_turned_to() {
+    let mut met = 0;
+    for degrees in (0..360).step_by(4) {
+        let mut turned = drum_of_grains();
+        turned.container.angle = f64::from(degrees).to_radians();
+        let world = Arc::new(turned);
+        let settings = ViewSettings {
+            measured: [Measured::of(&world), Measured::NOTHING],
+            ..ViewSettings::default()
+        };
+        let harness = pointed_with(settings, &world, egui::pos2(1.0, 1.0));
+        let shapes = &harness.output().shapes;
+        let place_of = |begin: &str| {
+            let mut texts = shapes.iter().filter_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) => Some(text),
+                _ => None,
+            });
+            let found = texts.find(|text| text.galley.text().starts_with(begin));
+            found.map(egui::epaint::TextShape::visual_bounding_rect)
+        };
+        if let (Some(angle), Some(mark)) = (place_of("θ = "), place_of("turned ")) {
+            assert!(!angle.intersects(mark), "{degrees}°: {angle:?}, {mark:?}");
+            met += 1;
+        }
+    }
+    assert!(met > 80, "{met} of 90");
+}
+
 /// How far the colours are apart.
 fn apart(a: [u8; 3], b: [u8; 3]) -> u32 {
     a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(b))).sum()

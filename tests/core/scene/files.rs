@@ -280,7 +280,7 @@ fn values_can_be_replaced_before_a_run() {
     );
     assert_eq!(scene.time_step, TimeStep::Given(1e-5));
     assert!(matches!(scene.grains, SceneGrains::Fill { count: 50, .. }));
-    assert_eq!(Scene::settings().count(), 26);
+    assert_eq!(Scene::settings().count(), 32);
 }
 
 #[test]
