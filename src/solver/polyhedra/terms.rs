@@ -34,7 +34,7 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     let alone = PairAlone::of(world, contact);
     match polyhedra.integrator {
         Integrator::Explicit => alone.terms::<false>(world, features),
-        Integrator::Imex => {
+        Integrator::Imex | Integrator::Implicit => {
             let mut terms = alone.terms::<true>(world, features);
             share_dashpots(&mut terms, contact.force);
             terms
