@@ -22,7 +22,6 @@
 use super::bodies::Body;
 use super::damping::{Matrix, Packed, ROWS, SUM, entry};
 use super::dashpots::{Dashpot, Response, relative};
-use super::joint::Motion;
 use super::nearest::group;
 use super::pairs::{PackedPartner, Pair, PairForce};
 use crate::lanes::{Lanes, Quad, Row, WIDEST, Work, cross, minus, plus, side_by_side};
@@ -56,6 +55,16 @@ pub struct Wrench {
     pub first: Row,
     /// On the second [N m].
     pub second: Row,
+}
+
+/// A velocity and a spin.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Motion {
+    /// Velocity [m/s].
+    pub velocity: Row,
+    /// Spin [rad/s].
+    pub spin: Row,
 }
 
 /// A symmetric matrix of three rows: xx, xy, xz, yy, yz, zz.
@@ -100,10 +109,10 @@ impl Coupling {
         contacts: &[Dashpot],
     ) -> Option<Self> {
         let mut sums = Sums::<Q>::none(processor);
-        contacts
-            .iter()
-            .for_each(|contact| sums.add(processor, contact));
-        if !(sums.springs + sums.arms[3] > 0.0) {
+        for contact in contacts {
+            sums.add(processor, contact);
+        }
+        if sums.springs + sums.arms[3] == 0.0 {
             return None;
         }
         let mut normal = packed(&sums.normal);

@@ -60,7 +60,7 @@
 
 use super::super::row::Row;
 use super::bodies::{Body, Load};
-use super::couplings::{Blocks, Coupling, Symmetric, Wrench};
+use super::couplings::{Blocks, Coupling, Motion, Symmetric, Wrench};
 use super::neighbours::PairsOfBodies;
 use crate::lanes::{Lanes, Work};
 use std::ops::Range;
@@ -74,16 +74,6 @@ const MOST_SEARCHES: u32 = 60;
 /// Where searches end: what is left of the equations, in the norm of the preconditioner, relative
 /// to what it was at first.
 const TOLERANCE: f64 = 1e-3;
-
-/// A velocity and a spin.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-pub struct Motion {
-    /// Velocity [m/s].
-    pub velocity: Row,
-    /// Spin [rad/s].
-    pub spin: Row,
-}
 
 /// What one worker keeps of the joint solution within a step.
 #[derive(Default)]
