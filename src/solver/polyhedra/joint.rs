@@ -452,7 +452,7 @@ pub struct SharedColumns {
 }
 
 impl SharedColumns {
-    /// Forgets all pairs.
+    /// Gives its memory back.
     pub fn clear(&mut self) {
         *self = Self::default();
     }

@@ -289,7 +289,6 @@ impl PolyhedronKernel {
         self.resistances.resize(list.len(), PairForce::default());
         self.resisting.clear();
         self.resisting.resize(list.len(), false);
-        self.implicit.clear();
         self.pairs_of = PairsOfBodies::of(list, count);
         let positions = self.bodies.iter().map(|body| body.position);
         self.reference.clear();

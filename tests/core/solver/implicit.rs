@@ -30,9 +30,8 @@ fn collision_keeps_momentum_and_angular_momentum() {
     for (k, what) in ["momentum", "angular momentum"].into_iter().enumerate() {
         assert_below(what, (end[k] - start[k]).length() / sizes[k], 1e-14);
     }
-    // Contacts begin at overlaps that a tenth of a rounding is in a step.
     let ledger = EnergyLedger::of(&world);
-    assert_below("residual", ledger.relative_residual().abs(), 0.02);
+    assert_below("residual", ledger.relative_residual().abs(), 1e-3);
 }
 
 #[test]
