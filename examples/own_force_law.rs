@@ -127,6 +127,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         impact_speed: speed,
         are_polyhedra: false,
         integrator: Integrator::Explicit,
+        // Spheres that only hit each other.
+        rounding: f64::INFINITY,
+        fastest: speed,
     };
     let limits = law.step_limits(&grain, &at);
     let largest = limits[0].time_step;

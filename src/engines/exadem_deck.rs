@@ -110,8 +110,17 @@ fn refused(handed: Handed) -> Vec<String> {
     refused
 }
 
+/// What an integrator takes implicitly, as the beginning of a sentence.
+fn what_is_implicit(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Explicit => "All forces are",
+        Integrator::Imex => "Dashpots are",
+        Integrator::Implicit => "Springs and dashpots are",
+    }
+}
+
 /// The engine's clock: its step is the scene's, or shorter where that is one for implicit dashpots
-/// alone.
+/// or springs alone.
 fn clock(handed: Handed) -> Clock {
     let stated = handed.world.clock.time_step;
     if handed.world.integrator().is_explicit() {
@@ -290,8 +299,11 @@ fn deviations(handed: Handed, clock: &Clock) -> Vec<String> {
     .into();
     if !world.integrator().is_explicit() {
         found.push(format!(
-            "Dashpots are explicit, here implicit (`integrator: Imex`): its step is {:e} s, here {:e} s.",
-            clock.time_step, world.clock.time_step
+            "{} explicit, here implicit (`integrator: {:?}`): its step is {:e} s, here {:e} s.",
+            what_is_implicit(world.integrator()),
+            world.integrator(),
+            clock.time_step,
+            world.clock.time_step
         ));
     }
     let shapes = world.polyhedra.as_ref().map_or(0, |all| all.shapes.len());

@@ -15,6 +15,9 @@ pub enum Integrator {
     /// polyhedra (IMEX, implicit–explicit): dashpots limit the step no longer. Spheres move as with
     /// [`Self::Explicit`].
     Imex,
+    /// Springs and dashpots of polyhedra are taken implicitly, for all bodies together: neither
+    /// limits the step. Spheres move as with [`Self::Explicit`].
+    Implicit,
 }
 
 impl Integrator {

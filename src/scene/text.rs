@@ -47,8 +47,8 @@ impl Scene {
         }
         line("gravity", vector(self.gravity));
         line("law", law);
-        if self.integrator == Integrator::Imex {
-            line("integrator", "Imex".to_owned());
+        if self.integrator != Integrator::Explicit {
+            line("integrator", format!("{:?}", self.integrator));
         }
         line("time_step", time_step(self.time_step));
         line("duration", format!("{:?}", self.duration));

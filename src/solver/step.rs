@@ -97,17 +97,17 @@ pub trait Share: Send {
         phase: &InPhase<'_, ForcePhase>,
     ) -> Tally;
 
-    /// How often the dashpots of all pairs are solved after the forces are known; none where they
-    /// are forces like any other.
-    fn sweeps(&self) -> usize {
-        0
+    /// Whether there is another sweep after so many, in which bodies respond to their pairs and
+    /// pairs resist their bodies: none where all forces are explicit. All workers say the same.
+    fn has_sweep(&self, _sweep: usize) -> bool {
+        false
     }
 
-    /// Makes known how the worker's grains move after the forces and, from the second sweep on, the
-    /// dashpots so far.
-    fn respond(&mut self, _sweep: usize, _phase: &InPhase<'_, MotionPhase>) {}
+    /// Makes known how the worker's grains move after the forces and the sweeps so far.
+    fn respond(&mut self, _processor: Processor, _sweep: usize, _phase: &InPhase<'_, MotionPhase>) {
+    }
 
-    /// Solves the dashpots of the worker's pairs.
+    /// Solves what the worker's pairs do implicitly.
     fn resist(&mut self, _processor: Processor, _sweep: usize, _phase: &InPhase<'_, ForcePhase>) {}
 
     /// Sums the forces on the worker's grains and moves them; at the `last` step of a call they
@@ -309,11 +309,13 @@ impl Course {
             let begin = timed.then(Instant::now);
 
             let tally = share.compute_forces(self.processor, &walls, &forces);
-            for sweep in 0..share.sweeps() {
+            let mut sweep = 0;
+            while share.has_sweep(sweep) {
                 let responding = forces.meet();
-                share.respond(sweep, &responding);
+                share.respond(self.processor, sweep, &responding);
                 forces = responding.meet();
                 share.resist(self.processor, sweep, &forces);
+                sweep += 1;
             }
             let motion: InPhase<'a, MotionPhase> = forces.meet();
             let middle = begin.map(|_| Instant::now());

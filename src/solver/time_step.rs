@@ -18,7 +18,7 @@ pub use crate::physics::law::StepLimit as Limit;
 use crate::physics::law::{Circumstances, SmallestGrain, lubrication_limit};
 use crate::physics::limits::TIME_STEP;
 use crate::physics::{ContactLaw, Integrator, Liquid, MaterialId, Materials};
-use crate::scene::{Scene, SceneGrains, TimeStep};
+use crate::scene::{Scene, SceneContainer, SceneGrains, TimeStep};
 use crate::world::{self, World};
 
 /// The step and the limits that it is held against.
@@ -67,6 +67,10 @@ pub struct Extremes {
     radii: Vec<(MaterialId, f64)>,
     /// Speed of impacts [m/s].
     impact_speed: f64,
+    /// Smallest sphero-radius of polyhedra; infinite where none has one [m].
+    rounding: f64,
+    /// How fast grains may become as they fall, or hit each other [m/s].
+    fastest: f64,
 }
 
 /// The time step for `scene` before there is a world of it: the one it gives, or the largest that
@@ -94,6 +98,8 @@ impl Extremes {
         Self {
             radii: smallest_radii(scene),
             impact_speed: impact_speed(scene),
+            rounding: smallest_rounding(scene),
+            fastest: impact_speed(scene).max(falling_speed(scene)),
         }
     }
 
@@ -129,6 +135,8 @@ impl Extremes {
             impact_speed: self.impact_speed,
             are_polyhedra,
             integrator,
+            rounding: self.rounding,
+            fastest: self.fastest,
         }
     }
 
@@ -231,6 +239,26 @@ fn smallest_radii(scene: &Scene) -> Vec<(MaterialId, f64)> {
     radii.sort_by(|a, b| name(a.0).cmp(name(b.0)).then(a.1.total_cmp(&b.1)));
     radii.dedup_by_key(|(material, _)| *material);
     radii
+}
+
+/// The smallest sphero-radius of the scene's polyhedra; infinite where none has one [m].
+fn smallest_rounding(scene: &Scene) -> f64 {
+    match &scene.grains {
+        SceneGrains::Fill { .. } => f64::INFINITY,
+        SceneGrains::Voronoi(cells) => cells.rounding,
+        SceneGrains::List(grains) => {
+            let roundings = grains.iter().filter_map(|grain| grain.shape.rounding());
+            roundings.fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// The speed of a free fall from the top of a column; none elsewhere [m/s].
+fn falling_speed(scene: &Scene) -> f64 {
+    match scene.container {
+        SceneContainer::Column { height, .. } => (2.0 * scene.gravity.length() * height).sqrt(),
+        _ => 0.0,
+    }
 }
 
 fn impact_speed(scene: &Scene) -> f64 {

@@ -14,6 +14,7 @@ mod faults;
 mod golden;
 mod imex;
 mod impact;
+mod implicit;
 mod liggghts;
 mod mesh;
 mod pair_forces;

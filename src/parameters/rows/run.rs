@@ -83,7 +83,7 @@ pub static TIME_STEP: ParameterRow = ParameterRow {
     ..super::AT_START
 };
 
-static INTEGRATORS: [Choice; 2] = [
+static INTEGRATORS: [Choice; 3] = [
     Choice {
         key: "explicit",
         name: "explicit",
@@ -94,15 +94,20 @@ static INTEGRATORS: [Choice; 2] = [
         name: "IMEX, dashpots implicit",
         number: 1.0,
     },
+    Choice {
+        key: "implicit",
+        name: "springs and dashpots implicit",
+        number: 2.0,
+    },
 ];
 
 pub static INTEGRATOR: ParameterRow = ParameterRow {
     key: "integrator",
     name: |_| "integrator",
     kind: Kind::Choice(&INTEGRATORS),
-    expected: "`explicit` or `imex`, in a scene of polyhedra",
+    expected: "`explicit`, `imex` or `implicit`, in a scene of polyhedra",
     description: "How polyhedra are moved: with IMEX, their dashpots do not limit the time step, which may be several times as \
-                  long.",
+                  long; where springs are implicit too, neither do they.",
     in_scene: Some(InScene {
         read: |scene, _| {
             let integrators = scene.is_polyhedral().then_some(&INTEGRATORS)?;
@@ -114,6 +119,7 @@ pub static INTEGRATOR: ParameterRow = ParameterRow {
             scene.integrator = match value {
                 Value::Choice(choice) if choice.key == "explicit" => Integrator::Explicit,
                 Value::Choice(choice) if choice.key == "imex" => Integrator::Imex,
+                Value::Choice(choice) if choice.key == "implicit" => Integrator::Implicit,
                 _ => return None,
             };
             scene.is_polyhedral().then_some(())

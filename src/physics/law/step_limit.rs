@@ -45,4 +45,8 @@ pub struct Circumstances {
     pub are_polyhedra: bool,
     /// How the equations of motion are integrated.
     pub integrator: Integrator,
+    /// Smallest sphero-radius of polyhedra; infinite where none has one [m].
+    pub rounding: f64,
+    /// How fast grains may become as they fall, or hit each other [m/s].
+    pub fastest: f64,
 }

@@ -14,6 +14,7 @@
 use super::super::row::{Row, length_squared, row, vector};
 use super::nearest::Places;
 use crate::lanes::{Lanes, Quad, Work, prefetch};
+use crate::physics::Integrator;
 use crate::world::{Polyhedron, World};
 use glam::{DQuat, DVec3};
 use std::ops::Range;
@@ -322,7 +323,10 @@ impl Body {
         let inverse = polyhedra.inertia[i].recip();
         Self {
             position: row(grains.position[i], 1.0 / grains.mass[i]),
-            velocity: row(grains.velocity[i], LARGEST_MOVE * rounding / dt),
+            velocity: row(
+                grains.velocity[i],
+                largest_move(polyhedra.integrator) * rounding / dt,
+            ),
             spin: row(grains.spin[i], grains.radius[i]),
             angular_momentum: row(polyhedra.angular_momentum[i], rounding),
             orientation: polyhedra.orientation[i].to_array(),
@@ -367,11 +371,26 @@ impl Body {
     /// yy, yz, zz.
     #[inline(always)]
     pub fn inverse_inertia(&self) -> [f64; 6] {
+        let [x, y, z, _] = self.inverse_inertia;
+        self.along_world([x, y, z])
+    }
+
+    /// Its inertia along the axes of the world, `R I Rᵀ` [kg m²], likewise.
+    #[inline(always)]
+    pub fn inertia(&self) -> [f64; 6] {
+        let [x, y, z, _] = self.inverse_inertia;
+        self.along_world([1.0 / x, 1.0 / y, 1.0 / z])
+    }
+
+    /// The symmetric matrix along the axes of the world that has these `principal` values along the
+    /// body's.
+    #[inline(always)]
+    fn along_world(&self, principal: [f64; 3]) -> [f64; 6] {
         let axes = axes(self.orientation);
         let entry = |i: usize, j: usize| {
-            axes[0][i] * axes[0][j] * self.inverse_inertia[0]
-                + axes[1][i] * axes[1][j] * self.inverse_inertia[1]
-                + axes[2][i] * axes[2][j] * self.inverse_inertia[2]
+            axes[0][i] * axes[0][j] * principal[0]
+                + axes[1][i] * axes[1][j] * principal[1]
+                + axes[2][i] * axes[2][j] * principal[2]
         };
         [
             entry(0, 0),
@@ -450,8 +469,14 @@ impl Body {
 }
 
 /// A body no point of which may move in one step by more than this share of its sphero-radius:
-/// features could pass through each other unseen.
-pub const LARGEST_MOVE: f64 = 0.25;
+/// features could pass through each other unseen. Where steps are as long as that allows, two
+/// bodies may come in one step half of the way at which they touch.
+pub fn largest_move(integrator: Integrator) -> f64 {
+    match integrator {
+        Integrator::Explicit | Integrator::Imex => 0.25,
+        Integrator::Implicit => 0.5,
+    }
+}
 
 /// A rotation about body axis `K` by the angle whose half has the tangent `momentum[K] rate / 2`:
 /// that of the axis' own free rotation to third order, and symplectic as any function of that

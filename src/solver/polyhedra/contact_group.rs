@@ -57,6 +57,8 @@ pub struct NormalForces<N: Lanes> {
     pub repulsion: N,
     /// Those dashpots, none where the contact has let go [N s/m].
     pub dashpot: N,
+    /// The springs beside them, likewise [N/m].
+    pub stiffness: N,
 }
 
 /// What contacts do: rows, of which the first [`Lanes::COUNT`] count.
@@ -70,8 +72,9 @@ pub struct ContactForces<N: Lanes> {
     /// Tangential springs [m] and their stiffness [N/m].
     pub springs: [N::Quad; WIDEST],
     /// Where dashpots are taken implicitly: normals and dashpots [N s/m], arms across the normals
-    /// [m].
-    pub dashpots: [[N::Quad; WIDEST]; 2],
+    /// [m] and springs, arms [m] and tangential springs; springs of contacts that have let go or
+    /// slide are none [N/m].
+    pub dashpots: [[N::Quad; WIDEST]; 3],
 }
 
 impl<N: Lanes> ContactGroup<N> {
@@ -127,14 +130,15 @@ impl<N: Lanes> ContactGroup<N> {
         ];
         let contact = (touching, overlap);
         let along = normal_contact(Hooke::default(), constants, contact, approach, zero);
-        let (repulsion, dashpot) = if IMPLICIT {
+        let (repulsion, dashpot, stiffness) = if IMPLICIT {
             let holds = along.repulsion.exceeds(zero);
             (
                 N::choose(holds, along.elastic, zero),
                 N::choose(holds, along.coefficients.normal_damping, zero),
+                N::choose(holds, along.coefficients.normal_stiffness, zero),
             )
         } else {
-            (along.repulsion, zero)
+            (along.repulsion, zero, zero)
         };
         NormalForces {
             touching,
@@ -144,6 +148,7 @@ impl<N: Lanes> ContactGroup<N> {
             along,
             repulsion,
             dashpot,
+            stiffness,
         }
     }
 
@@ -190,14 +195,35 @@ impl<N: Lanes> ContactGroup<N> {
             springs: updated.rows,
             dashpots: if IMPLICIT {
                 let [tx, ty, tz] = cross(arm, normal);
+                let sticking =
+                    self.stiffness_across(processor, stiffness, updated.slides, (&pressed, step));
                 [
                     N::rows([normal[0], normal[1], normal[2], pressed.dashpot]),
-                    N::rows([tx, ty, tz, zero]),
+                    N::rows([tx, ty, tz, pressed.stiffness]),
+                    N::rows([arm[0], arm[1], arm[2], sticking]),
                 ]
             } else {
-                [updated.rows; 2]
+                [updated.rows; 3]
             },
         }
+    }
+
+    /// How stiff contacts are against a change of their slip within a step: a spring where they
+    /// stick, and where they slide no stiffer than the force they drag with over the way they slide.
+    #[inline(always)]
+    fn stiffness_across(
+        &self,
+        processor: N::Processor,
+        stiffness: N,
+        slides: N::Mask,
+        (pressed, step): (&NormalForces<N>, N),
+    ) -> N {
+        let still = N::splat(processor, f64::MIN_POSITIVE);
+        let way = step * dot(pressed.slip, pressed.slip).sqrt() + still;
+        let bound = self.friction() * pressed.along.bounding;
+        let sliding = bound / way;
+        let sliding = N::choose(stiffness.exceeds(sliding), sliding, stiffness);
+        N::choose(slides, sliding, stiffness)
     }
 
     /// Energy that the step cost along the normal: lost in the dashpot, and put into the spring, by

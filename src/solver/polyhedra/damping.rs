@@ -42,7 +42,7 @@ impl<N: Lanes> Matrix<N> {
 
     /// Entry of row `i` and column `j`.
     #[inline(always)]
-    fn at(&self, i: usize, j: usize) -> N {
+    pub fn at(&self, i: usize, j: usize) -> N {
         self.0[entry(i, j)]
     }
 

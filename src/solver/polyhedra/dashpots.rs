@@ -51,13 +51,15 @@ pub struct Damper {
     torque: Row,
 }
 
-/// A contact's dashpot.
+/// A contact's dashpot, and its springs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dashpot {
     /// Unit normal; the dashpot, none where the contact has let go [N s/m].
     pub normal: Row,
-    /// The arm across the normal [m].
+    /// The arm across the normal [m]; the normal spring, none where the contact has let go [N/m].
     pub moment: Row,
+    /// The arm [m]; how stiff the contact is against a change of its slip within a step [N/m].
+    pub arm: Row,
 }
 
 /// How a body moves after all forces so far, and how it responds to more.
@@ -284,7 +286,7 @@ impl<N: Lanes> Side<N> {
 
 /// Velocity and spin of the first side relative to the second at the first's centroid.
 #[inline(always)]
-fn relative<N: Lanes>(between: [N; 3], [first, second]: [[[N; 3]; 2]; 2]) -> [N; 6] {
+pub fn relative<N: Lanes>(between: [N; 3], [first, second]: [[[N; 3]; 2]; 2]) -> [N; 6] {
     let turning = cross(second[1], between);
     let [vx, vy, vz] = minus(minus(first[0], second[0]), turning);
     let [wx, wy, wz] = minus(first[1], second[1]);

@@ -13,6 +13,7 @@ use super::super::row::{sub, vector};
 use super::super::step::Tally;
 use super::super::tangential::UNLOADED;
 use super::contact_group::ContactGroup;
+use super::couplings::Coupling;
 use super::dashpots::{Damper, Dashpot};
 use super::motion::{Surroundings, crossed};
 use super::nearest::{Nearest, group};
@@ -41,8 +42,11 @@ pub struct Forces<'a> {
     pub effects: &'a mut [PairForce],
     /// Whether they do anything.
     pub acting: &'a mut [bool],
-    /// Whether their dashpots are left for [`super::dashpots`]; none where they act here.
+    /// Whether their dashpots are left for [`super::dashpots`], or springs and dashpots for
+    /// [`super::joint`]; none where they act here.
     pub resisting: Option<&'a mut [bool]>,
+    /// Which numbers those that are solved jointly have, and the first of them; none where none is.
+    pub slots: Option<(&'a mut [u32], u32)>,
     /// Room to work in.
     pub workspace: &'a mut Workspace,
 }
@@ -60,11 +64,13 @@ impl Work for Forces<'_> {
             effects,
             acting,
             mut resisting,
+            mut slots,
             workspace,
         } = self;
         let mut tally = Tally::default();
         acting.fill(false);
         workspace.dampers.clear();
+        workspace.joint.clear();
         if let Some(resisting) = &mut resisting {
             resisting.fill(false);
         }
@@ -86,7 +92,15 @@ impl Work for Forces<'_> {
                 workspace.compute_forces::<N, true>(processor, all.dt, &mut block);
                 workspace.sum(&all, &block, forces, acting);
                 let first = number * BLOCK;
-                workspace.collect_dashpots(&block, first, forces, &mut resisting[first..]);
+                let resisting = &mut resisting[first..];
+                if let Some((slots, base)) = &mut slots {
+                    let slots = (&mut slots[first..], *base);
+                    workspace.collect_couplings::<N::Quad>(
+                        processor, &block, first, forces, resisting, slots,
+                    );
+                } else {
+                    workspace.collect_dashpots(&block, first, forces, resisting);
+                }
             } else {
                 workspace.compute_forces::<N, false>(processor, all.dt, &mut block);
                 workspace.sum(&all, &block, forces, acting);
@@ -168,6 +182,7 @@ impl Workspace {
                 for (k, dashpot) in dashpots.iter_mut().enumerate() {
                     dashpot.normal = found.dashpots[0][k].row();
                     dashpot.moment = found.dashpots[1][k].row();
+                    dashpot.arm = found.dashpots[2][k].row();
                 }
             }
             for (k, (effect, number)) in effects.iter_mut().zip(numbers).enumerate() {
@@ -234,6 +249,38 @@ impl Workspace {
                 forces[own].set_dashpots(damper.strength());
                 resisting[own] = true;
                 self.dampers.push(damper);
+            }
+        }
+    }
+}
+
+impl Workspace {
+    /// Collects springs and dashpots of each pair, `first` being the number of the block's first
+    /// pair; the worker's first of them has the number `base`.
+    #[inline(always)]
+    fn collect_couplings<Q: Quad>(
+        &mut self,
+        processor: Q::Processor,
+        block: &Block<'_>,
+        first: usize,
+        forces: &mut [PairForce],
+        resisting: &mut [bool],
+        (slots, base): (&mut [u32], u32),
+    ) {
+        for (number, active) in self.active.iter().enumerate() {
+            if !active.touches {
+                continue;
+            }
+            let contacts = &self.dashpots[self.results_of(number)];
+            let own = active.pair as usize;
+            let [stiffness, damping, ..] = block.terms[own].law;
+            let (pair, number) = (&block.pairs[own], (first + own) as u32);
+            let ratio = damping / stiffness;
+            if let Some(coupling) = Coupling::of::<Q>(processor, (number, pair), ratio, contacts) {
+                forces[own].set_dashpots(coupling.stiffness());
+                resisting[own] = true;
+                slots[own] = base + self.joint.couplings.len() as u32;
+                self.joint.couplings.push(coupling);
             }
         }
     }

@@ -23,7 +23,9 @@
 //! | `contact_group` | the contact law between features, lane by lane |
 //! | `forces` | contact forces of blocks of pairs |
 //! | `damping` | matrices of the dashpots of pairs |
-//! | `dashpots` | the dashpots of all pairs, taken implicitly |
+//! | `dashpots` | the dashpots of all pairs, taken implicitly pair by pair |
+//! | `couplings` | springs and dashpots of pairs as what couples their bodies within a step |
+//! | `joint` | springs and dashpots of all pairs, taken implicitly for all bodies together |
 //! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
 //! | `terms` | contact forces again, term by term |
@@ -33,10 +35,12 @@
 
 mod bodies;
 mod contact_group;
+mod couplings;
 mod damping;
 mod dashpots;
 mod extents;
 mod forces;
+mod joint;
 mod listed;
 mod listing;
 mod motion;

@@ -234,7 +234,8 @@ impl ContactPoint {
 pub struct PairForce {
     /// Force on the first [N]; 1 while the two touch, else 0.
     pub force: Row,
-    /// Torque on the first [N m]; the sum of the dashpots that are taken implicitly [N s/m].
+    /// Torque on the first [N m]; the sum of the dashpots that are taken implicitly [N s/m], or of
+    /// the normal springs where those are too [N/m].
     pub first: Row,
     /// Torque on the second [N m].
     pub second: Row,
@@ -262,7 +263,8 @@ impl PairForce {
         self.force[3]
     }
 
-    /// The sum of its dashpots that are left to be taken implicitly [N s/m].
+    /// The sum of its dashpots that are left to be taken implicitly [N s/m], or of its normal springs
+    /// where those are too [N/m].
     #[inline(always)]
     pub fn dashpots(&self) -> f64 {
         self.first[3]

@@ -6,7 +6,9 @@
 //! | column | length | written by | read by all in |
 //! |---|---|---|---|
 //! | bodies, vertices, planes, responses | bodies, features | the body's worker, motion phase | force phase |
+//! | changes, motions, products | bodies, bundles | the body's worker, motion phase | force phase |
 //! | forces, acting, resistances, resisting | pairs | the pair's worker, force phase | motion phase |
+//! | slots, wrenches, blocks | pairs | the pair's worker, force phase | motion phase |
 //! | loads | bodies | the body's worker, motion phase | nobody else |
 //! | pairs, terms, points | pairs, blocks | the pair's worker, force phase | nobody else |
 //!
@@ -24,9 +26,11 @@ use super::super::walls::Walls;
 use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
 use super::PolyhedronKernel;
 use super::bodies::{Body, Geometry, Load, Place, Shapes};
+use super::couplings::{Assembly, Blocks, Final, Image, Motion, Product, Wrench};
 use super::dashpots::{DampingSweep, Response, SWEEPS, responses_of_walls};
 use super::extents::Extents;
 use super::forces::Forces;
+use super::joint::{BUNDLE, Beginning, Bodies, SharedColumns, Stage};
 use super::motion::{Surroundings, motions_of};
 use super::nearest::Places;
 use super::neighbours::PairsOfBodies;
@@ -54,6 +58,8 @@ pub struct PolyhedraShare<'a> {
     resisting: Column<'a, bool, ForcePhase>,
     /// How the bodies respond to them: read by all in the force phase.
     responses: Column<'a, Response, MotionPhase>,
+    /// What the joint solution of springs and dashpots shares.
+    joint: JointColumns<'a>,
     /// What only this worker touches: loads of its bodies, all that is kept of its pairs.
     loads: &'a mut [Load],
     pairs: &'a mut [Pair],
@@ -64,6 +70,54 @@ pub struct PolyhedraShare<'a> {
     wall_motions: Vec<[Row; 3]>,
     /// The same, and how it responds to dashpots: not at all.
     wall_responses: Vec<([Row; 3], Response)>,
+}
+
+/// The columns of the joint solution: see [`SharedColumns`].
+struct JointColumns<'a> {
+    /// Number of the first pair of the worker.
+    base: u32,
+    slots: Column<'a, u32, ForcePhase>,
+    wrenches: Column<'a, Wrench, ForcePhase>,
+    blocks: Column<'a, Blocks, ForcePhase>,
+    changes: Column<'a, Motion, MotionPhase>,
+    motions: Column<'a, Motion, MotionPhase>,
+    products: Column<'a, f64, MotionPhase>,
+}
+
+impl<'a> JointColumns<'a> {
+    /// Those of all workers; without any rows where nothing is solved jointly.
+    fn all(
+        shared: &'a mut SharedColumns,
+        batch: &'a Batch,
+        division: &Division,
+    ) -> impl Iterator<Item = Self> {
+        let used = !shared.slots.is_empty();
+        let within = |ranges: &[Range<usize>]| {
+            let ranges = ranges.iter().cloned();
+            let ranges: Vec<_> = ranges.map(|own| if used { own } else { 0..0 }).collect();
+            ranges.into_iter()
+        };
+        let by_pair = || within(&division.pairs);
+        let by_body = || within(&division.bodies);
+        let mut slots = batch.lend_ranges(&mut shared.slots, by_pair());
+        let mut wrenches = batch.lend_ranges(&mut shared.wrenches, by_pair());
+        let mut blocks = batch.lend_ranges(&mut shared.blocks, by_pair());
+        let mut changes = batch.lend_ranges(&mut shared.changes, by_body());
+        let mut motions = batch.lend_ranges(&mut shared.motions, by_body());
+        let bundles = within(&division.bundles);
+        let mut products = batch.lend_ranges(&mut shared.products, bundles);
+        by_pair().map_while(move |own| {
+            Some(Self {
+                base: own.start as u32,
+                slots: slots.next()?,
+                wrenches: wrenches.next()?,
+                blocks: blocks.next()?,
+                changes: changes.next()?,
+                motions: motions.next()?,
+                products: products.next()?,
+            })
+        })
+    }
 }
 
 /// What all workers read and none writes.
@@ -95,8 +149,10 @@ struct Division {
     blocks: Vec<Range<usize>>,
     /// The pairs in them.
     pairs: Vec<Range<usize>>,
-    /// Bodies, in equal numbers.
+    /// Bodies, in equal numbers or in whole bundles.
     bodies: Vec<Range<usize>>,
+    /// Their bundles, where they are divided so.
+    bundles: Vec<Range<usize>>,
     /// Their vertices.
     vertices: Vec<Range<usize>>,
     /// Their faces.
@@ -113,8 +169,14 @@ impl Division {
             .iter()
             .map(|own| first_of(own.start)..first_of(own.end));
         let pairs = pairs.collect();
-        let bodies: Vec<_> = (0..size)
-            .map(|worker| range_of(count, worker, size))
+        let is_joint = world.integrator == Integrator::Implicit;
+        let bundle = if is_joint { BUNDLE } else { 1 };
+        let bundles: Vec<_> = (0..size)
+            .map(|worker| range_of(count.div_ceil(bundle), worker, size))
+            .collect();
+        let first_body = |bundles: usize| (bundles * bundle).min(count);
+        let bodies: Vec<_> = (bundles.iter())
+            .map(|own| first_body(own.start)..first_body(own.end))
             .collect();
         let features = |first: fn(&Place) -> u32| {
             let place = |i: usize| first(&world.shapes.places[i]) as usize;
@@ -127,6 +189,7 @@ impl Division {
             blocks,
             pairs,
             bodies,
+            bundles,
         }
     }
 }
@@ -139,6 +202,11 @@ impl<'a> PolyhedraShare<'a> {
         world.workspaces.resize_with(needed, Workspace::default);
         let count = world.bodies.len();
         world.responses.resize(count, Response::default());
+        if world.integrator == Integrator::Implicit {
+            world.implicit.resize(world.pairs.list.len(), count);
+        } else {
+            world.implicit.clear();
+        }
         let division = Division::of(world, batch.size());
         let by_pair = || division.pairs.iter().cloned();
         let by_body = || division.bodies.iter().cloned();
@@ -165,6 +233,7 @@ impl<'a> PolyhedraShare<'a> {
         let mut resistances = batch.lend_ranges(&mut world.resistances, by_pair());
         let mut resisting = batch.lend_ranges(&mut world.resisting, by_pair());
         let mut responses = batch.lend_ranges(&mut world.responses, by_body());
+        let mut joint = JointColumns::all(&mut world.implicit, batch, &division);
         let mut loads = split_once(&mut world.loads, by_body());
         let mut pairs = split_once(&mut world.pairs.list, by_pair());
         let mut terms = split_once(&mut world.pairs.terms, by_pair());
@@ -182,6 +251,7 @@ impl<'a> PolyhedraShare<'a> {
                 resistances: resistances.next()?,
                 resisting: resisting.next()?,
                 responses: responses.next()?,
+                joint: joint.next()?,
                 loads: loads.next()?,
                 pairs: pairs.next()?,
                 terms: terms.next()?,
@@ -225,20 +295,26 @@ impl Share for PolyhedraShare<'_> {
             points: &mut *self.points,
             effects: self.forces.write_first(phase),
             acting: self.acting.write_first(phase),
-            resisting: (common.integrator == Integrator::Imex)
+            resisting: (common.integrator != Integrator::Explicit)
                 .then(|| self.resisting.write_first(phase)),
+            slots: (common.integrator == Integrator::Implicit)
+                .then(|| (self.joint.slots.write_first(phase), self.joint.base)),
             workspace: &mut *self.workspace,
         })
     }
 
-    fn sweeps(&self) -> usize {
+    fn has_sweep(&self, sweep: usize) -> bool {
         match self.common.integrator {
-            Integrator::Explicit => 0,
-            Integrator::Imex => SWEEPS,
+            Integrator::Explicit => false,
+            Integrator::Imex => sweep < SWEEPS,
+            Integrator::Implicit => !self.workspace.joint.progress.is_done,
         }
     }
 
-    fn respond(&mut self, sweep: usize, phase: &InPhase<'_, MotionPhase>) {
+    fn respond(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, MotionPhase>) {
+        if self.common.integrator == Integrator::Implicit && sweep > 0 {
+            return self.move_jointly(processor, sweep, phase);
+        }
         let incidence = Incidence {
             forces: self.forces.read(phase),
             acting: self.acting.read(phase),
@@ -262,6 +338,9 @@ impl Share for PolyhedraShare<'_> {
     }
 
     fn resist(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, ForcePhase>) {
+        if self.common.integrator == Integrator::Implicit {
+            return self.resist_jointly(processor, sweep, phase);
+        }
         processor.run(DampingSweep {
             first: sweep == 0,
             dt: self.common.dt,
@@ -296,6 +375,100 @@ impl Share for PolyhedraShare<'_> {
             common: self.common,
             last,
         })
+    }
+}
+
+/// The sweeps of the joint solution ([`super::joint`]):
+///
+/// | sweep | bodies | pairs |
+/// |---|---|---|
+/// | 0 | how they move without their pairs | assemble their matrices |
+/// | 1 | set their equations up | products, or the wrenches if nothing is left |
+/// | 2, 4, … | sum the products | choose the next search |
+/// | 3, 5, … | go along it | products, or the wrenches if little is left |
+impl PolyhedraShare<'_> {
+    /// What the worker's bodies do in a `sweep` after the first.
+    fn move_jointly(
+        &mut self,
+        processor: Processor,
+        sweep: usize,
+        phase: &InPhase<'_, MotionPhase>,
+    ) {
+        let joint = &mut self.joint;
+        let stage = match sweep {
+            1 => Stage::Begin(Beginning {
+                own: self.own.clone(),
+                pairs_of: self.common.pairs_of,
+                resisting: self.resisting.read(phase),
+                slots: joint.slots.read(phase),
+                bodies: self.bodies.write_first(phase),
+                loads: &*self.loads,
+                gravity: self.common.gravity,
+                dt: self.common.dt,
+                blocks: joint.blocks.read(phase),
+            }),
+            even if even % 2 == 0 => Stage::Sum,
+            _ => Stage::Go,
+        };
+        processor.run(Bodies {
+            stage,
+            joint: &mut self.workspace.joint,
+            wrenches: joint.wrenches.read(phase),
+            changes: joint.changes.write_first(phase),
+            motions: joint.motions.write_first(phase),
+            products: joint.products.write_first(phase),
+        });
+    }
+
+    /// What the worker's pairs do in a `sweep`.
+    fn resist_jointly(
+        &mut self,
+        processor: Processor,
+        sweep: usize,
+        phase: &InPhase<'_, ForcePhase>,
+    ) {
+        let (joint, own) = (&mut self.joint, &mut self.workspace.joint);
+        if sweep == 0 {
+            return processor.run(Assembly {
+                dt: self.common.dt,
+                couplings: &own.couplings,
+                bodies: self.bodies.read(phase),
+                responses: self.responses.read(phase),
+                walls: &self.wall_responses,
+                columns: &mut own.columns,
+                wrenches: joint.wrenches.write_first(phase),
+                blocks: joint.blocks.write_first(phase),
+            });
+        }
+        let products = joint.products.read(phase);
+        if sweep.is_multiple_of(2) {
+            return own.progress.search(products);
+        }
+        own.progress.conclude(products);
+        let is_done = own.progress.is_done;
+        let motions = if is_done {
+            &joint.changes
+        } else {
+            &joint.motions
+        };
+        let product = Product {
+            couplings: &own.couplings,
+            columns: &own.columns,
+            motions: motions.read(phase),
+        };
+        if is_done {
+            processor.run(Final {
+                dt: self.common.dt,
+                product,
+                walls: &self.wall_responses,
+                forces: self.resistances.write_first(phase),
+            });
+        } else {
+            processor.run(Image {
+                product,
+                wrenches: joint.wrenches.write_first(phase),
+            });
+        }
     }
 }
 

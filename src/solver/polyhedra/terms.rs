@@ -7,7 +7,8 @@
 //!
 //! Dashpots that are taken implicitly act for the pair as one ([`super::dashpots`]): of the force
 //! that was applied they are what all else leaves, and each feature is told its share, in
-//! proportion to its own dashpot.
+//! proportion to its own dashpot. Where springs are implicit too ([`super::joint`]), what they yield
+//! within a step is told with the dashpots; of features that have all let go each is told as much.
 
 use super::super::row::{row, vector};
 use super::super::terms::{AT_THE_BOUND, ForceTerms};
@@ -34,7 +35,7 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     let alone = PairAlone::of(world, contact);
     match polyhedra.integrator {
         Integrator::Explicit => alone.terms::<false>(world, features),
-        Integrator::Imex => {
+        Integrator::Imex | Integrator::Implicit => {
             let mut terms = alone.terms::<true>(world, features);
             share_dashpots(&mut terms, contact.force);
             terms
@@ -58,8 +59,16 @@ fn of_pair(features: &[FeatureContact], pair: (u32, Partner)) -> &[FeatureContac
 fn share_dashpots(terms: &mut [(ForceTerms, f64)], applied: DVec3) {
     let so_far: DVec3 = terms.iter().map(|(terms, _)| terms.force()).sum();
     let all: f64 = terms.iter().map(|(_, dashpot)| dashpot).sum();
-    for (terms, dashpot) in terms.iter_mut().filter(|(_, dashpot)| *dashpot > 0.0) {
-        terms.normal_dashpot = (applied - so_far) * (*dashpot / all);
+    let count = terms.len() as f64;
+    for (terms, dashpot) in terms {
+        let share = if all > 0.0 {
+            *dashpot / all
+        } else {
+            1.0 / count
+        };
+        if share > 0.0 {
+            terms.normal_dashpot += (applied - so_far) * share;
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use super::super::walls::Walls;
 use super::bodies::{Body, Load, Shapes};
 use super::dashpots::Response;
 use super::extents::Extents;
+use super::joint::SharedColumns;
 use super::neighbours::{PairList, PairsOfBodies};
 use super::pairs::PairForce;
 use super::workspace::Workspace;
@@ -40,6 +41,8 @@ pub struct PolyhedronKernel {
     pub(super) resisting: Vec<bool>,
     /// How each body responds to them.
     pub(super) responses: Vec<Response>,
+    /// What all workers share of the joint solution of springs and dashpots.
+    pub(super) implicit: SharedColumns,
     /// Which pairs are whose.
     pub(super) pairs_of: PairsOfBodies,
     /// Where the bodies were when the pairs were found.

@@ -16,6 +16,7 @@
 
 use super::super::row::{Row, vector};
 use super::dashpots::{Damper, Dashpot};
+use super::joint::Joint;
 use super::listed::Listed;
 use super::listing::{Search, Wanted, choose};
 use super::motion::Surroundings;
@@ -102,6 +103,8 @@ pub struct Workspace {
     pub dashpots: Vec<Dashpot>,
     /// The dashpots of every pair of the worker that has some.
     pub dampers: Vec<Damper>,
+    /// The worker's part of the joint solution of springs and dashpots.
+    pub joint: Joint,
 }
 
 /// What a contact does.

@@ -279,7 +279,8 @@ fn implicit_dashpots_get_a_step_that_explicit_ones_bear() {
     let step = |integrator: &str| {
         let folder = tempfile::tempdir().unwrap();
         let exported = export_text(&column(integrator), MpiEngine::Exadem, folder.path()).unwrap();
-        let is_said = exported.deviations.iter().any(|text| text.contains("Imex"));
+        let said = format!("`integrator: {integrator}`");
+        let is_said = exported.deviations.iter().any(|text| text.contains(&said));
         let bodies = fs::read_to_string(folder.path().join("grains.conf")).unwrap();
         let stated = bodies.lines().find_map(|line| line.strip_prefix("dt "));
         assert_eq!(stated.unwrap().parse::<f64>().unwrap(), exported.time_step);
@@ -289,6 +290,7 @@ fn implicit_dashpots_get_a_step_that_explicit_ones_bear() {
     assert_eq!(explicit, imex);
     assert!(said && !unsaid);
     assert!(built(&column("Imex")).1.clock.time_step > imex);
+    assert_eq!(step("Implicit"), (explicit, true));
 }
 
 /// More shapes than eight bits number are taken for others by exaDEM as it is built by default.

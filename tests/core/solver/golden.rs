@@ -123,6 +123,18 @@ fn polyhedra_whose_dashpots_are_implicit_have_the_bits_they_always_had() {
     );
 }
 
+#[test]
+fn polyhedra_whose_springs_are_implicit_have_the_bits_they_always_had() {
+    let mut scene = polyhedra("Full");
+    scene.set("integrator", "implicit").unwrap();
+    assert_golden(
+        "polyhedra, implicit springs and dashpots",
+        &scene,
+        1000,
+        "01b8be60d9995a0e0a047d7b6b50e211",
+    );
+}
+
 /// A drum of cells.
 fn polyhedra(rule: &str) -> Scene {
     let text = r#"(

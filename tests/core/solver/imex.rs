@@ -7,7 +7,7 @@ use grainfall::measure::EnergyLedger;
 use grainfall::solver::advise;
 
 /// Two grains, `integrator` and a step.
-fn two(grains: &str, gravity: &str, integrator: &str, dt: f64) -> World {
+pub fn two(grains: &str, gravity: &str, integrator: &str, dt: f64) -> World {
     let text = format!(
         r#"(
             title: "Two bodies",
@@ -23,7 +23,7 @@ fn two(grains: &str, gravity: &str, integrator: &str, dt: f64) -> World {
 }
 
 /// Momentum, and angular momentum about the origin.
-fn momenta(world: &World) -> [DVec3; 2] {
+pub fn momenta(world: &World) -> [DVec3; 2] {
     let (grains, polyhedra) = (&world.grains, world.polyhedra.as_ref().unwrap());
     let mut sums = [DVec3::ZERO; 2];
     for i in 0..grains.len() {
@@ -35,7 +35,7 @@ fn momenta(world: &World) -> [DVec3; 2] {
 }
 
 /// Two boxes that hit each other out of centre, face on face and edge on face.
-const COLLISION: &str = r#"
+pub const COLLISION: &str = r#"
     (position: (0, 1, 0), shape: Box(size: (0.002, 0.003, 0.004)), rounding: 0.0001, material: "m",
         velocity: (0.4, 0, 0), spin: (3, 20, -5)),
     (position: (0.0022, 1.0008, 0.0005), shape: Box(size: (0.002, 0.002, 0.003)), rounding: 0.0001, material: "m",
@@ -66,7 +66,7 @@ fn collision_keeps_momentum_and_angular_momentum() {
 
 /// Restitution of a sphere of polyhedra on the floor with steps of `dt`, mean over where in a step
 /// it touches first.
-fn restitution(integrator: &str, dt: f64) -> f64 {
+pub fn restitution(integrator: &str, dt: f64) -> f64 {
     const OFFSETS: usize = 16;
     let rebound = |k: usize| {
         let height = 0.001 + 0.3 * dt * (k as f64 + 0.5) / OFFSETS as f64;
@@ -84,7 +84,7 @@ fn restitution(integrator: &str, dt: f64) -> f64 {
 
 /// Restitution of a spring and a dashpot that lets go where it would pull, `e^(−γ t)` at the time
 /// when spring and dashpot are in balance: of `K δ = −c v`.
-fn closed_form() -> f64 {
+pub fn closed_form() -> f64 {
     let log = f64::ln(0.1);
     // The damping ratio that restitutes 0.1 where it may pull.
     let ratio = log.abs() / (std::f64::consts::PI.powi(2) + log * log).sqrt();

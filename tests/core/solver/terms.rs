@@ -82,6 +82,11 @@ fn terms_of_polyhedra_add_up_to_the_force_that_was_applied() {
 
 #[test]
 fn implicit_dashpots_of_polyhedra_are_told_along_their_normals() {
+    for integrator in ["imex", "implicit"] {
+        let world = scene_after("small-column", &[("integrator", integrator)], 0.02);
+        let (worst, contacts) = worst_difference(&world);
+        assert!(contacts > 200 && worst < 1e-13, "{contacts} {worst:e}");
+    }
     let world = scene_after("small-column", &[("integrator", "imex")], 0.02);
     let (worst, contacts) = worst_difference(&world);
     assert!(contacts > 200 && worst < 1e-13, "{contacts} {worst:e}");

@@ -1,0 +1,158 @@
+//! The implicit integrator: springs and dashpots for all bodies together keep momentum, close the
+//! energy balance, restitute to the second order of the step, let piles rest, and agree with the
+//! explicit integrator as steps become short. Same bits for threads, lanes and slices:
+//! [`super::collapse`].
+
+use super::imex::{COLLISION, closed_form, momenta, restitution, two};
+use super::*;
+use grainfall::measure::EnergyLedger;
+use grainfall::solver::advise;
+
+/// A step that explicit springs would not bear where several features touch [s].
+const STEP: f64 = 2e-5;
+
+#[test]
+fn collision_keeps_momentum_and_angular_momentum() {
+    let mut world = two(COLLISION, "(0, 0, 0)", "Implicit", STEP);
+    let start = momenta(&world);
+    let (mut solver, mut most, energy) = (Solver::new(1), 0, world.kinetic_energy());
+    for _ in 0..100 {
+        solver.advance(&mut world, 1).unwrap();
+        most = most.max(world.polyhedra.as_ref().unwrap().features.len());
+    }
+    assert!(most > 4, "many features touch at once: {most}");
+    assert!(world.contacts.is_empty(), "they part again");
+    let lost = 1.0 - world.kinetic_energy() / energy;
+    println!("{most} contacts at once, {lost:.3} of the energy lost");
+    assert!(lost > 0.1);
+    let end = momenta(&world);
+    let sizes = [world.grains.mass[0] * 0.4, world.grains.mass[0] * 0.4 * 1.0];
+    for (k, what) in ["momentum", "angular momentum"].into_iter().enumerate() {
+        assert_below(what, (end[k] - start[k]).length() / sizes[k], 1e-14);
+    }
+    let ledger = EnergyLedger::of(&world);
+    assert_below("residual", ledger.relative_residual().abs(), 1e-3);
+}
+
+#[test]
+fn restitution_converges_to_the_closed_form_with_the_square_of_the_step() {
+    let exact = closed_form();
+    let of = |dt| restitution("Implicit", dt) - exact;
+    let long = [32e-6, 16e-6, 8e-6].map(of);
+    let short = [4e-6, 2e-6, 1e-6].map(of);
+    println!("e {exact:.5}; at 32, 16, 8 µs {long:?}; at 4, 2, 1 µs {short:?}");
+    // Two terms of opposite signs meet where steps are long.
+    assert!(long.iter().all(|error| error.abs() < 4e-3));
+    for pair in short.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((1.6..2.4).contains(&order), "order {order}");
+    }
+}
+
+#[test]
+fn free_flight_is_that_of_the_explicit_integrator_to_the_bit() {
+    let after = |integrator: &str| {
+        let mut world = two(COLLISION, "(0, -9.81, 0)", integrator, STEP);
+        run(&mut world, 1e-4);
+        assert!(world.contacts.is_empty());
+        (
+            world.grains.position.clone(),
+            world.polyhedra.unwrap().orientation,
+        )
+    };
+    assert_eq!(after("Implicit"), after("Explicit"));
+}
+
+/// A box on the floor, and one far away.
+fn resting(velocity: &str) -> World {
+    let grain = format!(
+        r#"(position: (0, 0.001, 0), shape: Box(size: (0.004, 0.002, 0.004)), rounding: 0.0001, material: "m",
+            velocity: {velocity})"#
+    );
+    two(&grain, "(0, -9.81, 0)", "Implicit", STEP)
+}
+
+#[test]
+fn box_at_rest_sinks_by_its_weight_and_stays_still() {
+    let mut world = resting("(0, 0, 0)");
+    run(&mut world, 0.03);
+    let sunk = 0.001 - world.grains.position[0].y;
+    let expected = world.grains.mass[0] * 9.81 / (4.0 * 4000.0);
+    assert_relative("depth", sunk, expected, 1e-6);
+    assert_below("energy", world.kinetic_energy(), 1e-20);
+}
+
+#[test]
+fn sliding_box_slows_down_by_its_friction() {
+    let mut world = resting("(0.2, 0, 0)");
+    // It sinks into the floor at first.
+    run(&mut world, 0.005);
+    let (start, fast) = (world.grains.position[0].x, world.grains.velocity[0].x);
+    run(&mut world, 0.02);
+    let slowed = (fast - world.grains.velocity[0].x) / 0.02;
+    assert_relative("deceleration", slowed, 0.4 * 9.81, 1e-3);
+    run(&mut world, 0.055);
+    assert_below("speed at rest", world.grains.velocity[0].length(), 1e-6);
+    let way = fast * fast / (2.0 * 0.4 * 9.81);
+    assert_relative("way", world.grains.position[0].x - start, way, 2e-3);
+}
+
+#[test]
+fn integrators_agree_as_steps_become_short() {
+    // The first contacts of a column: before chaos has its say.
+    let after = |integrator: &str, dt: f64| {
+        let mut world = collapse::column("Full", integrator, dt);
+        run(&mut world, 4e-3);
+        world
+    };
+    let apart = |dt: f64| {
+        let (a, b) = (after("Explicit", dt), after("Implicit", dt));
+        let pairs = a.grains.position.iter().zip(&b.grains.position);
+        pairs.map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max)
+    };
+    let fallen = 0.5 * 9.81 * 4e-3 * 4e-3;
+    let [coarse, middle, fine] = [1.6e-6, 0.8e-6, 0.4e-6].map(|dt| apart(dt) / fallen);
+    println!("farthest apart, over the way fallen: {coarse:.2e} {middle:.2e} {fine:.2e}");
+    assert!(fine < 0.7 * middle && middle < 0.7 * coarse && fine < 0.01);
+}
+
+#[test]
+fn collapse_closes_its_energy_balance_and_comes_to_rest() {
+    let text = collapse::text_of_column("Full", "Implicit");
+    let text = text.replace("radius_mm: 8, height_mm: 16", "radius_mm: 6, height_mm: 12");
+    let mut world = world(&text, STEP);
+    run(&mut world, 0.4);
+    let ledger = EnergyLedger::of(&world);
+    println!("{ledger:?}");
+    assert_below("residual", ledger.relative_residual().abs(), 1e-3);
+    let before = (world.kinetic_energy(), world.grains.position.clone());
+    run(&mut world, 0.1);
+    let pairs = world.grains.position.iter().zip(&before.1);
+    let crept = pairs.map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max);
+    let (first, then) = (before.0, world.kinetic_energy());
+    println!("kinetic energy {first:e} J, then {then:e} J");
+    // What little is left swings in tangential springs, which have no dashpots.
+    assert_below("heat", then / ledger.elastic, 1e-4);
+    assert_below("heat after 0.1 s", then, first.max(1e-20));
+    assert_below("creep in 0.1 s [m]", crept, 1e-8);
+}
+
+#[test]
+fn neither_springs_nor_dashpots_of_crowded_grains_limit_the_step() {
+    let limits = |integrator: &str| {
+        let text = collapse::text_of_column("Full", integrator);
+        advise(&Scene::parse("column", &text).unwrap())
+    };
+    let (imex, implicit) = (limits("Imex"), limits("Implicit"));
+    println!("{imex:?}\n{implicit:?}");
+    let names: Vec<_> = implicit.limits.iter().map(|limit| limit.name).collect();
+    assert_eq!(names, ["linear contact", "way in a step"]);
+    assert!(implicit.time_step > 2.0 * imex.time_step);
+    // A tall column falls fast: no grain may move past its rounding in a step.
+    let tall =
+        collapse::text_of_column("Full", "Implicit").replace("height_mm: 16", "height_mm: 1600");
+    let tall = advise(&Scene::parse("column", &tall).unwrap());
+    assert_eq!(tall.limits[0].name, "way in a step");
+    let way = tall.time_step * (2.0 * 9.81 * 1.6_f64).sqrt();
+    assert_relative("way", way, 0.35 * 0.3e-3, 1e-12);
+}
