@@ -107,6 +107,20 @@ fn take_picture(order: ScreenshotOrder, dock: &mut Dock, opener: &mut Opener) {
     opener.screenshots.asked.push(order);
 }
 
+/// Asks what a film is to be like; ends the one that is being recorded, if one is.
+fn choose_film(simulation: &Simulation, dock: &mut Dock, opener: &mut Opener) {
+    match opener.screenshots.film {
+        FilmState::Idle => {
+            let form = CaptureForm::film(dock.memory.capture(), simulation);
+            dock.path_dialog.ask_with(Purpose::Film, form);
+        }
+        FilmState::Recording { .. } | FilmState::Replaying { .. } => {
+            take_picture(ScreenshotOrder::EndFilm, dock, opener);
+        }
+        FilmState::Writing(_) => dock.notify("The last film is still being written"),
+    }
+}
+
 /// Fulfils one request that loses nothing.
 fn fulfil(
     request: Request,
@@ -179,13 +193,7 @@ fn fulfil(
         (Request::ChoosePicture(of), _) => choose_picture(of, dock),
         (Request::ChooseSession, _) => dock.path_dialog.ask(Purpose::Session),
         (Request::ChooseChanges, _) => dock.path_dialog.ask(Purpose::Changes),
-        (Request::ChooseFilm, _) if opener.screenshots.film != FilmState::Idle => {
-            dock.notify("A film is being recorded already: stop it first");
-        }
-        (Request::ChooseFilm, Some(simulation)) => {
-            let form = CaptureForm::film(dock.memory.capture(), simulation);
-            dock.path_dialog.ask_with(Purpose::Film, form);
-        }
+        (Request::ChooseFilm, Some(simulation)) => choose_film(simulation, dock, opener),
         (Request::ExportPlot(export), _) => dock.export_plot(export),
         (Request::SavePlot(path), _) => save_plot(&path, dock),
         (Request::Screenshot(order), _) => take_picture(order, dock, opener),

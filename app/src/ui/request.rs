@@ -97,7 +97,8 @@ pub enum Request {
     ExportPlot(Box<Export>),
     /// Write the plot that was asked for to this file: SVG, PNG or CSV, as its ending says.
     SavePlot(PathBuf),
-    /// Let the person choose where a film goes and what it is like.
+    /// Let the person choose where a film goes and what it is like; end and keep the one that is
+    /// being recorded.
     ChooseFilm,
     /// Take a picture or a film, or end one.
     Screenshot(ScreenshotOrder),

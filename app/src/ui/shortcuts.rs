@@ -277,7 +277,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     },
     Shortcut {
         keys: &[ctrl(Key::R)],
-        name: "Record a film",
+        name: "Record a film; stop and save it",
         action: KeyAction::Ask(Request::ChooseFilm),
     },
     Shortcut {
@@ -418,7 +418,7 @@ impl Shortcut {
     }
 
     /// Whether it asks for `request`.
-    pub fn asks_for(&self, request: &Request) -> bool {
+    fn asks_for(&self, request: &Request) -> bool {
         matches!(&self.action, KeyAction::Ask(own) if own == request)
     }
 
@@ -457,6 +457,12 @@ impl Shortcut {
         };
         allows(simulation?.status(), &command).then_some(Request::Command(command))
     }
+}
+
+/// The keys in words that ask for `request`; nothing where none do.
+pub fn keys_for(ctx: &egui::Context, request: &Request) -> String {
+    let shortcut = SHORTCUTS.iter().find(|shortcut| shortcut.asks_for(request));
+    shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ctx))
 }
 
 /// What the keys pressed now ask for; nothing while the keyboard writes into a field or a sheet

@@ -12,8 +12,10 @@ use grainfall::lesson::built_in_lessons;
 use grainfall::run::Command;
 use grainfall::scene::built_in;
 use grainfall_app::simulation::Simulation;
-use grainfall_app::ui::{Dock, Request, Requests, ScreenshotOrder, ScreenshotOrders, theme};
-use grainfall_app::view::ViewSettings;
+use grainfall_app::ui::{
+    Dock, FilmState, Request, Requests, ScreenshotOrder, ScreenshotOrders, theme,
+};
+use grainfall_app::view::{Background, CameraRequest, ColourRange, Cut, ViewSettings};
 use std::path::Path;
 
 /// The smallest window in which everything can be reached.
@@ -401,13 +403,21 @@ fn questions_are_answered_by_keys() {
     assert!(window.state().app.should_exit().is_some());
 }
 
-/// Presses Tab until what is called `label` has the focus.
+/// Presses Tab until what is called `label` has the focus, and is seen.
 #[track_caller]
 fn tab_to(window: &mut Window, label: &str) {
+    tab_on_to(window, label);
+    window.run_steps(30);
+    assert_focused(window, label);
+}
+
+/// Presses Tab until what is called `label` has the focus. A slider's ring is round what is moved,
+/// not round its number too.
+#[track_caller]
+fn tab_on_to(window: &mut Window, label: &str) {
     for _ in 0..30 {
         if focused(window).is_some_and(|(name, _)| name == label) {
-            window.run_steps(30);
-            return assert_focused(window, label);
+            return;
         }
         press(window, NONE, Key::Tab);
     }
@@ -462,11 +472,6 @@ fn panels_with_forms_are_opened_and_worked_by_keys() {
     assert!(table.exists());
     assert_focused(&window, "Export…");
     press(&mut window, NONE, Key::Escape);
-    // How the picture is drawn.
-    press(&mut window, CTRL, Key::Comma);
-    window.run_steps(40);
-    assert_focused(&window, "Picture");
-    press(&mut window, NONE, Key::Escape);
     // Two values side by side.
     press(&mut window, CTRL, Key::T);
     window.run_steps(40);
@@ -475,4 +480,69 @@ fn panels_with_forms_are_opened_and_worked_by_keys() {
     until(&mut window.state_mut().app, |app| {
         simulation(app).comparison().is_some()
     });
+}
+
+fn view(window: &Window) -> &ViewSettings {
+    window.state().app.world().resource::<ViewSettings>()
+}
+
+#[test]
+fn how_the_picture_is_drawn_is_chosen_by_keys() {
+    let mut window = window(app());
+    press(&mut window, CTRL, Key::Comma);
+    window.run_steps(40);
+    assert_focused(&window, "Picture");
+    tab_to(&mut window, "Colour by");
+    press(&mut window, NONE, Key::Enter);
+    press(&mut window, NONE, Key::ArrowDown);
+    press(&mut window, NONE, Key::ArrowDown);
+    press(&mut window, NONE, Key::Enter);
+    let colours = view(&window).colour_by;
+    assert!(colours.quantity().is_some(), "{colours:?}");
+    tab_to(&mut window, "Fixed");
+    press(&mut window, NONE, Key::Enter);
+    tab_to(&mut window, "to");
+    press(&mut window, CTRL, Key::A);
+    type_text(&mut window, "7.5");
+    press(&mut window, NONE, Key::Tab);
+    assert!(matches!(view(&window).range, ColourRange::Fixed(_, 7.5)));
+    tab_to(&mut window, "Quarter");
+    press(&mut window, NONE, Key::Enter);
+    assert!(matches!(view(&window).cut, Some(Cut::Quarter { .. })));
+    tab_on_to(&mut window, "Grain size");
+    press(&mut window, NONE, Key::ArrowLeft);
+    assert!(view(&window).grain_size < 1.0);
+    tab_to(&mut window, "What is measured");
+    press(&mut window, NONE, Key::Space);
+    assert!(!view(&window).show_measured);
+    tab_to(&mut window, "Light");
+    press(&mut window, NONE, Key::Space);
+    assert_eq!(view(&window).background, Background::Light);
+    tab_to(&mut window, "Show 3");
+    press(&mut window, NONE, Key::Enter);
+    let asked = view(&window).camera_request;
+    assert_eq!(asked, Some(CameraRequest::Recall(2)));
+}
+
+#[test]
+fn a_film_that_is_recorded_is_stopped_by_the_key_that_began_it() {
+    let mut window = window(app());
+    let films = |window: &mut Window, film| {
+        let world = window.state_mut().app.world_mut();
+        world.resource_mut::<ScreenshotOrders>().film = film;
+        press(window, CTRL, Key::R);
+        let orders = window.state_mut().app.world_mut();
+        std::mem::take(&mut orders.resource_mut::<ScreenshotOrders>().asked)
+    };
+    let (pictures, time) = (3, 0.1);
+    for film in [
+        FilmState::Recording { pictures, time },
+        FilmState::Replaying { pictures, all: 9 },
+    ] {
+        assert_eq!(films(&mut window, film), [ScreenshotOrder::EndFilm]);
+    }
+    assert_eq!(films(&mut window, FilmState::Writing(2)), []);
+    assert!(!is_there(&window, "Record a film"));
+    films(&mut window, FilmState::Idle);
+    assert!(is_there(&window, "Record a film"));
 }

@@ -4,6 +4,7 @@
 
 use crate::ui::request::Request;
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrder};
+use crate::ui::shortcuts::keys_for;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
 use bevy_egui::egui::{self, RichText, WidgetInfo, WidgetType};
@@ -46,8 +47,13 @@ pub fn film_bar_ui(
                 film,
                 FilmState::Recording { .. } | FilmState::Replaying { .. }
             );
-            if ends && ui.button("Stop and save").clicked() {
-                out.push(Request::Screenshot(ScreenshotOrder::EndFilm));
+            if ends {
+                let stop = ui
+                    .button("Stop and save")
+                    .on_hover_text(keys_for(ui.ctx(), &Request::ChooseFilm));
+                if stop.clicked() {
+                    out.push(Request::Screenshot(ScreenshotOrder::EndFilm));
+                }
             }
             if ui.button("Cancel the film").clicked() {
                 out.push(Request::Screenshot(ScreenshotOrder::CancelFilm));

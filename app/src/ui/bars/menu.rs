@@ -9,7 +9,7 @@ use crate::ui::bars::time_slider::why_no_undo;
 use crate::ui::panels::picture_settings::MEASURED_HINT;
 use crate::ui::request::{Request, Sheet, SweepAct};
 use crate::ui::screenshot_orders::PictureOf;
-use crate::ui::shortcuts::SHORTCUTS;
+use crate::ui::shortcuts::keys_for;
 use crate::ui::text_size;
 use crate::ui::widgets::button::button_unless_ui;
 use crate::ui::widgets::focus::follow_focus;
@@ -213,10 +213,7 @@ fn item_unless_ui(
     why_not: Option<&str>,
     out: &mut Vec<Request>,
 ) {
-    let shortcut = SHORTCUTS
-        .iter()
-        .find(|shortcut| shortcut.asks_for(&request));
-    let keys = shortcut.map_or_else(String::new, |shortcut| shortcut.keys(ui.ctx()));
+    let keys = keys_for(ui.ctx(), &request);
     let button = egui::Button::new(name).shortcut_text(keys);
     if button_unless_ui(ui, why_not, button).clicked() {
         out.push(request);

@@ -381,22 +381,42 @@ fn camera_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
             out.push(Request::Camera(CameraRequest::Home));
         }
     });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Kept views");
-        for number in 0..SAVED_VIEWS {
-            let shown = number + 1;
-            let keep = ui
-                .button(format!("Keep {shown}"))
-                .on_hover_text(format!("Keep this view (Shift+F{})", 5 + number));
-            if keep.clicked() {
-                out.push(Request::Camera(CameraRequest::Save(number)));
-            }
-            let show = ui
-                .button(format!("Show {shown}"))
-                .on_hover_text(format!("Back to the view that was kept (F{})", 5 + number));
-            if show.clicked() {
-                out.push(Request::Camera(CameraRequest::Recall(number)));
-            }
+    kept_views_ui(ui, out);
+}
+
+/// Views that are kept and shown again, by their numbers.
+fn kept_views_ui(ui: &mut egui::Ui, out: &mut Vec<Request>) {
+    type Row = (
+        &'static str,
+        &'static str,
+        &'static str,
+        fn(usize) -> CameraRequest,
+    );
+    let rows: [Row; 2] = [
+        ("Keep", "Keep this view", "Shift+F", CameraRequest::Save),
+        (
+            "Show",
+            "Back to the view that was kept",
+            "F",
+            CameraRequest::Recall,
+        ),
+    ];
+    egui::Grid::new("kept views").num_columns(2).show(ui, |ui| {
+        for (verb, hint, key, request) in rows {
+            ui.label(format!("{verb} view"));
+            ui.horizontal(|ui| {
+                for number in 0..SAVED_VIEWS {
+                    let shown = number + 1;
+                    let hint = format!("{hint} ({key}{})", 5 + number);
+                    let response = ui.button(shown.to_string()).on_hover_text(hint);
+                    let name = format!("{verb} {shown}");
+                    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &name));
+                    if response.clicked() {
+                        out.push(Request::Camera(request(number)));
+                    }
+                }
+            });
+            ui.end_row();
         }
     });
 }
