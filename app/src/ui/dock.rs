@@ -371,6 +371,7 @@ impl Dock {
             .map(|scene| scene.name)
             .find(|known| *known == name);
         self.session = None;
+        self.focus.let_go();
         self.lesson = LessonDesk::default();
         self.renew_panels();
     }

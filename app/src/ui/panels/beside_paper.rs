@@ -7,7 +7,7 @@
 use crate::simulation::Simulation;
 use crate::ui::panel::Panel;
 use crate::ui::panels::averages::Averages;
-use crate::ui::plots::axes::round_marks;
+use crate::ui::plots::axes::{SPARSE_Y, round_marks};
 use crate::ui::request::Request;
 use crate::ui::theme::Palette;
 use crate::ui::words::number;
@@ -264,6 +264,7 @@ pub fn comparison_ui(ui: &mut egui::Ui, shown: PaperPlot) {
         .allow_double_click_reset(false)
         .auto_bounds(false)
         .x_grid_spacer(|input| round_marks(input, 1.0, 1.0))
+        .y_grid_spacer(|input| round_marks(input, SPARSE_Y, 0.0))
         .custom_x_axes(vec![
             AxisHints::new_x().formatter(|mark, _| number::power_of_ten(mark.value.round() as i32)),
         ])

@@ -239,7 +239,7 @@ fn cut_ui(ui: &mut egui::Ui, view: &mut ViewSettings, world: Option<&World>) {
     let (x, z) = world.map_or((0.0, 0.0), middle);
     choices_ui(
         ui,
-        "Cut away",
+        "Cut",
         &mut view.cut,
         &[
             (None, "Nothing"),
@@ -442,7 +442,7 @@ fn choices_ui<T: Copy + PartialEq>(
     value: &mut T,
     choices: &[(T, &str)],
 ) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(label);
         for (choice, name) in choices {
             ui.selectable_value(value, *choice, *name);

@@ -17,7 +17,7 @@ const ABOVE: f64 = 0.2;
 pub const SPARSE_X: f32 = 5.5;
 /// The same of level grid lines.
 pub const SPARSE_Y: f32 = 3.5;
-/// Smallest height of a plot, in its unit: a curve of zeros still needs marks that differ.
+/// Smallest height of a plot, in its unit: marks must differ.
 const LEAST_SPAN: f64 = 1e-30;
 
 /// The largest whole number of steps that a float holds with those around it: 2⁵³.
@@ -40,6 +40,11 @@ pub fn height_of<'a>(
     });
     if low > high {
         return 0.0..=smallest.max(1.0);
+    }
+    if low == 0.0 && high == 0.0 {
+        // What has not begun yet: zero lies below, whatever may come.
+        let span = smallest.max(1.0);
+        return -BELOW * span..=span;
     }
     let middle = 0.5 * (low + high);
     let apart = if high - low > ROUNDING * middle.abs() {
@@ -133,6 +138,8 @@ mod tests {
         let marks = round_marks(input, 1.0, 0.0);
         assert!((10..=60).contains(&marks.len()), "{}", marks.len());
         assert!(marks.iter().any(|mark| mark.value == 0.0));
+        // Zero lies at the foot: nothing suggests an energy below it.
+        assert!(-0.2 * bounds.1 < bounds.0 && bounds.0 < 0.0, "{bounds:?}");
     }
 
     #[test]

@@ -20,13 +20,20 @@ pub struct FocusBelow {
     owed: Option<Id>,
     /// Whether the focus was moved back, not on, the last time.
     goes_back: bool,
+    /// Whether nothing is to have the focus.
+    lets_go: bool,
 }
 
 impl FocusBelow {
     /// Takes note of the focus, and gives it back where fewer `covers` lie over the window than in
     /// the last frame. Nothing in the `menu_bar` gets it back: who has chosen there is done there.
     pub fn follow(&mut self, ctx: &egui::Context, covers: usize, menu_bar: Rect) {
-        let focused = ctx.memory(egui::Memory::focused);
+        let mut focused = ctx.memory(egui::Memory::focused);
+        if std::mem::take(&mut self.lets_go)
+            && let Some(gone) = focused.take()
+        {
+            ctx.memory_mut(|memory| memory.surrender_focus(gone));
+        }
         let is_left = focused.is_none() || focused == self.kept[self.covers];
         if covers < self.covers && is_left {
             self.owed = self.kept[covers];
@@ -45,6 +52,11 @@ impl FocusBelow {
             self.kept[covers] = focused;
         }
         self.covers = covers;
+    }
+
+    /// Nothing has the focus from the next frame on: another scene is there.
+    pub fn let_go(&mut self) {
+        (self.kept, self.owed, self.lets_go) = ([None; 3], None, true);
     }
 
     /// In a dialog, a menu or a list arrows lead on and back, as Tab does: where they led by the

@@ -287,7 +287,7 @@ fn values_ui(ui: &mut egui::Ui, info: &ParameterInfo, values: &mut ValueRange) {
 }
 
 fn repeats_ui(ui: &mut egui::Ui, chosen: &mut Chosen) {
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         let seeds = ui.label("Seeds");
         seeds.on_hover_text(
             "Each value is run from so many seeds; error bars are then those of the mean over them",
@@ -302,7 +302,9 @@ fn repeats_ui(ui: &mut egui::Ui, chosen: &mut Chosen) {
             &mut seeds,
         );
         chosen.seeds = seeds as u16;
-        ui.label("each for");
+    });
+    ui.horizontal(|ui| {
+        ui.label("Each for");
         let lasting = f64::MIN_POSITIVE..=f64::INFINITY;
         number_ui(
             ui,
