@@ -13,6 +13,7 @@ use super::velocity_kernel::{kernel_reach, mean_velocity};
 use super::velocity_map::{VelocityMap, velocity_map};
 use crate::world::World;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Granular temperature from which a bed counts as flowing [m²/s²] (Kasper et al. 2021).
 pub const NON_RIGID_TEMPERATURE: f64 = 2e-9;
@@ -23,15 +24,17 @@ const DEPTHS: usize = 48;
 const DEEPEST: f64 = 0.06;
 
 /// Profiles of every second of a run, so that any later part of it can be averaged, and maps of its
-/// fastest moments.
+/// fastest moments. One that follows from another shares all with it but the last second.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlowHistory {
     /// Profiles that were forgotten, before the first that is here.
     #[serde(skip)]
     forgotten: usize,
-    seconds: Vec<FlowProfile>,
+    #[serde(with = "shared")]
+    seconds: Vec<Arc<FlowProfile>>,
     /// The hottest sample of all, then the hottest after that second, and so on.
-    fastest: Vec<FastMoment>,
+    #[serde(with = "shared")]
+    fastest: Vec<Arc<FastMoment>>,
 }
 
 /// A sample with its map.
@@ -41,10 +44,30 @@ struct FastMoment {
     map: VelocityMap,
 }
 
+/// How a list of shared values stands in a file: as the values themselves.
+mod shared {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use std::sync::Arc;
+
+    pub fn serialize<T: Serialize, S: Serializer>(
+        list: &[Arc<T>],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(list.iter().map(Arc::as_ref))
+    }
+
+    pub fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<Arc<T>>, D::Error> {
+        let values = Vec::<T>::deserialize(deserializer)?;
+        Ok(values.into_iter().map(Arc::new).collect())
+    }
+}
+
 impl FlowHistory {
     /// Whether its profiles and maps are of the lengths that they say, as a file may not.
     pub fn is_whole(&self) -> bool {
-        self.seconds.iter().all(FlowProfile::is_whole)
+        self.seconds.iter().all(|second| second.is_whole())
             && self.fastest.iter().all(|moment| moment.map.is_whole())
     }
 
@@ -59,9 +82,9 @@ impl FlowHistory {
         // The last second is never forgotten, and time goes on.
         let index = second.saturating_sub(self.forgotten);
         if self.seconds.len() <= index {
-            self.seconds.resize_with(index + 1, FlowProfile::default);
+            self.seconds.resize_with(index + 1, Arc::default);
         }
-        self.seconds[index].add(world, line);
+        Arc::make_mut(&mut self.seconds[index]).add(world, line);
         self.keep_if_fast(world, temperature, second);
     }
 
@@ -83,7 +106,7 @@ impl FlowHistory {
     }
 
     /// The profiles from this second on, counted from time zero; those that are here.
-    pub fn profiles_since(&self, second: usize) -> &[FlowProfile] {
+    pub fn profiles_since(&self, second: usize) -> &[Arc<FlowProfile>] {
         let first = second.saturating_sub(self.forgotten);
         self.seconds.get(first..).unwrap_or_default()
     }
@@ -111,25 +134,25 @@ impl FlowHistory {
     /// The same with the profiles of the first seconds, which were kept elsewhere: `earlier` ones,
     /// followed by those that are here after them.
     #[must_use]
-    pub fn behind(&self, mut earlier: Vec<FlowProfile>) -> Self {
-        earlier.extend_from_slice(self.profiles_since(earlier.len()));
+    pub fn behind(&self, earlier: Vec<FlowProfile>) -> Self {
+        let new = self.profiles_since(earlier.len()).iter().cloned();
         Self {
             forgotten: 0,
-            seconds: earlier,
+            seconds: earlier.into_iter().map(Arc::new).chain(new).collect(),
             fastest: self.fastest.clone(),
         }
     }
 
     /// Keeps the map of `world` where none of its second and none after it was hotter.
     fn keep_if_fast(&mut self, world: &World, temperature: f64, second: usize) {
-        let colder = |moment: &mut FastMoment| moment.temperature <= temperature;
+        let colder = |moment: &mut Arc<FastMoment>| moment.temperature <= temperature;
         while self.fastest.pop_if(colder).is_some() {}
         let hotter = self.fastest.last();
         if hotter.is_some_and(|moment| moment.map.time.max(0.0) as usize == second) {
             return;
         }
         if let Some(map) = velocity_map(world, 0.0) {
-            self.fastest.push(FastMoment { temperature, map });
+            self.fastest.push(FastMoment { temperature, map }.into());
         }
     }
 
@@ -141,16 +164,25 @@ impl FlowHistory {
             .find(|map| map.time >= time.max(0.0).ceil())
     }
 
-    /// Memory that it takes [bytes].
-    pub fn memory(&self) -> usize {
-        let second = |profile: &FlowProfile| {
-            size_of::<FlowProfile>()
-                + profile.depth.len() * (2 * size_of::<f64>() + size_of::<u32>())
-        };
-        let moment =
-            |moment: &FastMoment| size_of::<FastMoment>() + size_of_val(&moment.map.velocity[..]);
-        let seconds: usize = self.seconds.iter().map(second).sum();
-        seconds + self.fastest.iter().map(moment).sum::<usize>()
+    /// Memory of its lists and of its last profile [bytes]: what it takes beside one that it follows
+    /// from.
+    pub fn own_memory(&self) -> usize {
+        let lists = size_of_val(&self.seconds[..]) + size_of_val(&self.fastest[..]);
+        lists + self.seconds.last().map_or(0, |second| second.memory())
+    }
+
+    /// Its profiles but for the last one, and its maps, which others may share: where each lies,
+    /// and the memory that it takes [bytes].
+    pub fn shared_parts(&self) -> impl Iterator<Item = (usize, usize)> {
+        let done = self.seconds.split_last().map_or(&[][..], |(_, done)| done);
+        let seconds = done
+            .iter()
+            .map(|second| (Arc::as_ptr(second).addr(), second.memory()));
+        let maps = self.fastest.iter().map(|moment| {
+            let bytes = size_of::<FastMoment>() + size_of_val(&moment.map.velocity[..]);
+            (Arc::as_ptr(moment).addr(), bytes)
+        });
+        seconds.chain(maps)
     }
 
     /// Velocity along the surface, positive uphill to the right, at each depth of that profile
@@ -158,7 +190,7 @@ impl FlowHistory {
     /// event; NaN where nothing was averaged.
     pub fn velocity_since(&self, time: f64) -> Vec<Estimate> {
         let first = time.max(0.0).ceil() as usize;
-        let seconds: Vec<&FlowProfile> = self.seconds.iter().skip(first).collect();
+        let seconds: Vec<&FlowProfile> = self.seconds.iter().skip(first).map(Arc::as_ref).collect();
         let depths = seconds.iter().map(|second| second.depth.len()).max();
         let at = |k: usize| {
             let sums = seconds.iter().filter_map(|second| {
@@ -248,6 +280,10 @@ pub struct FlowProfile {
 }
 
 impl FlowProfile {
+    fn memory(&self) -> usize {
+        size_of::<Self>() + self.depth.len() * (2 * size_of::<f64>() + size_of::<u32>())
+    }
+
     fn is_whole(&self) -> bool {
         let depths = self.depth.len();
         (depths == 0 || depths == DEPTHS)

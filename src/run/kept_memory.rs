@@ -34,7 +34,10 @@ impl KeptMemory {
                 kept.samples += branch.series.memory();
             }
             if counted.insert(Arc::as_ptr(&branch.flow).addr()) {
-                kept.flow += branch.flow.memory();
+                kept.flow += branch.flow.own_memory();
+                let parts = branch.flow.shared_parts();
+                let new = parts.filter(|(place, _)| counted.insert(*place));
+                kept.flow += new.map(|(_, bytes)| bytes).sum::<usize>();
             }
             if counted.insert(Arc::as_ptr(&branch.meetings).addr()) {
                 kept.meetings += size_of_val(&branch.meetings[..]);

@@ -55,10 +55,10 @@ impl Snapshot {
         self
     }
 
-    /// Memory that it takes [bytes].
+    /// Memory that it takes beside the run that it is of [bytes].
     pub fn memory(&self) -> usize {
         let turned = self.turned.as_deref().map_or(0, size_of_val);
-        self.world.memory() + self.flow.memory() + turned
+        self.world.memory() + self.flow.own_memory() + turned
     }
 }
 

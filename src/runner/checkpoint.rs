@@ -310,7 +310,7 @@ impl CheckpointFile {
         let mut bytes = Vec::new();
         for profile in new.take(done.saturating_sub(known)) {
             let failed = |error| OutputError::write(&self.path, io::Error::other(error));
-            bytes.extend(postcard::to_stdvec(profile).map_err(failed)?);
+            bytes.extend(postcard::to_stdvec(profile.as_ref()).map_err(failed)?);
         }
         self.profiles.add(&bytes, known.max(done))
     }

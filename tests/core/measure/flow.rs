@@ -72,6 +72,36 @@ fn profile_of_a_sheared_bed_is_its_shear() {
 }
 
 #[test]
+fn a_history_that_goes_on_shares_all_but_its_last_second_with_the_one_it_follows() {
+    let mut world = bed(0.4, |_| 0.0);
+    let mut noise = Noise::new(5);
+    let mut history = FlowHistory::default();
+    let mut add = |history: &mut FlowHistory, time: f64| {
+        let speed = 0.01 / (1.0 + time);
+        (world.grains.velocity.iter_mut()).for_each(|v| *v = speed * noise.vector());
+        let (mut sample, line) = sample_and_surface(&world);
+        sample.time = time;
+        history.add(&world, &sample, &line.unwrap());
+    };
+    (0..20).for_each(|second| add(&mut history, f64::from(second)));
+    let places = |history: &FlowHistory| -> Vec<usize> {
+        history.shared_parts().map(|(place, _)| place).collect()
+    };
+    let (before, earlier) = (places(&history), history.clone());
+    // Nineteen seconds that are over, and a map of each, as each is stiller than the one before.
+    assert_eq!(before.len(), 19 + 20);
+    add(&mut history, 19.5);
+    assert!(places(&history).starts_with(&before));
+    assert_ne!(history, earlier);
+    let shared: usize = history.shared_parts().map(|(_, bytes)| bytes).sum();
+    assert!(history.own_memory() < shared / 20, "{shared}");
+    // What a file holds is what it held when nothing was shared.
+    let bytes = postcard::to_stdvec(&history).unwrap();
+    let read: FlowHistory = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!(read, history);
+}
+
+#[test]
 fn rest_is_not_averaged_and_time_before_the_window_neither() {
     let mut world = bed(0.3, |_| 0.0);
     let mut history = FlowHistory::default();
