@@ -52,8 +52,10 @@
 //!
 //! A contact lets go where spring and dashpot would pull by `u⁻`; one that comes to pull within the
 //! step does so to its end. Which contacts there are, and which slide, is told by the beginning of
-//! the step. Springs that turn are as explicit as ever. What springs take beyond what they store is
-//! booked with the dashpots, as what those lose.
+//! the step. A stiff dashpot, which is taken at the step's end, pays nothing for the part of a step
+//! before its contact was seen: the spring pays for it by staying deep, and as its overlap bounds
+//! friction, impacts rub too much (`docs/validation.md`). Springs that turn are as explicit as ever.
+//! What springs take beyond what they store is booked with the dashpots, as what those lose.
 //!
 //! Not here: what springs and dashpots are ([`super::contact_group`]), the order of the phases
 //! ([`super::share`]).
