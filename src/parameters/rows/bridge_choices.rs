@@ -7,7 +7,9 @@ use super::liquid_and_bridges::OF_LIQUID;
 use crate::parameters::Value;
 use crate::parameters::parameter_row::{InScene, InWorld, Kind, ParameterRow};
 use crate::parameters::value::Choice;
-use crate::physics::{BridgeVolume, CapillaryGap, CoulombBound, PairAngle, Rupture, SmallestGap};
+use crate::physics::{
+    BridgeLaw, BridgeVolume, CapillaryGap, CoulombBound, PairAngle, Rupture, SmallestGap,
+};
 
 /// Makes the row of one field of a bridge law, from its values with their words, and what else a
 /// row says.
@@ -22,36 +24,28 @@ macro_rules! choice_of_law {
                 name: $name,
                 number: $number,
             }),+];
+            fn of(law: &BridgeLaw) -> Option<Value> {
+                let values = [$($value),+];
+                let index = values.iter().position(|value| *value == law.$field)?;
+                CHOICES.get(index).map(Value::Choice)
+            }
+            fn choose(law: &mut BridgeLaw, value: &Value) -> Option<()> {
+                let values = [$($value),+];
+                let index = CHOICES.iter().position(|own| own.number == value.number())?;
+                law.$field = values[index];
+                Some(())
+            }
             ParameterRow {
                 kind: Kind::Choice(CHOICES),
                 in_scene: Some(InScene {
-                    read: |scene, _| {
-                        let own = scene.liquid?.law.$field;
-                        let values = [$($value),+];
-                        let index = values.iter().position(|value| *value == own)?;
-                        CHOICES.get(index).map(Value::Choice)
-                    },
-                    write: |scene, _, value| {
-                        let law = &mut scene.liquid.as_mut()?.law;
-                        $(if value.number() == $number {
-                            law.$field = $value;
-                            return Some(());
-                        })+
-                        None
-                    },
+                    read: |scene, _| of(&scene.liquid?.law),
+                    write: |scene, _, value| choose(&mut scene.liquid.as_mut()?.law, &value),
                 }),
                 in_world: Some(InWorld {
-                    read: |world, _| {
-                        let own = world.liquid?.law.$field;
-                        let values = [$($value),+];
-                        let index = values.iter().position(|value| *value == own)?;
-                        CHOICES.get(index).map(Value::Choice)
-                    },
+                    read: |world, _| of(&world.liquid?.law),
                     write: |world, _, _, value| {
                         if let Some(liquid) = &mut world.liquid {
-                            $(if value.number() == $number {
-                                liquid.law.$field = $value;
-                            })+
+                            let _ = choose(&mut liquid.law, &value);
                         }
                     },
                 }),

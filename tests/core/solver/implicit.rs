@@ -3,7 +3,10 @@
 //! explicit integrator as steps become short. Same bits for threads, lanes and slices:
 //! [`super::collapse`].
 
-use super::imex::{COLLISION, closed_form, momenta, restitution, two};
+use super::imex::{
+    COLLISION, assert_agrees_with_explicit, assert_comes_to_rest, closed_form, momenta,
+    restitution, two,
+};
 use super::*;
 use grainfall::measure::EnergyLedger;
 use grainfall::solver::advise;
@@ -99,42 +102,12 @@ fn sliding_box_slows_down_by_its_friction() {
 
 #[test]
 fn integrators_agree_as_steps_become_short() {
-    // The first contacts of a column: before chaos has its say.
-    let after = |integrator: &str, dt: f64| {
-        let mut world = collapse::column("Full", integrator, dt);
-        run(&mut world, 4e-3);
-        world
-    };
-    let apart = |dt: f64| {
-        let (a, b) = (after("Explicit", dt), after("Implicit", dt));
-        let pairs = a.grains.position.iter().zip(&b.grains.position);
-        pairs.map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max)
-    };
-    let fallen = 0.5 * 9.81 * 4e-3 * 4e-3;
-    let [coarse, middle, fine] = [1.6e-6, 0.8e-6, 0.4e-6].map(|dt| apart(dt) / fallen);
-    println!("farthest apart, over the way fallen: {coarse:.2e} {middle:.2e} {fine:.2e}");
-    assert!(fine < 0.7 * middle && middle < 0.7 * coarse && fine < 0.01);
+    assert_agrees_with_explicit("Implicit");
 }
 
 #[test]
 fn collapse_closes_its_energy_balance_and_comes_to_rest() {
-    let text = collapse::text_of_column("Full", "Implicit");
-    let text = text.replace("radius_mm: 8, height_mm: 16", "radius_mm: 6, height_mm: 12");
-    let mut world = world(&text, STEP);
-    run(&mut world, 0.4);
-    let ledger = EnergyLedger::of(&world);
-    println!("{ledger:?}");
-    assert_below("residual", ledger.relative_residual().abs(), 1e-3);
-    let before = (world.kinetic_energy(), world.grains.position.clone());
-    run(&mut world, 0.1);
-    let pairs = world.grains.position.iter().zip(&before.1);
-    let crept = pairs.map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max);
-    let (first, then) = (before.0, world.kinetic_energy());
-    println!("kinetic energy {first:e} J, then {then:e} J");
-    // What little is left swings in tangential springs, which have no dashpots.
-    assert_below("heat", then / ledger.elastic, 1e-4);
-    assert_below("heat after 0.1 s", then, first.max(1e-20));
-    assert_below("creep in 0.1 s [m]", crept, 1e-8);
+    assert_comes_to_rest("Implicit", STEP);
 }
 
 #[test]
