@@ -124,8 +124,11 @@ impl Workspace {
             let own = active.pair as usize;
             let (pair, terms) = (&mut block.pairs[own], &block.terms[own]);
             let (mut deepest, mut hidden) = (f64::NEG_INFINITY, false);
+            let mut nearest = f64::INFINITY;
             for result in results.iter_mut() {
                 let overlap = terms.touch - result.distance();
+                let least = result.least_distance();
+                nearest = if least < nearest { least } else { nearest };
                 result.set_overlap(overlap);
                 deepest = if overlap > deepest { overlap } else { deepest };
                 hidden |= overlap == f64::NEG_INFINITY;
@@ -135,7 +138,7 @@ impl Workspace {
             pair.clearance = if active.touches || hidden {
                 0.0
             } else {
-                -deepest - f64::from(terms.margin)
+                nearest - terms.touch - f64::from(terms.margin)
             };
             fault |= deepest > DEEPEST * terms.touch && !all.has_sides(pair);
             if all.rule == FeatureRule::Shared {

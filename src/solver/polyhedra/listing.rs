@@ -207,7 +207,7 @@ impl Search {
             let distance = result.distance();
             // Vertices and faces come before edges: their numbers are those of the outlines.
             let Some(job) = self.jobs.outlines.get(number) else {
-                if distance < cutoff {
+                if result.least_distance() < cutoff {
                     list.push(*listed);
                 }
                 continue;
@@ -268,7 +268,7 @@ pub fn choose(near: &[Listed], results: &[Nearest], cutoff: f64, chosen: &mut Ve
     chosen.clear();
     let mut nearest = f64::INFINITY;
     for (listed, result) in near.iter().zip(results) {
-        let distance = result.distance();
+        let distance = result.least_distance();
         if distance < cutoff || distance == f64::INFINITY {
             chosen.push(*listed);
         } else {

@@ -23,7 +23,8 @@ pub struct Nearest {
     /// Unit vector from the point of the first body to that of the second; their distance [m],
     /// infinite for a vertex behind a face.
     pub normal: Row,
-    /// The point halfway [m]; the margin, later the overlap [m].
+    /// The point halfway [m]; how much nearer the features may be elsewhere, or the margin where that
+    /// was asked for, later the overlap [m].
     pub middle: Row,
 }
 
@@ -32,6 +33,14 @@ impl Nearest {
     #[inline(always)]
     pub fn distance(&self) -> f64 {
         self.normal[3]
+    }
+
+    /// How far they are apart at least, wherever that is [m]: edges that count as parallel are
+    /// measured in the middle of what they have beside each other, and as soon as they no longer
+    /// count so at the end that is nearest.
+    #[inline(always)]
+    pub fn least_distance(&self) -> f64 {
+        self.normal[3] - self.middle[3]
     }
 
     /// How far the vertex lies inside the face's outline [m], negative outside, where that was
@@ -192,6 +201,8 @@ pub fn group<N: Lanes, T>(items: &[T]) -> [&T; WIDEST] {
 /// Sines squared below which two edges count as parallel: the middle of their overlap is taken
 /// then.
 pub const PARALLEL: f64 = 1e-10;
+/// What rounding makes of the square of a sine.
+const ROUNDING: f64 = 1e-15;
 
 /// `x` between `zero` and `one`.
 #[inline(always)]
@@ -230,14 +241,14 @@ fn between_edges<N: Lanes>(
         let other = vector(N::gather(processor, q0));
         let along = vector(N::gather_difference(processor, p1, p0));
         let across = vector(N::gather_difference(processor, q1, q0));
-        let (s, t) = on_edges(processor, minus(from, other), along, across);
+        let (s, t, nearer) = on_edges(processor, minus(from, other), along, across);
         let (p, q) = (plus(from, times(along, s)), plus(other, times(across, t)));
         let apart = minus(q, p);
         let distance = dot(apart, apart).sqrt();
         let normal = times(apart, N::splat(processor, 1.0) / distance);
         let middle = times(plus(p, q), N::splat(processor, 0.5));
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
-        let middles = N::rows([middle[0], middle[1], middle[2], distance]);
+        let middles = N::rows([middle[0], middle[1], middle[2], nearer]);
         for (k, job) in chunk.iter().enumerate() {
             results[job.out as usize] = Nearest {
                 normal: normals[k].row(),
@@ -254,14 +265,16 @@ fn between_edges<N: Lanes>(
 /// first, the squared distance `|w + s u − t v|²` is least at `s = (b f − c e)/(a e − b²)` and
 /// `t = (b s + f)/e`, where `a = u·u`, `e = v·v`, `b = u·v`, `c = u·w` and `f = v·w`. Where `t`
 /// falls beyond an end it is put there, and `s` is where the first edge is nearest to that end.
-/// Edges that are parallel meet all along what they have beside each other: its middle is taken.
+/// Edges that are parallel meet all along what they have beside each other: its middle is taken, and
+/// elsewhere they may be nearer by the sine of their angle times the length of the first, which is
+/// told, too [m].
 #[inline(always)]
 fn on_edges<N: Lanes>(
     processor: N::Processor,
     offset: [N; 3],
     along: [N; 3],
     across: [N; 3],
-) -> (N, N) {
+) -> (N, N, N) {
     let (zero, one) = (N::splat(processor, 0.0), N::splat(processor, 1.0));
     let (a, e, b) = (dot(along, along), dot(across, across), dot(along, across));
     let (c, f) = (dot(along, offset), dot(across, offset));
@@ -279,7 +292,11 @@ fn on_edges<N: Lanes>(
     // Beyond an end of the second edge that end is nearest.
     let s = N::choose(zero.exceeds(free), at_begin, s);
     let s = N::choose(free.exceeds(one), at_end, s);
-    (s, t)
+    let rise = N::choose(sine.exceeds(zero), sine, zero) + N::splat(processor, ROUNDING) * square;
+    let rise = (rise / e).sqrt();
+    // An edge of no length is nowhere nearer.
+    let is_nearer = N::choose(skew, zero, rise);
+    (s, t, N::choose(is_nearer.exceeds(zero), rise, zero))
 }
 
 /// Signs of the vector and its companion that turn "from the vertex to the face" into "from the
@@ -305,7 +322,7 @@ fn above_faces<N: Lanes>(
         let height = dot(outward, point) - offset;
         let (normal, distance, middle) = on_plane(processor, point, outward, height);
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
-        let middles = N::rows([middle[0], middle[1], middle[2], distance]);
+        let middles = N::rows([middle[0], middle[1], middle[2], N::splat(processor, 0.0)]);
         for (k, job) in chunk.iter().enumerate() {
             let turn = N::Quad::load(processor, &TURN[job.side as usize]);
             results[job.out as usize] = Nearest {
@@ -432,7 +449,8 @@ fn at_outlines<N: Lanes, const MARGIN: bool>(
         }
         let distance = N::choose(over, at_height, distance);
         let normals = N::rows([normal[0], normal[1], normal[2], distance]);
-        let middles = N::rows([middle[0], middle[1], middle[2], seen.inside]);
+        let margin = if MARGIN { seen.inside } else { zero };
+        let middles = N::rows([middle[0], middle[1], middle[2], margin]);
         for (k, job) in chunk.iter().enumerate() {
             let turn = N::Quad::load(processor, &TURN[job.face.side as usize]);
             results[job.face.out as usize] = Nearest {

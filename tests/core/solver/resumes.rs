@@ -121,3 +121,21 @@ fn beginning(scene: &BuiltIn) -> (&'static str, World) {
     let known = Scene::open(scene.name).unwrap();
     (scene.name, build(&known, advise(&known).time_step))
 }
+
+/// A step of the paper's column before one at which two edges, along which neighbouring cells were
+/// cut apart, no longer count as parallel and are nearest at their ends, which touch.
+const OUT_OF_PARALLEL: u64 = 288;
+
+#[test]
+fn papers_column_goes_on_to_the_same_bits_where_edges_come_out_of_parallel() {
+    let scene = built_in().iter().find(|scene| scene.name == "column");
+    let (_, mut world) = beginning(scene.expect("a built-in scene"));
+    let mut solver = Solver::new(2);
+    solver.advance(&mut world, OUT_OF_PARALLEL).unwrap();
+    let mut tally = Tally::default();
+    for _ in 0..4 {
+        tally.resume(&mut solver, 2, &mut world, 1);
+    }
+    assert!(tally.contacts > 400_000, "{}", tally.contacts);
+    assert_eq!(tally.strays, Vec::<u64>::new());
+}
