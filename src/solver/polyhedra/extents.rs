@@ -53,8 +53,9 @@ impl Extents {
 
     /// How much a computed distance of features of two bodies may jump, the first of which reaches
     /// to `reach`, that touch at `touch` and whose faces are as `uneven` [m]. Edges change from
-    /// crossing to parallel where their sine is that of [`PARALLEL`]; a vertex leaves a face across
-    /// an edge that is not quite in its plane.
+    /// crossing to parallel where the square of their sine is [`PARALLEL`]: this is what a tilt
+    /// sideways does, and [`super::nearest::Nearest::least_distance`] counts one towards each other;
+    /// a vertex leaves a face across an edge that is not quite in its plane.
     pub fn margin(&self, reach: f64, touch: f64, uneven: f64) -> f32 {
         let parallel = 2.0 * PARALLEL * reach * reach / touch;
         let margin = 4.0 * (parallel + uneven + self.rounding);
