@@ -94,9 +94,14 @@ impl Walls {
         moved.fold(0.0, f64::max)
     }
 
+    /// Speed of the fastest of them along its normal [m/s].
+    pub fn speed(&self) -> f64 {
+        self.0.iter().map(WallBody::speed).fold(0.0, f64::max)
+    }
+
     /// Steps of `dt` [s] in which no wall moves by more than `slack` [m], at least one.
     pub fn steps_within(&self, slack: f64, dt: f64) -> u64 {
-        let speed = self.0.iter().map(WallBody::speed).fold(0.0, f64::max);
+        let speed = self.speed();
         if speed > 0.0 {
             (slack / (speed * dt)).max(1.0) as u64
         } else {

@@ -450,6 +450,14 @@ impl Body {
         self.velocity[3]
     }
 
+    /// The square of how far it is from where it was `before`, or will be at its pace in the time
+    /// `ahead` [s], in m².
+    #[inline(always)]
+    pub fn moved_from(&self, before: &Row, ahead: f64) -> f64 {
+        let way = |k: usize| self.position[k] + ahead * self.velocity[k] - before[k];
+        length_squared([way(0), way(1), way(2), 0.0])
+    }
+
     /// Distance of the farthest point of its surface from its centroid [m].
     #[inline(always)]
     pub fn reach(&self) -> f64 {

@@ -75,6 +75,8 @@ pub struct ContactForces<N: Lanes> {
     /// [m] and springs, arms [m] and tangential springs; springs of contacts that have let go or
     /// slide are none [N/m].
     pub dashpots: [[N::Quad; WIDEST]; 3],
+    /// Of gaps that close within the step: springs [N/m] and overlaps, which are negative [m].
+    pub closing: [N::Quad; WIDEST],
 }
 
 impl<N: Lanes> ContactGroup<N> {
@@ -165,6 +167,7 @@ impl<N: Lanes> ContactGroup<N> {
         processor: N::Processor,
         dt: f64,
         springs: Rows<'_>,
+        ahead: f64,
     ) -> ContactForces<N> {
         let (zero, step) = (N::splat(processor, 0.0), N::splat(processor, dt));
         let pressed = self.normal_forces::<IMPLICIT>(zero);
@@ -205,7 +208,21 @@ impl<N: Lanes> ContactGroup<N> {
             } else {
                 [updated.rows; 3]
             },
+            closing: if IMPLICIT {
+                let spring = self.closing(&pressed, zero, N::splat(processor, ahead));
+                N::rows([spring, self.depth, zero, zero])
+            } else {
+                updated.rows
+            },
         }
+    }
+
+    /// Springs of the gaps that would close within `ahead` at the present pace.
+    #[inline(always)]
+    fn closing(&self, pressed: &NormalForces<N>, zero: N, ahead: N) -> N {
+        let then = self.depth + ahead * pressed.approach;
+        let spring = N::choose(then.exceeds(zero), self.law[0] * self.parts[0], zero);
+        N::choose(self.depth.exceeds(zero), zero, spring)
     }
 
     /// How stiff contacts are against a change of their slip within a step: a spring where they

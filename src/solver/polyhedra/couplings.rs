@@ -19,13 +19,17 @@
 //! Not here: which contacts hold, stick and slide ([`super::contact_group`]), the bodies
 //! ([`super::joint`]).
 
+use super::super::row::sub;
 use super::bodies::Body;
 use super::damping::{Matrix, Packed, ROWS, SUM, entry};
 use super::dashpots::{Dashpot, Response, relative};
+use super::gaps::{ClosingGaps, Gap};
+use super::motion::crossed;
 use super::nearest::group;
 use super::pairs::{PackedPartner, Pair, PairForce};
 use crate::lanes::{Lanes, Quad, Row, WIDEST, Work, cross, minus, plus, side_by_side};
 use crate::world::{Grains, Partner};
+use std::ops::Range;
 
 /// Where the ratio of dashpot to spring stands behind the entries of a matrix.
 const RATIO: usize = SUM + 1;
@@ -43,6 +47,8 @@ pub struct Coupling {
     normal: [Row; ROWS],
     /// `T`, likewise.
     tangential: [Row; ROWS],
+    /// From which to which of its worker's gaps that close within the step are its.
+    gaps: [u32; 2],
 }
 
 /// A pair's wrench.
@@ -112,11 +118,12 @@ impl Coupling {
         for contact in contacts {
             sums.add(processor, contact);
         }
-        if sums.springs + sums.arms[3] == 0.0 {
+        let closing: f64 = contacts.iter().map(Dashpot::closing_spring).sum();
+        if sums.springs + sums.arms[3] + closing == 0.0 {
             return None;
         }
         let mut normal = packed(&sums.normal);
-        (normal[SUM], normal[RATIO]) = (sums.springs, ratio);
+        (normal[SUM], normal[RATIO]) = (sums.springs + closing, ratio);
         let mut tangential = packed(&sums.across).map(|x| -x);
         add_directions(&mut tangential, sums.arms, sums.squares);
         Some(Self {
@@ -125,7 +132,20 @@ impl Coupling {
             second: pair.second,
             normal: rows_of(&normal),
             tangential: rows_of(&tangential),
+            gaps: [0; 2],
         })
+    }
+
+    /// Takes note of which gaps of its worker are its.
+    #[inline(always)]
+    pub fn set_gaps(&mut self, own: Range<usize>) {
+        self.gaps = [own.start as u32, own.end as u32];
+    }
+
+    /// Which these are.
+    #[inline(always)]
+    fn gaps(&self) -> Range<usize> {
+        self.gaps[0] as usize..self.gaps[1] as usize
     }
 
     /// The sum of the normal springs [N/m].
@@ -255,6 +275,11 @@ pub struct Assembly<'a> {
     pub dt: f64,
     /// The worker's pairs.
     pub couplings: &'a [Coupling],
+    /// Gaps of these that close within the step.
+    pub gaps: &'a mut [Gap],
+    /// The changes of the bodies' motions that were found with all gaps, if they were: then only
+    /// pairs are assembled again of which a gap stays open by them.
+    pub changes: Option<&'a [Motion]>,
     /// Every body as it was half a step ago.
     pub bodies: &'a [Body],
     /// How each responds, and the sum of all its normal springs.
@@ -350,7 +375,8 @@ impl Assembly<'_> {
         let (ratio, square) = (normal.0[RATIO], placed.stiffness);
         let x = square * ratio / dt;
         let theta = (one + x) / (one + one + x);
-        let sigma = square / (one + square);
+        let soft = N::splat(processor, 0.0625) * square * square;
+        let sigma = soft / (one + soft);
         let beta = quarter * (one + sigma) * (one + sigma);
         let weight = theta * dt * ratio + beta;
         for k in 0..SUM {
@@ -360,7 +386,69 @@ impl Assembly<'_> {
         for part in 0..6 {
             wrench[part] = -(wrench[part] * (ratio + sigma * dt));
         }
+        if own.iter().any(|own| !own.gaps().is_empty()) {
+            let late = theta + theta - one;
+            let share = (late * ratio + sigma * dt, placed.before);
+            self.add_gaps(processor, own, share, (&mut matrix, &mut wrench));
+        }
         (matrix, wrench)
+    }
+}
+
+impl Assembly<'_> {
+    /// Lets those gaps of the pairs `start` to `end` stay open that the `changes` of the motions
+    /// leave open; true where there are any.
+    #[inline(always)]
+    fn let_open(&mut self, [start, end]: [usize; 2], changes: &[Motion]) -> bool {
+        let mut opens = false;
+        for own in &self.couplings[start..end] {
+            if own.gaps().is_empty() {
+                continue;
+            }
+            let first = self.after(PackedPartner::grain(own.first), changes);
+            let motion = relative_rows(&first, &self.after(own.second, changes));
+            for gap in &mut self.gaps[own.gaps()] {
+                opens |= gap.let_open(&motion, self.dt);
+            }
+        }
+        opens
+    }
+
+    /// The position of a side of a pair, and how it moves after these `changes`.
+    #[inline(always)]
+    fn after(&self, side: PackedPartner, changes: &[Motion]) -> [Row; 3] {
+        match side.unpack() {
+            Partner::Grain(i) => {
+                let (body, change) = (&self.bodies[i as usize], &changes[i as usize]);
+                let velocity = add(body.velocity, change.velocity);
+                [body.position, velocity, add(body.spin, change.spin)]
+            }
+            Partner::Wall(w) => self.walls[w as usize].0,
+        }
+    }
+
+    /// Adds what the gaps of these pairs that close within the step do to `H` and to the wrench at
+    /// the velocities of half a step ago; they act as long as `share` [s].
+    #[inline(always)]
+    fn add_gaps<N: Lanes>(
+        &self,
+        processor: N::Processor,
+        own: [&Coupling; WIDEST],
+        (share, before): (N, [N; 6]),
+        (matrix, wrench): (&mut Matrix<N>, &mut [N; 6]),
+    ) {
+        let gaps = side_by_side::<N, _>(|k| ClosingGaps::of(&self.gaps[own[k].gaps()]));
+        let springs = gather::<N>(processor, |k, row| &gaps[k].springs[row]);
+        let [fx, fy, fz, _] = N::gather(processor, side_by_side::<N, _>(|k| &gaps[k].push[0]));
+        let [tx, ty, tz, _] = N::gather(processor, side_by_side::<N, _>(|k| &gaps[k].push[1]));
+        let (push, dt) = ([fx, fy, fz, tx, ty, tz], N::splat(processor, self.dt));
+        let closed = springs.times(before);
+        for part in 0..6 {
+            wrench[part] = wrench[part] - share * (push[part] / dt + closed[part]);
+        }
+        for k in 0..SUM {
+            matrix.0[k] = matrix.0[k] + share * dt * springs.0[k];
+        }
     }
 }
 
@@ -382,12 +470,17 @@ impl Work for Assembly<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<N: Lanes>(self, processor: N::Processor) {
+    fn run<N: Lanes>(mut self, processor: N::Processor) {
         let groups = self.couplings.len().div_ceil(N::COUNT);
         self.columns.resize(groups * COLUMNS * N::COUNT, 0.0);
         for number in 0..groups {
             let start = number * N::COUNT;
             let end = (start + N::COUNT).min(self.couplings.len());
+            if let Some(changes) = self.changes
+                && !self.let_open([start, end], changes)
+            {
+                continue;
+            }
             let own = group::<N, _>(&self.couplings[start..end]);
             let placed = self.place::<N>(processor, own);
             let (matrix, wrench) = self.matrix(processor, own, &placed);
@@ -551,6 +644,8 @@ pub struct Image<'a> {
     pub product: Product<'a>,
     /// What comes of it.
     pub wrenches: &'a mut [Wrench],
+    /// A factor of it, to which the wrench of half a step ago is added.
+    pub factor: Option<f64>,
 }
 
 impl Work for Image<'_> {
@@ -559,7 +654,9 @@ impl Work for Image<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self, processor: N::Processor) {
         for [start, end] in self.product.groups::<N>() {
-            let found = self.product.of_group::<N>(processor, [start, end], None);
+            let found = self
+                .product
+                .of_group::<N>(processor, [start, end], self.factor);
             for (k, wrench) in self.wrenches[start..end].iter_mut().enumerate() {
                 *wrench = wrench_of::<N>(&found, k);
             }
@@ -601,6 +698,20 @@ impl Work for Final<'_> {
             }
         }
     }
+}
+
+/// `a + b` of the vector parts.
+#[inline(always)]
+fn add(a: Row, b: Row) -> Row {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2], 0.0]
+}
+
+/// How the first of two moves relative to the second at the first's centroid, of their positions,
+/// velocities and spins.
+#[inline(always)]
+fn relative_rows([x, v, w]: &[Row; 3], [y, u, s]: &[Row; 3]) -> [Row; 2] {
+    let across = crossed(*s, sub(*x, *y));
+    [sub(sub(*v, *u), across), sub(*w, *s)]
 }
 
 /// `a · b` of the vector parts.

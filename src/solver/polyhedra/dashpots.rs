@@ -60,6 +60,16 @@ pub struct Dashpot {
     pub moment: Row,
     /// The arm [m]; how stiff the contact is against a change of its slip within a step [N/m].
     pub arm: Row,
+    /// Of a gap that closes within the step: its spring [N/m], none where it is none, and its
+    /// overlap, which is negative [m].
+    pub closing: Row,
+}
+
+impl Dashpot {
+    /// The spring of a gap that closes within the step, none where it is none [N/m].
+    pub fn closing_spring(&self) -> f64 {
+        self.closing[0]
+    }
 }
 
 /// How a body moves after all forces so far, and how it responds to more.

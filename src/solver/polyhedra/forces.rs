@@ -15,6 +15,7 @@ use super::super::tangential::UNLOADED;
 use super::contact_group::ContactGroup;
 use super::couplings::Coupling;
 use super::dashpots::{Damper, Dashpot};
+use super::gaps::Gap;
 use super::motion::{Surroundings, crossed};
 use super::nearest::{Nearest, group};
 use super::pairs::{BLOCK, Block, ContactPoint, Pair, PairForce, Terms};
@@ -89,20 +90,26 @@ impl Work for Forces<'_> {
             workspace.measure::<N>(processor, &all, &block);
             tally.fault |= workspace.evaluate_overlaps(&all, &mut block);
             if let Some(resisting) = &mut resisting {
-                workspace.compute_forces::<N, true>(processor, all.dt, &mut block);
+                let ahead = if all.look_ahead > 0.0 { all.dt } else { 0.0 };
+                workspace.compute_forces::<N, true>(processor, [all.dt, ahead], &mut block);
                 workspace.sum(&all, &block, forces, acting);
                 let first = number * BLOCK;
                 let resisting = &mut resisting[first..];
                 if let Some((slots, base)) = &mut slots {
                     let slots = (&mut slots[first..], *base);
                     workspace.collect_couplings::<N::Quad>(
-                        processor, &block, first, forces, resisting, slots,
+                        processor,
+                        &block,
+                        first,
+                        (forces, acting),
+                        resisting,
+                        slots,
                     );
                 } else {
                     workspace.collect_dashpots(&block, first, forces, resisting);
                 }
             } else {
-                workspace.compute_forces::<N, false>(processor, all.dt, &mut block);
+                workspace.compute_forces::<N, false>(processor, [all.dt, 0.0], &mut block);
                 workspace.sum(&all, &block, forces, acting);
             }
         }
@@ -159,7 +166,7 @@ impl Workspace {
     fn compute_forces<N: Lanes, const IMPLICIT: bool>(
         &mut self,
         processor: N::Processor,
-        dt: f64,
+        [dt, ahead]: [f64; 2],
         block: &mut Block<'_>,
     ) {
         let (terms, points) = (&*block.terms, &mut *block.points);
@@ -178,7 +185,7 @@ impl Workspace {
             let contacts =
                 ContactGroup::<N>::gather(processor, pair, law, group::<N, _>(results), point);
             let springs = side_by_side::<N, _>(|k| &point[k].spring);
-            let found = contacts.forces::<IMPLICIT>(processor, dt, springs);
+            let found = contacts.forces::<IMPLICIT>(processor, dt, springs, ahead);
             if IMPLICIT {
                 let begin = group_number * N::COUNT;
                 let dashpots = &mut self.dashpots[begin..begin + effects.len()];
@@ -186,6 +193,7 @@ impl Workspace {
                     dashpot.normal = found.dashpots[0][k].row();
                     dashpot.moment = found.dashpots[1][k].row();
                     dashpot.arm = found.dashpots[2][k].row();
+                    dashpot.closing = found.closing[k].row();
                 }
             }
             for (k, (effect, number)) in effects.iter_mut().zip(numbers).enumerate() {
@@ -266,20 +274,30 @@ impl Workspace {
         processor: Q::Processor,
         block: &Block<'_>,
         first: usize,
-        forces: &mut [PairForce],
+        (forces, acting): (&mut [PairForce], &mut [bool]),
         resisting: &mut [bool],
         (slots, base): (&mut [u32], u32),
     ) {
         for (number, active) in self.active.iter().enumerate() {
-            if !active.touches {
+            let contacts = &self.dashpots[self.results_of(number)];
+            let first_gap = self.joint.gaps.len();
+            self.joint.gaps.extend(contacts.iter().filter_map(Gap::of));
+            let gaps = first_gap..self.joint.gaps.len();
+            if !active.touches && gaps.is_empty() {
                 continue;
             }
-            let contacts = &self.dashpots[self.results_of(number)];
             let own = active.pair as usize;
             let [stiffness, damping, ..] = block.terms[own].law;
             let (pair, number) = (&block.pairs[own], (first + own) as u32);
             let ratio = damping / stiffness;
-            if let Some(coupling) = Coupling::of::<Q>(processor, (number, pair), ratio, contacts) {
+            let coupling = Coupling::of::<Q>(processor, (number, pair), ratio, contacts);
+            if let Some(mut coupling) = coupling {
+                coupling.set_gaps(gaps);
+                if !acting[own] {
+                    // Nothing touches yet.
+                    forces[own] = PairForce::default();
+                    acting[own] = true;
+                }
                 forces[own].set_dashpots(coupling.stiffness());
                 resisting[own] = true;
                 slots[own] = base + self.joint.couplings.len() as u32;

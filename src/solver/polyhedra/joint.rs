@@ -14,12 +14,12 @@
 //! ```
 //!
 //! which for `σ = 0` is his average acceleration: second order, without damping of its own, stable
-//! for any step. In a stiff contact that begins within a step it would overshoot, to three times
-//! the speed of approach; `σ = 1` takes the spring at the step's end, which cannot. So
-//! `σ = y²/(1 + y²)`, `y² = Δt² ΣK_n (1/m)` over all normal springs on either body: what it adds is
-//! of third order in the step. A dashpot is taken by the θ-method, `(1 − θ) u⁻ + θ u⁺`, with
+//! for any step. A spring that is much stiffer than the step is short would throw its bodies back
+//! and forth; `σ = 1` takes the spring at the step's end, which cannot. So `σ = q²/(1 + q²)`,
+//! `q = ¼ y²`, `y² = Δt² ΣK_n (1/m)` over all normal springs on either body: what it adds is of
+//! fifth order in the step. A dashpot is taken by the θ-method, `(1 − θ) u⁻ + θ u⁺`, with
 //! `θ = (1 + x)/(2 + x)`, `x = y² (c/K_n)/Δt`, a soft one at the middle of the step and a stiff one
-//! at its end.
+//! at its end. Gaps that close within the step belong to it as well ([`super::gaps`]).
 //!
 //! Along the surfaces springs of contacts that stick have `σ = 0`. One that slides drags with what
 //! Coulomb's law allows it at this moment, whatever happens in the step; were that all, a light
@@ -45,6 +45,9 @@
 //! its equation too, the more the lighter it is: looser than [`TOLERANCE`] steps of 40 µs of a
 //! paper's column heat up.
 //!
+//! Then gaps that stay open after all are let go, and the iterations go on with what is left of the
+//! equations without them.
+//!
 //! Products are summed body by body within [`BUNDLE`]s, and these in order, by every worker for
 //! itself: the same bits whatever their number.
 //!
@@ -52,10 +55,8 @@
 //!
 //! A contact lets go where spring and dashpot would pull by `u⁻`; one that comes to pull within the
 //! step does so to its end. Which contacts there are, and which slide, is told by the beginning of
-//! the step. A stiff dashpot, which is taken at the step's end, pays nothing for the part of a step
-//! before its contact was seen: the spring pays for it by staying deep, and as its overlap bounds
-//! friction, impacts rub too much (`docs/validation.md`). Springs that turn are as explicit as ever.
-//! What springs take beyond what they store is booked with the dashpots, as what those lose.
+//! the step, but for gaps that close. Springs that turn are as explicit as ever. What springs take
+//! beyond what they store is booked with the dashpots, as what those lose.
 //!
 //! Not here: what springs and dashpots are ([`super::contact_group`]), the order of the phases
 //! ([`super::share`]).
@@ -63,6 +64,7 @@
 use super::super::row::Row;
 use super::bodies::{Body, Load};
 use super::couplings::{Blocks, Coupling, Motion, Symmetric, Wrench};
+use super::gaps::Gap;
 use super::neighbours::PairsOfBodies;
 use crate::lanes::{Lanes, Work};
 use std::ops::Range;
@@ -82,6 +84,8 @@ const TOLERANCE: f64 = 1e-3;
 pub struct Joint {
     /// Its pairs.
     pub couplings: Vec<Coupling>,
+    /// The gaps of its pairs that close within the step.
+    pub gaps: Vec<Gap>,
     /// Their matrices, as many side by side as there are lanes.
     pub columns: Vec<f64>,
     /// Which of the pairs of all workers act on its bodies.
@@ -96,6 +100,7 @@ impl Joint {
     /// Begins a step.
     pub fn clear(&mut self) {
         self.couplings.clear();
+        self.gaps.clear();
         self.progress = Progress::default();
     }
 }
@@ -163,6 +168,18 @@ struct Unknown {
     preconditioner: [Symmetric; 2],
 }
 
+/// What the bodies do next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Next {
+    /// They set their equations up.
+    #[default]
+    Begin,
+    /// They sum what the pairs make of the preconditioned residuals.
+    Sum,
+    /// They go along the search.
+    Go,
+}
+
 /// Where the iterations are: the same for every worker.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {
@@ -170,6 +187,10 @@ pub struct Progress {
     searches: u32,
     /// Whether the step's wrenches are found.
     pub is_done: bool,
+    /// What comes next.
+    pub next: Next,
+    /// Whether gaps that stay open have been let go.
+    pub is_amended: bool,
     /// What was left of the equations at first.
     begin: f64,
     /// What is left of them now.
@@ -186,12 +207,21 @@ impl Progress {
     /// the residuals with their products with what they are preconditioned.
     pub fn conclude(&mut self, products: &[f64]) {
         self.left = products.iter().sum();
-        if self.searches == 0 {
+        if self.searches == 0 && !self.is_amended {
             self.begin = self.left;
         }
         // Written so that what is not a number ends it.
         let goes_on = self.left > TOLERANCE * TOLERANCE * self.begin;
-        self.is_done = !goes_on || self.searches >= MOST_SEARCHES;
+        if goes_on && self.searches < MOST_SEARCHES {
+            self.next = Next::Sum;
+        } else if self.is_amended {
+            self.is_done = true;
+        } else {
+            self.is_amended = true;
+            self.searches = 0;
+            self.memory = 0.0;
+            self.next = Next::Begin;
+        }
     }
 
     /// Chooses the next search, from the products of preconditioned residuals with what the
@@ -206,6 +236,7 @@ impl Progress {
         }
         self.before = self.left;
         self.searches += 1;
+        self.next = Next::Go;
     }
 }
 
@@ -344,6 +375,8 @@ pub struct Beginning<'a> {
     pub dt: f64,
     /// What the pairs add to the bodies' matrices.
     pub blocks: &'a [Blocks],
+    /// Whether changes of the motions are known that are begun from.
+    pub goes_on: bool,
 }
 
 /// A stage of a worker's bodies.
@@ -382,11 +415,20 @@ impl Bodies<'_> {
         let Joint {
             links, unknowns, ..
         } = &mut *self.joint;
-        links.collect(from.own.clone(), from.pairs_of, from.resisting, from.slots);
         unknowns.clear();
-        self.changes.fill(Motion::default());
+        if !from.goes_on {
+            links.collect(from.own.clone(), from.pairs_of, from.resisting, from.slots);
+            self.changes.fill(Motion::default());
+        }
         for (k, (body, load)) in from.bodies.iter().zip(from.loads).enumerate() {
             let mut unknown = Unknown::of(body, load, from.dt, from.gravity);
+            if from.goes_on {
+                let change = &self.changes[k];
+                let momentum = apply(&unknown.inertia, &change.spin);
+                let [push, turn] = &mut unknown.residual;
+                *push = along(push, -unknown.mass, &change.velocity);
+                *turn = along(turn, -1.0, &momentum);
+            }
             unknown.add(links.of(k), from.dt, self.wrenches, from.blocks);
             let (motion, left) = unknown.precondition();
             self.motions[k] = motion;

@@ -25,6 +25,7 @@
 //! | `damping` | matrices of the dashpots of pairs |
 //! | `dashpots` | the dashpots of all pairs, taken implicitly pair by pair |
 //! | `couplings` | springs and dashpots of pairs as what couples their bodies within a step |
+//! | `gaps` | gaps of pairs that close within a step, as part of that
 //! | `joint` | springs and dashpots of all pairs, taken implicitly for all bodies together |
 //! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
@@ -40,6 +41,7 @@ mod damping;
 mod dashpots;
 mod extents;
 mod forces;
+mod gaps;
 mod joint;
 mod listed;
 mod listing;
@@ -56,12 +58,12 @@ mod workspace;
 pub use terms::force_terms;
 
 use super::FaultKind;
-use super::row::{length_squared, row, sub, vector};
+use super::row::{row, vector};
 use super::step::{Kernel, Tally};
 use super::walls::Walls;
 use super::workers::Batch;
 use crate::lanes::Processor;
-use crate::physics::FeatureRule;
+use crate::physics::{FeatureRule, Integrator};
 use crate::world::{Contact, World};
 use bodies::{Body, Load, Placing, Shapes};
 use extents::Extents;
@@ -76,6 +78,10 @@ pub use working_copy::PolyhedronKernel;
 
 /// Width of the skin in which pairs are kept, relative to the smallest bounding radius.
 const SKIN: f64 = 0.2;
+
+/// Motions of so many steps ahead are looked for what comes to touch within one, where springs are
+/// implicit: more than one, as a gap is measured farther from a centroid than any point of its body.
+const LOOK_AHEAD: f64 = 1.5;
 
 /// How far a body or a wall may move until the pairs must be found anew, relative to the skin: less
 /// than half of it, by more than rounding.
@@ -118,10 +124,11 @@ impl Kernel for PolyhedronKernel {
         self.place_all(processor);
         let slack = self.slack();
         let moved = self.bodies.iter().zip(&self.reference);
+        let ahead = self.look_ahead() * self.dt;
         moved
-            .map(|(body, old)| length_squared(sub(body.position, *old)))
+            .map(|(body, old)| body.moved_from(old, ahead))
             .any(|square| square > slack * slack)
-            || self.walls.moved_from(&self.reference_surfaces) > slack
+            || self.slack_of_walls() < 0.0
     }
 
     /// Finds the pairs anew. Their lists of features have slacks of their own and are left alone.
@@ -135,8 +142,7 @@ impl Kernel for PolyhedronKernel {
 
     /// What walls have moved since the pairs were found, in calls before, is gone already.
     fn steps_within_slack(&self) -> u64 {
-        let gone = self.walls.moved_from(&self.reference_surfaces);
-        self.walls.steps_within(self.slack() - gone, self.dt)
+        self.walls.steps_within(self.slack_of_walls(), self.dt)
     }
 
     fn lend<'a>(&'a mut self, batch: &'a Batch) -> Vec<PolyhedraShare<'a>> {
@@ -272,6 +278,18 @@ impl PolyhedronKernel {
     /// How far a body or a wall may move until the pairs must be found anew [m].
     fn slack(&self) -> f64 {
         SLACK * self.skin
+    }
+
+    /// How far a wall may still move [m].
+    fn slack_of_walls(&self) -> f64 {
+        let gone = self.walls.moved_from(&self.reference_surfaces);
+        self.slack() - gone - self.look_ahead() * self.dt * self.walls.speed()
+    }
+
+    /// Motions of so many steps ahead are looked for what comes to touch.
+    fn look_ahead(&self) -> f64 {
+        let looks = self.integrator == Integrator::Implicit && self.rule == FeatureRule::Full;
+        if looks { LOOK_AHEAD } else { 0.0 }
     }
 
     /// Finds the pairs that are near each other; those known keep what they hold.

@@ -23,6 +23,8 @@ pub struct Surroundings<'a> {
     pub dt: f64,
     /// Whether the features of a pair share its stiffness.
     pub rule: FeatureRule,
+    /// Motions of so many steps ahead are looked for what comes to touch.
+    pub look_ahead: f64,
     /// Every grain.
     pub bodies: &'a [Body],
     /// Where their features are.

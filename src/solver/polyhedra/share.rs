@@ -20,7 +20,7 @@
 //! ([`super::super::workers`]).
 
 use super::super::ranges::{range_of, split_once};
-use super::super::row::{Row, length_squared, sub};
+use super::super::row::Row;
 use super::super::step::{Outcome, Share, Tally};
 use super::super::walls::Walls;
 use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
@@ -30,7 +30,7 @@ use super::couplings::{Assembly, Blocks, Final, Image, Motion, Product, Wrench};
 use super::dashpots::{DampingSweep, Response, SWEEPS, responses_of_walls};
 use super::extents::Extents;
 use super::forces::Forces;
-use super::joint::{BUNDLE, Beginning, Bodies, SharedColumns, Stage};
+use super::joint::{BUNDLE, Beginning, Bodies, Next, SharedColumns, Stage};
 use super::motion::{Surroundings, motions_of};
 use super::nearest::Places;
 use super::neighbours::PairsOfBodies;
@@ -139,6 +139,8 @@ struct Common<'a> {
     integrator: Integrator,
     /// Whether the features of a pair share its stiffness.
     rule: FeatureRule,
+    /// Motions of so many steps ahead are looked for what comes to touch.
+    look_ahead: f64,
     /// Sizes that bound how far two bodies move in a step.
     extents: Extents,
 }
@@ -223,6 +225,7 @@ impl<'a> PolyhedraShare<'a> {
             gravity: world.gravity,
             integrator: world.integrator,
             rule: world.rule,
+            look_ahead: world.look_ahead(),
             extents: world.extents,
         };
         let mut bodies = batch.lend_ranges(&mut world.bodies, by_body());
@@ -277,6 +280,7 @@ impl Share for PolyhedraShare<'_> {
             surroundings: Surroundings {
                 dt: common.dt,
                 rule: common.rule,
+                look_ahead: common.look_ahead,
                 bodies: self.bodies.read(phase),
                 geometry: Geometry {
                     shapes: common.shapes,
@@ -313,7 +317,7 @@ impl Share for PolyhedraShare<'_> {
 
     fn respond(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, MotionPhase>) {
         if self.common.integrator == Integrator::Implicit && sweep > 0 {
-            return self.move_jointly(processor, sweep, phase);
+            return self.move_jointly(processor, phase);
         }
         let incidence = Incidence {
             forces: self.forces.read(phase),
@@ -388,15 +392,11 @@ impl Share for PolyhedraShare<'_> {
 /// | 3, 5, … | go along it | products, or the wrenches if little is left |
 impl PolyhedraShare<'_> {
     /// What the worker's bodies do in a `sweep` after the first.
-    fn move_jointly(
-        &mut self,
-        processor: Processor,
-        sweep: usize,
-        phase: &InPhase<'_, MotionPhase>,
-    ) {
+    fn move_jointly(&mut self, processor: Processor, phase: &InPhase<'_, MotionPhase>) {
         let joint = &mut self.joint;
-        let stage = match sweep {
-            1 => Stage::Begin(Beginning {
+        let progress = self.workspace.joint.progress;
+        let stage = match progress.next {
+            Next::Begin => Stage::Begin(Beginning {
                 own: self.own.clone(),
                 pairs_of: self.common.pairs_of,
                 resisting: self.resisting.read(phase),
@@ -406,9 +406,10 @@ impl PolyhedraShare<'_> {
                 gravity: self.common.gravity,
                 dt: self.common.dt,
                 blocks: joint.blocks.read(phase),
+                goes_on: progress.is_amended,
             }),
-            even if even % 2 == 0 => Stage::Sum,
-            _ => Stage::Go,
+            Next::Sum => Stage::Sum,
+            Next::Go => Stage::Go,
         };
         processor.run(Bodies {
             stage,
@@ -432,6 +433,8 @@ impl PolyhedraShare<'_> {
             return processor.run(Assembly {
                 dt: self.common.dt,
                 couplings: &own.couplings,
+                gaps: &mut own.gaps,
+                changes: None,
                 bodies: self.bodies.read(phase),
                 responses: self.responses.read(phase),
                 walls: &self.wall_responses,
@@ -441,12 +444,27 @@ impl PolyhedraShare<'_> {
             });
         }
         let products = joint.products.read(phase);
-        if sweep.is_multiple_of(2) {
+        if own.progress.next == Next::Sum {
             return own.progress.search(products);
         }
         own.progress.conclude(products);
-        let is_done = own.progress.is_done;
-        let motions = if is_done {
+        let (is_done, next) = (own.progress.is_done, own.progress.next);
+        let amends = !is_done && next == Next::Begin;
+        if amends {
+            processor.run(Assembly {
+                dt: self.common.dt,
+                couplings: &own.couplings,
+                gaps: &mut own.gaps,
+                changes: Some(joint.changes.read(phase)),
+                bodies: self.bodies.read(phase),
+                responses: self.responses.read(phase),
+                walls: &self.wall_responses,
+                columns: &mut own.columns,
+                wrenches: joint.wrenches.write_first(phase),
+                blocks: joint.blocks.write_first(phase),
+            });
+        }
+        let motions = if is_done || amends {
             &joint.changes
         } else {
             &joint.motions
@@ -465,6 +483,7 @@ impl PolyhedraShare<'_> {
             });
         } else {
             processor.run(Image {
+                factor: amends.then_some(-1.0 / self.common.dt),
                 product,
                 wrenches: joint.wrenches.write_first(phase),
             });
@@ -539,7 +558,7 @@ impl Work for Finish<'_> {
                 &mut self.vertices[span(begin.vertex, end.vertex, from.vertex)],
                 &mut self.planes[span(begin.face, end.face, from.face)],
             );
-            let moved = length_squared(sub(body.position, common.reference[i]));
+            let moved = body.moved_from(&common.reference[i], common.look_ahead * common.dt);
             outcome.refresh |= moved > common.slack_squared;
         }
         outcome

@@ -136,6 +136,7 @@ impl PairAlone {
         let springs = world.law.feature_springs();
         Surroundings {
             dt: world.clock.time_step,
+            look_ahead: 0.0,
             rule: springs.map_or(FeatureRule::Full, |springs| springs.rule),
             bodies: &self.bodies,
             geometry: Geometry {

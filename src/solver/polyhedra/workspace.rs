@@ -154,12 +154,13 @@ impl Workspace {
             pair.outer_slack -= moved;
             pair.inner_slack -= moved;
             pair.clearance -= moved;
-            if pair.outer_slack < 0.0 {
+            let ahead = all.look_ahead * moved;
+            if pair.outer_slack < ahead {
                 listed += 1;
                 self.list::<N>(processor, all, moved, pair, &mut block.terms[index]);
             }
-            let choose = pair.inner_slack < 0.0;
-            if !choose && pair.clearance > 0.0 {
+            let choose = pair.inner_slack < ahead;
+            if !choose && pair.clearance > ahead {
                 continue;
             }
             prefetch::<_, 16>(&block.points[pair.points.range()]);

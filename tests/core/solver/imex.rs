@@ -69,7 +69,7 @@ fn collision_keeps_momentum_and_angular_momentum() {
 pub fn restitution(integrator: &str, dt: f64) -> f64 {
     const OFFSETS: usize = 16;
     let rebound = |k: usize| {
-        let height = 0.001 + 0.3 * dt * (k as f64 + 0.5) / OFFSETS as f64;
+        let height = 0.001 + 0.3 * dt * (5.0 + (k as f64 + 0.5) / OFFSETS as f64);
         let grain = format!(
             r#"(position: (0, {height}, 0), shape: Sphere, radius: 0.001, material: "m", velocity: (0, -0.3, 0)),
                (position: (1, 1, 0), shape: Box(size: (0.002, 0.002, 0.003)), rounding: 0.0001, material: "m")"#

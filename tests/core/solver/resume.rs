@@ -89,3 +89,10 @@ fn resumed_drum_of_polyhedra_goes_on_to_the_same_bits_from_each_of_its_first_ste
         assert_eq!(strays(&cells(DRUM, rule)), Vec::<u64>::new(), "{rule}");
     }
 }
+
+#[test]
+fn resumed_column_of_implicit_springs_goes_on_to_the_same_bits_from_each_of_its_first_steps() {
+    let text = super::collapse::text_of_column("Full", "Implicit");
+    let scene = Scene::parse("column", &text).unwrap();
+    assert_eq!(strays(&scene), Vec::<u64>::new());
+}
