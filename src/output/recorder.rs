@@ -470,7 +470,7 @@ impl Recorder {
         let summary = SummaryFile {
             program: "grainfall",
             version: VERSION,
-            method: method(),
+            method: method(scene),
             status,
             fault: end.and_then(|(ending, _)| ending.fault()),
             name: &self.subject.name,

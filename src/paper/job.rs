@@ -6,7 +6,7 @@ use super::kept_file::{self, KeptFile};
 use super::kept_line::{Identity, KeptLine};
 use super::plan::{Paper, PaperTable, Row, Selection};
 use crate::output::write_file;
-use crate::run::{BedStore, Estimate, VERSION, method};
+use crate::run::{BedStore, Estimate, VERSION};
 use crate::runner::{RunnerError, Standing, Watch, standing};
 use crate::sweep::{self, Case, CaseResult, Kept, Sweep, SweepEnding, SweepFolder};
 use std::fmt::{self, Write as _};
@@ -168,8 +168,7 @@ impl PaperJob {
         let Some(path) = &self.kept else {
             return Ok(());
         };
-        let is_new =
-            |own: &&CaseResult| own.has_course() && own.method.as_deref() == Some(method());
+        let is_new = |own: &&CaseResult| own.has_course() && own.is_of_this_method();
         let lines = outcomes.into_iter().filter(is_new).map(|outcome| {
             let identity = Identity::of(&outcome.case)?;
             KeptLine::of(identity, outcome)

@@ -78,7 +78,7 @@ impl Identity {
         Ok(Self {
             case: case.name.clone(),
             scene: fingerprint(&all),
-            method: method().to_owned(),
+            method: method(&case.scene).to_owned(),
         })
     }
 }

@@ -82,7 +82,7 @@ impl Opening {
     /// Whether `session` is what this program makes.
     fn is_up_to_date(&self, session: &Session) -> bool {
         let scene = Scene::open(self.scene);
-        session.look() == made_by()
+        session.look() == made_by(&session.record().scene)
             && session.record().name == self.scene
             && (session.record().time - self.moment).abs() < 1e-3
             && scene.is_ok_and(|scene| session.record().scene == scene)
@@ -117,12 +117,13 @@ impl Opening {
         let end = run.world().clock.step_at(self.moment);
         run.advance_to(end)?;
         let session = Session::of(self.scene, &Timeline::new(run, 0));
-        Ok(session.looking(made_by()))
+        let made_by = made_by(&session.record().scene);
+        Ok(session.looking(made_by))
     }
 }
 
 /// What stands in the place of a look: the method that computed it, by which it is known to be
 /// that of this program.
-fn made_by() -> String {
-    format!("method {}", method())
+fn made_by(scene: &Scene) -> String {
+    format!("method {}", method(scene))
 }

@@ -9,6 +9,7 @@ use super::{Advance, At, DirectRun, Halt, Job, RunnerError, Watch, spoken};
 use crate::measure::Summary;
 use crate::output::{Ending, OutputError, OutputFolder, Recorder, RunSoFar, Subject};
 use crate::run::{Checkpoint, Measured, Stored, method};
+use crate::scene::Scene;
 use crate::world::Clock;
 use std::fmt;
 use std::sync::Arc;
@@ -188,7 +189,7 @@ impl Runner {
             None => false,
         };
         if kept.is_some() && !is_done {
-            check_method(&folder)?;
+            check_method(&folder, &job.scene)?;
         }
         let (recorder, checkpoint) = match kept {
             Some(kept) if is_done => {
@@ -388,13 +389,13 @@ fn find(
 }
 
 /// Refuses to go on in `folder` with a run that another solver computed: its end would be nobody's.
-fn check_method(folder: &OutputFolder) -> Result<(), RunnerError> {
+fn check_method(folder: &OutputFolder, scene: &Scene) -> Result<(), RunnerError> {
+    let own = method(scene);
     match folder.summary()?["method"].as_str() {
-        Some(other) if other != method() => Err(OutputError::OtherRun {
+        Some(other) if other != own => Err(OutputError::OtherRun {
             path: folder.path().to_owned(),
             reason: format!(
-                "it was computed by method {other}, and this build of Grainfall computes by {}",
-                method()
+                "it was computed by method {other}, and this build of Grainfall computes by {own}"
             ),
         }
         .into()),

@@ -113,6 +113,11 @@ impl CaseResult {
         }
     }
 
+    /// Whether it was computed by this build's method.
+    pub fn is_of_this_method(&self) -> bool {
+        self.method.as_deref() == Some(method(&self.case.scene))
+    }
+
     /// Whether its samples are there, and with them its flowing layer and its fastest moment.
     pub fn has_course(&self) -> bool {
         !self.series.is_empty()
@@ -179,12 +184,12 @@ pub fn check_method(sweep: &Sweep, cases: &[Case]) -> Result<(), RunnerError> {
     }
     for case in cases {
         let stated = stated_method(&sweep.out.join(&case.name))?;
-        if let Some(other) = stated.filter(|stated| stated != method()) {
+        let own = method(&case.scene);
+        if let Some(other) = stated.filter(|stated| stated != own) {
             return Err(RunnerError::Input(format!(
-                "{}: it was computed by method {other}, and this build of Grainfall computes by {}: \
+                "{}: it was computed by method {other}, and this build of Grainfall computes by {own}: \
                  --restart computes it anew, another --out leaves it as it is",
-                case.name,
-                method()
+                case.name
             )));
         }
     }

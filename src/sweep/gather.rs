@@ -6,7 +6,6 @@
 use super::case::{self, CaseResult};
 use super::{Case, Sweep};
 use crate::output::OutputError;
-use crate::run::method;
 use crate::runner::{self, RunnerError, Standing};
 
 /// What is kept of a case elsewhere than in its folder.
@@ -77,10 +76,13 @@ fn in_folder(sweep: &Sweep, case: &Case) -> Result<(Option<CaseResult>, Standing
     }
 }
 
-/// Those of this build's method, where there are none those of the first one's; and the others.
+/// Those of this build's methods, where there are none those of the first one's; and the others.
 fn of_one_method(outcomes: Vec<CaseResult>) -> (Vec<CaseResult>, Vec<CaseResult>) {
-    let is_own = |own: &&CaseResult| own.method.as_deref() == Some(method());
-    let chosen = outcomes.iter().find(is_own).or(outcomes.first());
-    let chosen = chosen.and_then(|own| own.method.clone());
-    (outcomes.into_iter()).partition(|outcome| outcome.method == chosen)
+    if outcomes.iter().any(CaseResult::is_of_this_method) {
+        return outcomes
+            .into_iter()
+            .partition(CaseResult::is_of_this_method);
+    }
+    let first = outcomes.first().and_then(|own| own.method.clone());
+    (outcomes.into_iter()).partition(|outcome| outcome.method == first)
 }

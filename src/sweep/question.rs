@@ -85,7 +85,7 @@ impl Question {
         let stated = json!({
             "scene": scene,
             "settings": self.settings(),
-            "method": method(),
+            "method": method(&self.scene),
         });
         let mark = &fingerprint(&stated)[..MARK];
         let title = plain(&self.scene.title);

@@ -145,7 +145,11 @@ fn each_moment_is_of_this_program_and_of_a_run_that_began_at_time_zero() {
     for own in openings() {
         let session = own.session();
         let session = session.unwrap_or_else(|| panic!("{}: {MAKE}", own.scene));
-        assert_eq!(session.look(), format!("method {}", method()), "{MAKE}");
+        assert_eq!(
+            session.look(),
+            format!("method {}", method(&session.record().scene)),
+            "{MAKE}"
+        );
         let record = session.record().clone();
         assert_eq!(record.scene, Scene::open(own.scene).unwrap(), "{MAKE}");
         assert!(record.commands.is_empty());

@@ -135,12 +135,12 @@ impl Hooke {
 const STEPS_PER_IMPACT: f64 = 9.0;
 
 /// The same where springs are taken implicitly too: in columns of the paper energy and front are
-/// then within two per cent of those of short steps.
+/// then within one per cent of those of short steps, or two.
 const IMPLICIT_STEPS_PER_IMPACT: f64 = 3.6;
 
 /// Share of the sphero-radius that the fastest grain may move in a step where nothing else limits
-/// it: what turns is faster still, and at half of it the solver stops.
-const LARGEST_WAY: f64 = 0.35;
+/// it: light grains that turn came to twice its speed, and at half of it the solver stops.
+const LARGEST_WAY: f64 = 0.2;
 
 fn way_limit(at: &Circumstances) -> StepLimit {
     StepLimit {

@@ -186,5 +186,5 @@ fn neither_springs_nor_dashpots_of_crowded_grains_limit_the_step() {
     let tall = advise(&Scene::parse("column", &tall).unwrap());
     assert_eq!(tall.limits[0].name, "way in a step");
     let way = tall.time_step * (2.0 * 9.81 * 1.6_f64).sqrt();
-    assert_relative("way", way, 0.35 * 0.3e-3, 1e-12);
+    assert_relative("way", way, 0.2 * 0.3e-3, 1e-12);
 }
