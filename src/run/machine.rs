@@ -17,13 +17,17 @@ pub fn free_memory() -> Option<f64> {
     Some(of_group.map_or(available, |most: f64| available.min(most)))
 }
 
-/// Memory of this program that the system holds for it now [bytes].
+/// Memory of this program that the system holds for it now [bytes]. Pages of files that are only
+/// read, such as the program itself, do not count: the system takes them and reads them again as it
+/// likes.
 pub fn resident_memory() -> Option<u64> {
     let bytes = read_whole(Path::new("/proc/self/status"), 1 << 20).ok()?;
     let text = String::from_utf8(bytes).ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(1024 * kilobytes)
+    let kilobytes = |name: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+        line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()
+    };
+    Some(1024 * (kilobytes("RssAnon:")? + kilobytes("RssShmem:")?))
 }
 
 /// What `/proc/meminfo` says is available [bytes].

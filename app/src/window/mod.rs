@@ -18,6 +18,7 @@
 //! | `canvas` | an image to draw into where there is no display |
 //! | `environment` | what a window needs of the machine |
 //! | `memory_log` | where its memory goes, in the log |
+//! | `memory_return` | gives free memory back to the system |
 
 mod app;
 pub mod canvas;
@@ -26,6 +27,7 @@ mod film_reel;
 mod film_studio;
 mod headless_film;
 mod memory_log;
+mod memory_return;
 mod opening_comparison;
 mod screenshot_job;
 mod screenshot_subject;
