@@ -6,7 +6,7 @@
 use crate::simulation::Simulation;
 use bevy::log::debug;
 use bevy::prelude::{App, IntoScheduleConfigs, Plugin, Res, Update};
-use bevy::time::common_conditions::on_timer;
+use bevy::time::common_conditions::on_real_timer;
 use grainfall::lab::Half;
 use grainfall::run::resident_memory;
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub(super) struct MemoryLogPlugin;
 
 impl Plugin for MemoryLogPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Update, tell_memory.run_if(on_timer(INTERVAL)));
+        app.add_systems(Update, tell_memory.run_if(on_real_timer(INTERVAL)));
     }
 }
 

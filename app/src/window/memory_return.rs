@@ -8,7 +8,7 @@
 
 use bevy::prelude::{App, IntoScheduleConfigs, Plugin, Update};
 use bevy::tasks::IoTaskPool;
-use bevy::time::common_conditions::on_timer;
+use bevy::time::common_conditions::on_real_timer;
 use std::time::Duration;
 
 /// Wall-clock time from one time to the next. Looking through the free lists takes some
@@ -20,7 +20,7 @@ pub(super) struct MemoryReturnPlugin;
 
 impl Plugin for MemoryReturnPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Update, begin.run_if(on_timer(INTERVAL)));
+        app.add_systems(Update, begin.run_if(on_real_timer(INTERVAL)));
     }
 }
 
