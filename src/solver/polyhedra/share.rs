@@ -387,9 +387,12 @@ impl Share for PolyhedraShare<'_> {
 /// | sweep | bodies | pairs |
 /// |---|---|---|
 /// | 0 | how they move without their pairs | assemble their matrices |
-/// | 1 | set their equations up | products, or the wrenches if nothing is left |
+/// | 1 | set their equations up | products |
 /// | 2, 4, … | sum the products | choose the next search |
-/// | 3, 5, … | go along it | products, or the wrenches if little is left |
+/// | 3, 5, … | go along it | products |
+///
+/// Once little is left of the equations, the pairs let go of gaps that stay open in the place of
+/// the products, and the sweeps begin again with the first; the second time they find the wrenches.
 impl PolyhedraShare<'_> {
     /// What the worker's bodies do in a `sweep` after the first.
     fn move_jointly(&mut self, processor: Processor, phase: &InPhase<'_, MotionPhase>) {
@@ -429,33 +432,22 @@ impl PolyhedraShare<'_> {
         phase: &InPhase<'_, ForcePhase>,
     ) {
         let (joint, own) = (&mut self.joint, &mut self.workspace.joint);
-        if sweep == 0 {
-            return processor.run(Assembly {
-                dt: self.common.dt,
-                couplings: &own.couplings,
-                gaps: &mut own.gaps,
-                changes: None,
-                bodies: self.bodies.read(phase),
-                responses: self.responses.read(phase),
-                walls: &self.wall_responses,
-                columns: &mut own.columns,
-                wrenches: joint.wrenches.write_first(phase),
-                blocks: joint.blocks.write_first(phase),
-            });
+        let begins = sweep == 0;
+        if !begins {
+            let products = joint.products.read(phase);
+            if own.progress.next == Next::Sum {
+                return own.progress.search(products);
+            }
+            own.progress.conclude(products);
         }
-        let products = joint.products.read(phase);
-        if own.progress.next == Next::Sum {
-            return own.progress.search(products);
-        }
-        own.progress.conclude(products);
-        let (is_done, next) = (own.progress.is_done, own.progress.next);
-        let amends = !is_done && next == Next::Begin;
-        if amends {
+        let is_done = own.progress.is_done;
+        let amends = !begins && !is_done && own.progress.next == Next::Begin;
+        if begins || amends {
             processor.run(Assembly {
                 dt: self.common.dt,
                 couplings: &own.couplings,
                 gaps: &mut own.gaps,
-                changes: Some(joint.changes.read(phase)),
+                changes: amends.then(|| joint.changes.read(phase)),
                 bodies: self.bodies.read(phase),
                 responses: self.responses.read(phase),
                 walls: &self.wall_responses,
@@ -463,6 +455,9 @@ impl PolyhedraShare<'_> {
                 wrenches: joint.wrenches.write_first(phase),
                 blocks: joint.blocks.write_first(phase),
             });
+        }
+        if begins {
+            return;
         }
         let motions = if is_done || amends {
             &joint.changes
