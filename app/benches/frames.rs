@@ -36,6 +36,7 @@ use grainfall_app::simulation::{Simulation, SimulationPlugin};
 use grainfall_app::ui::{Dock, UiPlugin};
 use grainfall_app::view::{ColourBy, GrainBuffer, Meshing, ShownWorlds, ViewPlugin, ViewSettings};
 use grainfall_app::window::canvas::CanvasPlugin;
+use grainfall_app::window::one_by_one::OneByOnePlugin;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -156,6 +157,7 @@ fn window(scene: Scene) -> App {
             UiPlugin {
                 options: options.clone(),
             },
+            OneByOnePlugin,
         ))
         .insert_resource(Simulation::open(scene, options));
     app.world_mut().spawn((

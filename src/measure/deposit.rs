@@ -8,7 +8,9 @@
 use super::column::volume;
 use crate::world::{Contact, Partner, Shape, World};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Rings of a height profile at most: a lone grain that flew away takes no memory.
 const MOST_RINGS: usize = 1000;
@@ -16,6 +18,8 @@ const MOST_RINGS: usize = 1000;
 const SECTORS: usize = 72;
 /// Share of the column's radius at the start within which the deposit's height is taken.
 const MIDDLE: f64 = 0.5;
+/// Grains whose outline one thread looks for at a time.
+const PART: usize = 8192;
 /// Width of the rings of the height profile in grain sizes.
 const RING_WIDTH: f64 = 2.0;
 /// The top is flat as far as the profile keeps this share of its apex.
@@ -178,21 +182,21 @@ impl DepositOutline {
                 height = height.max(centre.y);
             }
         }
-        let mut sectors = [f64::NAN; SECTORS];
-        for (i, (centre, bound)) in grains().enumerate() {
-            let distance = from_axis(*centre);
-            let is_high = distance <= middle && centre.y + bound > height;
-            if !is_high && !known.is_below(*centre, distance + bound) {
-                continue;
-            }
-            let extent = Extent::of(world, i);
-            if is_high {
-                height = height.max(extent.top);
-            }
-            let front = &mut sectors[extent.sector()];
-            *front = front.max(extent.reach);
-            known.reach(*centre, extent.reach);
-        }
+        let count = world.grains.len();
+        let part = |first: usize| {
+            let grains = first..(first + PART).min(count);
+            farthest(world, grains, middle, known.clone(), height)
+        };
+        let (sectors, height) = if count <= PART {
+            part(0)
+        } else {
+            let parts = (0..count.div_ceil(PART)).into_par_iter();
+            let none = || ([f64::NAN; SECTORS], height);
+            parts.map(|k| part(k * PART)).reduce(none, |one, other| {
+                let sectors = std::array::from_fn(|k| one.0[k].max(other.0[k]));
+                (sectors, one.1.max(other.1))
+            })
+        };
         (!world.grains.is_empty()).then(|| Self {
             sectors,
             front: mean_front(&sectors),
@@ -203,7 +207,36 @@ impl DepositOutline {
     }
 }
 
+/// The farthest points of these grains in each sector, NaN where none of them matters, and the highest of
+/// those about the axis or `height` [m], where so much is `known`.
+fn farthest(
+    world: &World,
+    grains: Range<usize>,
+    middle: f64,
+    mut known: KnownFront,
+    mut height: f64,
+) -> ([f64; SECTORS], f64) {
+    let mut sectors = [f64::NAN; SECTORS];
+    for i in grains {
+        let (centre, bound) = (world.grains.position[i], world.grains.radius[i]);
+        let distance = from_axis(centre);
+        let is_high = distance <= middle && centre.y + bound > height;
+        if !is_high && !known.is_below(centre, distance + bound) {
+            continue;
+        }
+        let extent = Extent::of(world, i);
+        if is_high {
+            height = height.max(extent.top);
+        }
+        let front = &mut sectors[extent.sector()];
+        *front = front.max(extent.reach);
+        known.reach(centre, extent.reach);
+    }
+    (sectors, height)
+}
+
 /// How far the front reaches at least in each sector [m].
+#[derive(Clone)]
 struct KnownFront {
     sectors: [f64; SECTORS],
     /// The least of them.

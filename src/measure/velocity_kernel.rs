@@ -36,11 +36,17 @@ pub fn mean_velocity(world: &World, point: DVec2, reach: f64) -> Option<DVec2> {
 
 /// Weight of a grain at this squared distance [m²] in a mean whose kernel is cut off at `reach`
 /// [m].
-pub(super) fn weight(squared: f64, reach: f64) -> f64 {
-    let width = reach / CUT_OFF;
+fn weight(squared: f64, reach: f64) -> f64 {
     if squared < reach * reach {
-        (-0.5 * squared / (width * width)).exp()
+        gaussian(squared, reach)
     } else {
         0.0
     }
+}
+
+/// The Gaussian of the kernel that is cut off at `reach` [m], at this squared distance [m²]: the
+/// product of those of the distance's two parts.
+pub(super) fn gaussian(squared: f64, reach: f64) -> f64 {
+    let width = reach / CUT_OFF;
+    (-0.5 * squared / (width * width)).exp()
 }

@@ -3,7 +3,7 @@
 //! The mean is that of [`mean_velocity`](super::mean_velocity), with the same kernel and reach; a
 //! point that no grain covers, seen along z, has none.
 
-use super::velocity_kernel::{kernel_reach, weight};
+use super::velocity_kernel::{gaussian, kernel_reach};
 use crate::world::World;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,50 @@ struct KernelSums {
     weight: f64,
     velocity: DVec2,
     covered: bool,
+}
+
+/// Columns or rows within a grain's reach at most.
+const MOST_WITHIN_REACH: usize = 2 * FINENESS as usize + 2;
+
+/// A column or a row near a grain.
+#[derive(Clone, Copy, Default)]
+struct Factor {
+    index: usize,
+    /// Square of the distance along this axis [m²].
+    squared: f64,
+    /// Its Gaussian: a point's weight is the product of those of its column and its row.
+    weight: f64,
+}
+
+/// The columns or the rows within a grain's reach.
+struct Factors {
+    all: [Factor; MOST_WITHIN_REACH],
+    count: usize,
+}
+
+impl Factors {
+    /// Those `from` and `to` these places along an axis about the grain's `own`, in spacings.
+    fn of(from: f64, to: f64, own: f64, spacing: f64, reach: f64) -> Self {
+        let mut factors = Self {
+            all: [Factor::default(); MOST_WITHIN_REACH],
+            count: 0,
+        };
+        let indices = from.ceil().max(0.0) as usize..=to as usize;
+        for (index, factor) in indices.zip(&mut factors.all) {
+            let squared = (spacing * (index as f64 - own)).powi(2);
+            *factor = Factor {
+                index,
+                squared,
+                weight: gaussian(squared, reach),
+            };
+            factors.count += 1;
+        }
+        factors
+    }
+
+    fn list(&self) -> &[Factor] {
+        &self.all[..self.count]
+    }
 }
 
 impl VelocityMap {
@@ -103,15 +147,18 @@ pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
         let velocity = velocity.truncate() - turning * place.perp();
         let own = (place - map.corner) / spacing;
         let (from, to) = (own - reach / spacing, own + reach / spacing);
-        let columns = from.x.ceil().max(0.0) as usize..=to.x.min(size.x - 1.0) as usize;
-        for row in from.y.ceil().max(0.0) as usize..=to.y.min(size.y - 1.0) as usize {
-            for column in columns.clone() {
-                let squared = (map.point(column, row) - place).length_squared();
-                let sum = &mut sums[row * map.columns + column];
-                let weight = weight(squared, reach);
-                sum.weight += weight;
-                sum.velocity += weight * velocity;
-                sum.covered |= squared < radius * radius;
+        let columns = Factors::of(from.x, to.x.min(size.x - 1.0), own.x, spacing, reach);
+        let rows = Factors::of(from.y, to.y.min(size.y - 1.0), own.y, spacing, reach);
+        for row in rows.list() {
+            let sums = &mut sums[row.index * map.columns..];
+            for column in columns.list() {
+                let squared = column.squared + row.squared;
+                if squared < reach * reach {
+                    let (sum, weight) = (&mut sums[column.index], column.weight * row.weight);
+                    sum.weight += weight;
+                    sum.velocity += weight * velocity;
+                    sum.covered |= squared < radius * radius;
+                }
             }
         }
     }

@@ -30,7 +30,10 @@ pub(super) fn plugin(app: &mut App) {
         Shader::from_wgsl
     );
     app.init_resource::<GrainBuffer>()
-        .add_systems(Update, fill.in_set(ViewSystems::Fill));
+        .init_resource::<ColouredGrains>()
+        .add_systems(Update, fill.in_set(ViewSystems::Fill))
+        // Where two threads share a core a round would slow the rest of the frame.
+        .add_systems(Last, begin_shadows);
 }
 
 /// The buffers of all grains, in the order of the world, one for each half of the picture.
@@ -113,7 +116,7 @@ type Colouring = (
 );
 
 /// What is kept from one frame to the next, so that a frame needs no new room per grain.
-#[derive(Default)]
+#[derive(Resource, Default)]
 struct ColouredGrains {
     colouring: Option<Colouring>,
     halves: [ColouredHalf; 2],
@@ -141,7 +144,7 @@ struct ColouredHalf {
 fn fill(
     shown: Res<ShownWorlds>,
     mut settings: ResMut<ViewSettings>,
-    mut kept: Local<ColouredGrains>,
+    mut kept: ResMut<ColouredGrains>,
     mut buffer: ResMut<GrainBuffer>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
@@ -172,17 +175,23 @@ fn fill(
             kept.halves[half.index()].redraw(worlds, turned, &settings);
         }
     }
-    let cut = CutPlanes::of(settings.cut);
     for (half, buffer) in kept.halves.iter_mut().zip(&mut buffer.halves) {
-        let follow = half
-            .shadows
-            .follow(&half.spheres, move |centre| cut.take_away(centre));
-        if follow || moved || recoloured {
+        let has_shadows = half.shadows.take(half.spheres.len());
+        if has_shadows || moved || recoloured {
             half.shade();
             buffer.write(&half.drawn, &mut buffers);
         }
     }
     buffer.shadows_are_whole = kept.shadows_are_whole();
+}
+
+/// Begins another round of shadows where they are out of date.
+fn begin_shadows(settings: Res<ViewSettings>, mut kept: ResMut<ColouredGrains>) {
+    let cut = CutPlanes::of(settings.cut);
+    for half in &mut kept.halves {
+        let absent = move |centre| cut.take_away(centre);
+        half.shadows.begin(&half.spheres, absent);
+    }
 }
 
 /// The state whose numbers the colours of this half show: its own, or that with which its run began,

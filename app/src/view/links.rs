@@ -22,6 +22,7 @@ use bevy::render::render_resource::{
 };
 use bevy::render::storage::ShaderBuffer;
 use bevy::shader::ShaderRef;
+use bevy::tasks::{ComputeTaskPool, ParallelSlice};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use grainfall::lab::Half;
@@ -75,6 +76,8 @@ const FORCE_RADIUS: f64 = 0.3;
 const ARROW_RADIUS: f64 = 0.16;
 /// Length of the arrow of the reference speed, in mean radii of grains.
 const ARROW_LENGTH: f64 = 4.0;
+/// Contacts whose bars one thread makes at a time.
+const PART: usize = 16_384;
 /// No bar is thicker than that of this many reference forces.
 const LARGEST: f64 = 2.0;
 /// Forces and speeds below this share of the reference are not drawn.
@@ -338,9 +341,7 @@ impl Links {
         let cut = CutPlanes::of(settings.cut);
         let radius = mean_radius(world);
         if let Some(reference) = settings.link_scales.force {
-            for contact in &world.contacts {
-                self.force(world, contact, reference, radius);
-            }
+            self.forces(world, reference, radius);
         }
         if settings.show_bridges {
             for contact in &world.contacts {
@@ -357,6 +358,25 @@ impl Links {
 
     fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], kind: LinkKind) {
         self.drawn.push(Link::new(ends, radii, kind));
+    }
+
+    /// The bars of all forces, of many by several threads.
+    fn forces(&mut self, world: &World, reference: f64, radius: f64) {
+        let bars = |_: usize, contacts: &[Contact]| {
+            let mut part = Self::default();
+            for contact in contacts {
+                part.force(world, contact, reference, radius);
+            }
+            part.drawn
+        };
+        if world.contacts.len() <= PART {
+            self.drawn.append(&mut bars(0, &world.contacts));
+            return;
+        }
+        let pool = ComputeTaskPool::get();
+        for mut part in world.contacts.par_chunk_map(pool, PART, bars) {
+            self.drawn.append(&mut part);
+        }
     }
 
     fn force(&mut self, world: &World, contact: &Contact, reference: f64, radius: f64) {

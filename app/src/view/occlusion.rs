@@ -81,14 +81,8 @@ impl Shadows {
         self.is_stale = true;
     }
 
-    /// Takes over a finished round, and begins another where the `spheres` (centre, radius) have
-    /// changed since. Spheres for which `absent` holds hide nothing. True where the shadows have
-    /// changed.
-    pub(super) fn follow(
-        &mut self,
-        spheres: &[(Vec3, f32)],
-        absent: impl Fn(Vec3) -> bool + Send + 'static,
-    ) -> bool {
+    /// Takes over a finished round of `count` spheres; true where the shadows have changed.
+    pub(super) fn take(&mut self, count: usize) -> bool {
         let ended = self.under_way.as_mut().and_then(check_ready);
         let has_ended = ended.is_some();
         if let Some(mut round) = ended {
@@ -96,10 +90,20 @@ impl Shadows {
             std::mem::swap(&mut self.hidden, &mut round.hidden);
             self.done = round;
         }
-        if self.hidden.len() != spheres.len() {
+        if self.hidden.len() != count {
             // They were those of another scene.
             self.hidden.clear();
         }
+        has_ended
+    }
+
+    /// Begins a round where the `spheres` (centre, radius) have changed since the last one. Spheres for
+    /// which `absent` holds hide nothing.
+    pub(super) fn begin(
+        &mut self,
+        spheres: &[(Vec3, f32)],
+        absent: impl Fn(Vec3) -> bool + Send + 'static,
+    ) {
         if self.is_stale && self.under_way.is_none() {
             self.is_stale = false;
             let mut round = std::mem::take(&mut self.done);
@@ -110,7 +114,6 @@ impl Shadows {
                 round
             }));
         }
-        has_ended
     }
 }
 
@@ -361,12 +364,14 @@ mod tests {
         // Elsewhere at first: a round is under way when they all move.
         spheres.reverse();
         shadows.outdate();
-        assert!(!shadows.follow(&spheres, |_| false), "none has ended yet");
+        assert!(!shadows.take(spheres.len()), "none has begun yet");
+        shadows.begin(&spheres, |_| false);
         spheres.reverse();
         shadows.outdate();
         let mut rounds = 0;
         while !shadows.are_whole() {
-            rounds += u32::from(shadows.follow(&spheres, |_| false));
+            rounds += u32::from(shadows.take(spheres.len()));
+            shadows.begin(&spheres, |_| false);
             std::thread::yield_now();
         }
         assert_eq!(rounds, 2);

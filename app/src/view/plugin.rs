@@ -4,7 +4,7 @@
 
 use crate::view::camera::OrbitCamera;
 use crate::view::second_picture::SecondPicture;
-use crate::view::shown_worlds::{ShownWorlds, ViewSystems, take_newest};
+use crate::view::shown_worlds::{ShownWorlds, ViewSystems, free, take_newest};
 use crate::view::view_settings::ViewSettings;
 use crate::view::{
     container_walls, ghosts, grain_buffer, links, polyhedron_meshes, rig, second_rig, spheres,
@@ -52,6 +52,7 @@ impl Plugin for ViewPlugin {
                     .chain()
                     .in_set(ViewSystems::Take),
             )
+            .add_systems(Last, free)
             .add_systems(Update, second_rig::follow_window.after(ViewSystems::Draw))
             .add_systems(
                 PostUpdate,

@@ -22,6 +22,8 @@ pub enum ViewSystems {
     Draw,
 }
 
+/// Grains of a world that takes longer to free than to wake a thread for it.
+const LARGE: usize = 4096;
 /// Part of a scene's duration in which grains in the open stay in the picture: what happens to them
 /// happens before.
 const WATCHED: f64 = 0.5;
@@ -34,6 +36,8 @@ pub struct ShownWorlds {
     turned: [Option<Turned>; 2],
     /// The states with which their runs began, where those are known.
     starts: [Option<Arc<World>>; 2],
+    /// Those that are shown no longer.
+    before: Vec<Arc<World>>,
     /// How long grains that fly in the open are followed [s].
     pub(super) watched: f64,
 }
@@ -61,15 +65,11 @@ impl ShownWorlds {
         self.replace([Some(left), Some(right)]);
     }
 
-    /// What was shown is freed beside the frame: a large world takes milliseconds.
     fn replace(&mut self, halves: [Option<Arc<World>>; 2]) {
         let before = std::mem::replace(&mut self.halves, halves);
+        self.before.extend(before.into_iter().flatten());
         self.turned = [None, None];
         self.starts = [None, None];
-        match AsyncComputeTaskPool::try_get() {
-            Some(pool) => pool.spawn(async move { drop(before) }).detach(),
-            None => drop(before),
-        }
     }
 
     /// The world in the picture; of two the left one.
@@ -102,6 +102,18 @@ impl ShownWorlds {
     /// Whether two worlds are shown.
     pub fn is_pair(&self) -> bool {
         self.halves[Half::Right.index()].is_some()
+    }
+}
+
+/// Frees what was shown, behind the frame; a large world, which takes milliseconds, beside the next one.
+pub(super) fn free(mut shown: ResMut<ShownWorlds>) {
+    if shown.before.is_empty() {
+        return;
+    }
+    let before = std::mem::take(&mut shown.bypass_change_detection().before);
+    if before.iter().any(|world| world.grains.len() > LARGE) {
+        let pool = AsyncComputeTaskPool::get();
+        pool.spawn(async move { drop(before) }).detach();
     }
 }
 

@@ -13,6 +13,7 @@ use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
 use crate::window::memory_log::MemoryLogPlugin;
 use crate::window::memory_return::MemoryReturnPlugin;
+use crate::window::one_by_one::OneByOnePlugin;
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
 use crate::window::screenshot_job::{Failure, ScreenshotJobs, ScreenshotPlugin};
 use crate::window::second_set::over_everything;
@@ -134,7 +135,12 @@ pub(super) fn add_laboratory(app: &mut App, is_plain: bool, smooth_edges: bool, 
             smooth_edges,
             ..default()
         })
-        .add_plugins((SimulationPlugin, ViewPlugin, UiPlugin { options }))
+        .add_plugins((
+            SimulationPlugin,
+            ViewPlugin,
+            UiPlugin { options },
+            OneByOnePlugin,
+        ))
         .add_systems(Startup, spawn_panel_camera);
 }
 

@@ -19,6 +19,7 @@
 //! | `environment` | what a window needs of the machine |
 //! | `memory_log` | where its memory goes, in the log |
 //! | `memory_return` | gives free memory back to the system |
+//! | `one_by_one` | systems of a frame one after the other |
 
 mod app;
 pub mod canvas;
@@ -28,6 +29,7 @@ mod film_studio;
 mod headless_film;
 mod memory_log;
 mod memory_return;
+pub mod one_by_one;
 mod opening_comparison;
 mod screenshot_job;
 mod screenshot_subject;

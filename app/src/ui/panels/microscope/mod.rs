@@ -85,7 +85,7 @@ impl Panel for Microscope {
         let Some(grain) = view.selected.filter(|grain| *grain < world.grains.len()) else {
             return;
         };
-        let contacts = contacts_of(world, grain as u32);
+        let contacts = world.contacts_of(grain);
         table_ui(ui, numbers(world, grain, &contacts).into_iter());
         let contacts = &contacts[..contacts.len().min(LONGEST_LIST)];
         self.contacts_ui(ui, world, grain as u32, contacts, view);
@@ -188,13 +188,6 @@ fn trails_ui(ui: &mut egui::Ui, view: &mut ViewSettings) {
             view.trace(grain);
         }
     });
-}
-
-/// All contacts and bridges of a grain.
-fn contacts_of(world: &World, grain: u32) -> Vec<&Contact> {
-    let concerns =
-        |contact: &&Contact| contact.grain == grain || contact.partner == Partner::Grain(grain);
-    world.contacts.iter().filter(concerns).collect()
 }
 
 /// The partner of `grain` in `contact`.
