@@ -56,27 +56,45 @@ struct Factors {
 }
 
 impl Factors {
-    /// Those `from` and `to` these places along an axis about the grain's `own`, in spacings.
-    fn of(from: f64, to: f64, own: f64, spacing: f64, reach: f64) -> Self {
-        let mut factors = Self {
+    fn list(&self) -> &[Factor] {
+        &self.all[..self.count]
+    }
+}
+
+/// The points of the grid along one axis.
+struct Axis {
+    /// The first one [m].
+    corner: f64,
+    /// From one to the next [m].
+    spacing: f64,
+    points: usize,
+    /// Of the kernel [m].
+    reach: f64,
+}
+
+impl Axis {
+    /// Those within reach of a grain at this `place` [m].
+    fn near(&self, place: f64) -> Factors {
+        let (own, reach) = (
+            (place - self.corner) / self.spacing,
+            self.reach / self.spacing,
+        );
+        let last = (own + reach).min(self.points as f64 - 1.0) as usize;
+        let mut near = Factors {
             all: [Factor::default(); MOST_WITHIN_REACH],
             count: 0,
         };
-        let indices = from.ceil().max(0.0) as usize..=to as usize;
-        for (index, factor) in indices.zip(&mut factors.all) {
-            let squared = (spacing * (index as f64 - own)).powi(2);
+        let indices = (own - reach).ceil().max(0.0) as usize..=last;
+        for (index, factor) in indices.zip(&mut near.all) {
+            let squared = (self.corner + self.spacing * index as f64 - place).powi(2);
             *factor = Factor {
                 index,
                 squared,
-                weight: gaussian(squared, reach),
+                weight: gaussian(squared, self.reach),
             };
-            factors.count += 1;
+            near.count += 1;
         }
-        factors
-    }
-
-    fn list(&self) -> &[Factor] {
-        &self.all[..self.count]
+        near
     }
 }
 
@@ -145,10 +163,13 @@ pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
     let mut sums = vec![KernelSums::default(); map.columns * size.y as usize];
     for ((place, velocity), &radius) in places().zip(&grains.velocity).zip(&grains.radius) {
         let velocity = velocity.truncate() - turning * place.perp();
-        let own = (place - map.corner) / spacing;
-        let (from, to) = (own - reach / spacing, own + reach / spacing);
-        let columns = Factors::of(from.x, to.x.min(size.x - 1.0), own.x, spacing, reach);
-        let rows = Factors::of(from.y, to.y.min(size.y - 1.0), own.y, spacing, reach);
+        let axis = |k: usize| Axis {
+            corner: map.corner[k],
+            spacing,
+            points: size[k] as usize,
+            reach,
+        };
+        let (columns, rows) = (axis(0).near(place.x), axis(1).near(place.y));
         for row in rows.list() {
             let sums = &mut sums[row.index * map.columns..];
             for column in columns.list() {
