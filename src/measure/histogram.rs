@@ -22,23 +22,30 @@ impl Histogram {
     /// one part holds them.
     pub fn of(values: &[f64], parts: usize) -> Option<Self> {
         let finite = || values.iter().copied().filter(|value| value.is_finite());
-        let (low, high) = (finite().reduce(f64::min)?, finite().reduce(f64::max)?);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut number, mut sum) = (0_usize, 0.0);
+        for value in finite() {
+            (low, high) = (low.min(value), high.max(value));
+            (number, sum) = (number + 1, sum + value);
+        }
+        if number == 0 {
+            return None;
+        }
+        let mean = sum / number as f64;
         let parts = if low < high { parts.max(1) } else { 1 };
-        let mut counts = vec![0; parts];
+        let (mut counts, mut squares) = (vec![0; parts], 0.0);
         for value in finite() {
             let part = (value - low) / (high - low) * parts as f64;
             // Without a width all of them are in the first part; NaN becomes zero.
             counts[(part as usize).min(parts - 1)] += 1;
+            squares += (value - mean) * (value - mean);
         }
-        let number = finite().count() as f64;
-        let mean = finite().sum::<f64>() / number;
-        let square = finite().map(|value| (value - mean) * (value - mean));
         Some(Self {
             low,
             high,
             counts,
             mean,
-            deviation: (square.sum::<f64>() / number).sqrt(),
+            deviation: (squares / number as f64).sqrt(),
         })
     }
 

@@ -28,10 +28,7 @@ pub(super) fn for_each_near_pair(
         for a in own.clone() {
             let x = sorted[a];
             let rest_of_row = a + 1..grid.end_of_next(cell, &starts);
-            for b in std::iter::once(rest_of_row)
-                .chain(runs.iter().cloned())
-                .flatten()
-            {
+            for b in std::iter::once(rest_of_row).chain(runs.clone()).flatten() {
                 let separation = sorted[b] - x;
                 if separation.length_squared() < reach_squared {
                     visit(order[a] as usize, order[b] as usize, separation);
@@ -110,21 +107,20 @@ impl Grid {
     }
 
     /// The points in those neighbours of `cell` that come in later rows: one run for each row.
-    fn forward_runs(&self, cell: usize, starts: &[u32]) -> Vec<Range<usize>> {
+    fn forward_runs(&self, cell: usize, starts: &[u32]) -> [Range<usize>; 4] {
         let cell = cell as u32;
         let x = cell % self.counts.x;
         let y = cell / self.counts.x % self.counts.y;
         let z = cell / (self.counts.x * self.counts.y);
         let (left, right) = (x.saturating_sub(1), (x + 1).min(self.counts.x - 1));
-        [(1, 0), (-1, 1), (0, 1), (1, 1)]
-            .into_iter()
-            .filter_map(|(dy, dz)| {
-                let y = y.checked_add_signed(dy).filter(|y| *y < self.counts.y)?;
-                let z = (z + dz < self.counts.z).then_some(z + dz)?;
-                let start = starts[self.index(left, y, z)] as usize;
-                let end = starts[self.index(right, y, z) + 1] as usize;
-                Some(start..end)
-            })
-            .collect()
+        let run = |(dy, dz)| {
+            let y = y.checked_add_signed(dy).filter(|y| *y < self.counts.y)?;
+            let z = (z + dz < self.counts.z).then_some(z + dz)?;
+            let start = starts[self.index(left, y, z)] as usize;
+            let end = starts[self.index(right, y, z) + 1] as usize;
+            Some(start..end)
+        };
+        // Beyond the grid there are none.
+        [(1, 0), (-1, 1), (0, 1), (1, 1)].map(|row| run(row).unwrap_or_default())
     }
 }

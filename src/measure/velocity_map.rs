@@ -28,37 +28,63 @@ pub struct VelocityMap {
     pub velocity: Vec<Option<DVec2>>,
 }
 
-/// Sums over the grains near one point.
-#[derive(Clone, Copy, Default)]
+/// Sums over the grains near each point.
 struct KernelSums {
-    weight: f64,
+    weight: Vec<f64>,
+    velocity: [Vec<f64>; 2],
+    covered: Vec<bool>,
+}
+
+impl KernelSums {
+    fn of_points(count: usize) -> Self {
+        Self {
+            weight: vec![0.0; count],
+            velocity: [vec![0.0; count], vec![0.0; count]],
+            covered: vec![false; count],
+        }
+    }
+
+    /// Adds a grain to the points of a row, the first of which is `first`; `row` is its part of the
+    /// distance and of the weight.
+    fn add(&mut self, first: usize, columns: &Factors, row: (f64, f64), grain: &KernelGrain) {
+        let points = first..first + columns.count;
+        let [sums_x, sums_y] = &mut self.velocity;
+        let sums = (self.weight[points.clone()].iter_mut())
+            .zip(&mut sums_x[points.clone()])
+            .zip(&mut sums_y[points.clone()])
+            .zip(&mut self.covered[points]);
+        let columns = columns.squared.iter().zip(&columns.weight);
+        for ((((sum, x), y), covered), (squared, weight)) in sums.zip(columns) {
+            // Not branched to: what lies beyond the reach adds zero.
+            let squared = squared + row.0;
+            let is_near = squared < grain.reach_squared;
+            let weight = if is_near { weight * row.1 } else { 0.0 };
+            *sum += weight;
+            *x += weight * grain.velocity.x;
+            *y += weight * grain.velocity.y;
+            *covered |= is_near & (squared < grain.radius_squared);
+        }
+    }
+}
+
+/// What a grain adds to the points near it.
+struct KernelGrain {
     velocity: DVec2,
-    covered: bool,
+    reach_squared: f64,
+    radius_squared: f64,
 }
 
 /// Columns or rows within a grain's reach at most.
 const MOST_WITHIN_REACH: usize = 2 * FINENESS as usize + 2;
 
-/// A column or a row near a grain.
-#[derive(Clone, Copy, Default)]
-struct Factor {
-    index: usize,
-    /// Square of the distance along this axis [m²].
-    squared: f64,
-    /// Its Gaussian: a point's weight is the product of those of its column and its row.
-    weight: f64,
-}
-
 /// The columns or the rows within a grain's reach.
 struct Factors {
-    all: [Factor; MOST_WITHIN_REACH],
+    first: usize,
     count: usize,
-}
-
-impl Factors {
-    fn list(&self) -> &[Factor] {
-        &self.all[..self.count]
-    }
+    /// Square of the distance along this axis [m²].
+    squared: [f64; MOST_WITHIN_REACH],
+    /// Its Gaussian: a point's weight is the product of those of its column and its row.
+    weight: [f64; MOST_WITHIN_REACH],
 }
 
 /// The points of the grid along one axis.
@@ -80,19 +106,17 @@ impl Axis {
             self.reach / self.spacing,
         );
         let last = (own + reach).min(self.points as f64 - 1.0) as usize;
+        let first = (own - reach).ceil().max(0.0) as usize;
         let mut near = Factors {
-            all: [Factor::default(); MOST_WITHIN_REACH],
-            count: 0,
+            first,
+            count: (last + 1).saturating_sub(first).min(MOST_WITHIN_REACH),
+            squared: [0.0; MOST_WITHIN_REACH],
+            weight: [0.0; MOST_WITHIN_REACH],
         };
-        let indices = (own - reach).ceil().max(0.0) as usize..=last;
-        for (index, factor) in indices.zip(&mut near.all) {
-            let squared = (self.corner + self.spacing * index as f64 - place).powi(2);
-            *factor = Factor {
-                index,
-                squared,
-                weight: gaussian(squared, self.reach),
-            };
-            near.count += 1;
+        for k in 0..near.count {
+            let index = (first + k) as f64;
+            let squared = (self.corner + self.spacing * index - place).powi(2);
+            (near.squared[k], near.weight[k]) = (squared, gaussian(squared, self.reach));
         }
         near
     }
@@ -160,9 +184,8 @@ pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
         columns: size.x as usize,
         velocity: Vec::new(),
     };
-    let mut sums = vec![KernelSums::default(); map.columns * size.y as usize];
+    let mut sums = KernelSums::of_points(map.columns * size.y as usize);
     for ((place, velocity), &radius) in places().zip(&grains.velocity).zip(&grains.radius) {
-        let velocity = velocity.truncate() - turning * place.perp();
         let axis = |k: usize| Axis {
             corner: map.corner[k],
             spacing,
@@ -170,20 +193,19 @@ pub fn velocity_map(world: &World, turning: f64) -> Option<VelocityMap> {
             reach,
         };
         let (columns, rows) = (axis(0).near(place.x), axis(1).near(place.y));
-        for row in rows.list() {
-            let sums = &mut sums[row.index * map.columns..];
-            for column in columns.list() {
-                let squared = column.squared + row.squared;
-                if squared < reach * reach {
-                    let (sum, weight) = (&mut sums[column.index], column.weight * row.weight);
-                    sum.weight += weight;
-                    sum.velocity += weight * velocity;
-                    sum.covered |= squared < radius * radius;
-                }
-            }
+        let grain = KernelGrain {
+            velocity: velocity.truncate() - turning * place.perp(),
+            reach_squared: reach * reach,
+            radius_squared: radius * radius,
+        };
+        for k in 0..rows.count {
+            let first = (rows.first + k) * map.columns + columns.first;
+            let row = (rows.squared[k], rows.weight[k]);
+            sums.add(first, &columns, row, &grain);
         }
     }
-    let mean = |sum: &KernelSums| sum.covered.then(|| sum.velocity / sum.weight);
-    map.velocity = sums.iter().map(mean).collect();
+    let [x, y] = &sums.velocity;
+    let mean = |i: usize| sums.covered[i].then(|| DVec2::new(x[i], y[i]) / sums.weight[i]);
+    map.velocity = (0..sums.weight.len()).map(mean).collect();
     Some(map)
 }

@@ -1,4 +1,4 @@
-// What all grains have in common: their entry in the buffer, the ray that sees them, their skin, and what is cut away.
+// What all grains have in common: their entries in the buffers, the ray that sees them, their skin, and what is cut away.
 
 #define_import_path grainfall::grain
 
@@ -9,18 +9,23 @@ struct Grain {
     centre: vec3<f32>,
     radius: f32,
     colour: vec3<f32>,
-    // Share of the sky that neighbours hide: mean, gradient and quadrupole over the normal.
-    hidden_mean: f32,
-    hidden_gradient: vec3<f32>,
-    hidden_xx: f32,
-    hidden_yy: f32,
-    hidden_xy: f32,
-    hidden_yz: f32,
-    hidden_zx: f32,
-    // From body axes to the world's; zeros of a sphere without a pattern.
-    orientation: vec4<f32>,
     // 1 where a liquid covers it, else 0.
     wet: f32,
+    // From body axes to the world's; zeros of a sphere without a pattern.
+    orientation: vec4<f32>,
+}
+
+// Share of the sky that neighbours hide from a grain: mean, gradient and quadrupole over the normal.
+struct Shadow {
+    mean: f32,
+    x: f32,
+    y: f32,
+    z: f32,
+    xx: f32,
+    yy: f32,
+    xy: f32,
+    yz: f32,
+    zx: f32,
 }
 
 // What lies beyond both planes, `dot(normal, x) > w`, is cut away.
@@ -81,11 +86,11 @@ fn exit_from_cut(cut: Cut, ray: Ray) -> Exit {
 }
 
 // How much of the sky the neighbours leave open where the surface has this normal.
-fn open_sky(grain: Grain, n: vec3<f32>) -> f32 {
-    let squares = grain.hidden_xx * n.x * n.x + grain.hidden_yy * n.y * n.y
-        - (grain.hidden_xx + grain.hidden_yy) * n.z * n.z;
-    let products = grain.hidden_xy * n.x * n.y + grain.hidden_yz * n.y * n.z + grain.hidden_zx * n.z * n.x;
-    let hidden = grain.hidden_mean + dot(grain.hidden_gradient, n) + squares + 2.0 * products;
+fn open_sky(shadow: Shadow, n: vec3<f32>) -> f32 {
+    let squares = shadow.xx * n.x * n.x + shadow.yy * n.y * n.y - (shadow.xx + shadow.yy) * n.z * n.z;
+    let products = shadow.xy * n.x * n.y + shadow.yz * n.y * n.z + shadow.zx * n.z * n.x;
+    let gradient = vec3<f32>(shadow.x, shadow.y, shadow.z);
+    let hidden = shadow.mean + dot(gradient, n) + squares + 2.0 * products;
     // Three orders blur what a neighbour hides; half as much again brings the depth of a gap back.
     return clamp(1.0 - 1.5 * hidden, 0.0, 1.0);
 }

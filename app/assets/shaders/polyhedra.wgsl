@@ -2,11 +2,12 @@
 
 #import bevy_pbr::mesh_view_bindings::view
 #import grainfall::grain::{
-    Grain, Cut, Exit, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section,
+    Grain, Shadow, Cut, Exit, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> grains: array<Grain>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> cut: Cut;
+@group(#{MATERIAL_BIND_GROUP}) @binding(4) var<storage, read> shadows: array<Shadow>;
 // Outward normal of each face and its distance from the origin, in the body frame and in radii of the sphere round the body.
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> planes: array<vec4<f32>>;
 // First plane and number of planes of each grain.
@@ -52,7 +53,7 @@ fn vertex(corner: Corner) -> Covered {
     var covered: Covered;
     covered.world = grain.centre + grain.radius * turned(grain.orientation, corner.place.xyz);
     covered.normal = normal;
-    covered.colour = vec4<f32>(grain.colour, open_sky(grain, normal));
+    covered.colour = vec4<f32>(grain.colour, open_sky(shadows[corner.grain], normal));
     covered.grain = corner.grain;
     covered.position = view.clip_from_world * vec4<f32>(covered.world, 1.0);
 #ifdef CUT

@@ -2,11 +2,12 @@
 
 #import bevy_pbr::mesh_view_bindings::view
 #import grainfall::grain::{
-    Grain, Cut, orthographic, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section, pattern,
+    Grain, Shadow, Cut, orthographic, ray_through, is_cut_away, is_sphere_cut_away, exit_from_cut, open_sky, skin, section, pattern,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> grains: array<Grain>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> cut: Cut;
+@group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> shadows: array<Shadow>;
 
 struct Corner {
     // x, y: which corner, ±1; z: index of the grain.
@@ -40,10 +41,10 @@ fn vertex(corner: Corner) -> Covered {
     let grain = grains[index];
     var covered: Covered;
     covered.sphere = vec4<f32>(grain.centre, grain.radius);
-    covered.colour = vec4<f32>(grain.colour, grain.hidden_mean);
-    covered.hidden_a = vec4<f32>(grain.hidden_gradient, grain.hidden_xx);
-    covered.hidden_b = vec4<f32>(grain.hidden_yy, grain.hidden_xy, grain.hidden_yz, grain.hidden_zx);
-
+    let shadow = shadows[index];
+    covered.colour = vec4<f32>(grain.colour, shadow.mean);
+    covered.hidden_a = vec4<f32>(shadow.x, shadow.y, shadow.z, shadow.xx);
+    covered.hidden_b = vec4<f32>(shadow.yy, shadow.xy, shadow.yz, shadow.zx);
     covered.turned = grain.orientation;
     covered.wet = grain.wet;
 
@@ -71,19 +72,19 @@ fn vertex(corner: Corner) -> Covered {
     return covered;
 }
 
-fn handed_over(covered: Covered) -> Grain {
-    return Grain(
-        covered.sphere.xyz, covered.sphere.w,
-        covered.colour.xyz, covered.colour.w,
-        covered.hidden_a.xyz, covered.hidden_a.w,
-        covered.hidden_b.x, covered.hidden_b.y, covered.hidden_b.z, covered.hidden_b.w,
-        covered.turned, covered.wet,
-    );
+fn grain_of(covered: Covered) -> Grain {
+    return Grain(covered.sphere.xyz, covered.sphere.w, covered.colour.xyz, covered.wet, covered.turned);
+}
+
+fn shadow_of(covered: Covered) -> Shadow {
+    let a = covered.hidden_a;
+    let b = covered.hidden_b;
+    return Shadow(covered.colour.w, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
 }
 
 @fragment
 fn fragment(covered: Covered) -> Painted {
-    let grain = handed_over(covered);
+    let grain = grain_of(covered);
     let from_middle = length(covered.across);
     let coverage = clamp(0.5 + (1.0 - from_middle) / covered.pixel, 0.0, 1.0);
 #ifdef MULTISAMPLED
@@ -108,7 +109,7 @@ fn fragment(covered: Covered) -> Painted {
         hit = ray.origin + exit.t * ray.direction;
         light = section_of(grain, hit, exit.plane, covered.pixel * grain.radius);
     } else {
-        light = surface(grain, normal, -ray.direction, covered.pixel);
+        light = surface(grain, shadow_of(covered), normal, -ray.direction, covered.pixel);
     }
 
     let clip = view.clip_from_world * vec4<f32>(hit, 1.0);
@@ -116,12 +117,12 @@ fn fragment(covered: Covered) -> Painted {
 }
 
 // The skin, a little darker where it turns away.
-fn surface(grain: Grain, normal: vec3<f32>, to_eye: vec3<f32>, pixel: f32) -> vec3<f32> {
+fn surface(grain: Grain, shadow: Shadow, normal: vec3<f32>, to_eye: vec3<f32>, pixel: f32) -> vec3<f32> {
     let facing = max(dot(normal, to_eye), 0.0);
     let turned_away = mix(0.55, 1.0, smoothstep(0.0, 0.7, facing));
     let painted = pattern(grain.orientation, normal, pixel);
     let colour = mix(grain.colour * painted.x, vec3<f32>(0.9), painted.y);
-    return skin(colour * turned_away, open_sky(grain, normal), normal, to_eye, grain.wet);
+    return skin(colour * turned_away, open_sky(shadow, normal), normal, to_eye, grain.wet);
 }
 
 // The section by a plane: a disc.

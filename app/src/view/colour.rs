@@ -6,7 +6,7 @@
 use crate::view::view_settings::{Background, ColourBy, ColourMap, ColourRange, Legend};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
 use grainfall::measure::{GrainQuantity, TemperatureMap};
-use grainfall::world::World;
+use grainfall::world::SpeciesId;
 
 /// The colours of species in order of their index, readable side by side on a projector and by
 /// people with any kind of colour vision: they differ in lightness too.
@@ -78,31 +78,29 @@ impl Scheme {
     }
 }
 
-/// What the colours of grains mean whose numbers are those of `worlds`, the same in all of them; `None` for species, or of no world.
+/// What the colours of grains mean that show these numbers, lists of which there is one for each
+/// world, the same in all of them; `None` for species.
 /// An automatic range stays as it was in `before` while it suits, so that colours do not jump from
 /// frame to frame.
 pub fn legend(
-    worlds: &[&World],
+    values: &[&[f64]],
     colour_by: ColourBy,
     (range, is_log): (ColourRange, bool),
     before: Option<&Legend>,
 ) -> Option<Legend> {
     let quantity = colour_by.quantity()?;
-    if worlds.is_empty() {
-        return None;
-    }
     let title = colour_by.label();
     let automatic = |before: &&Legend| before.min <= 0.0 || before.is_log;
     let before = before.filter(|before| before.title == title && automatic(before));
     let (min, max) = match range {
         ColourRange::Fixed(min, max) => (min, max),
-        ColourRange::Percentiles(low, high) => percentiles(worlds, quantity, low, high),
+        ColourRange::Percentiles(low, high) => percentiles(values, low, high),
         // It stays as it is, wherever the middle.
         ColourRange::Automatic if matches!(colour_by, ColourBy::Start(_)) => {
-            percentiles(worlds, quantity, 0.0, 1.0)
+            percentiles(values, 0.0, 1.0)
         }
         ColourRange::Automatic => {
-            let max = automatic_maximum(worlds, quantity, before);
+            let max = automatic_maximum(values, quantity, before);
             (if quantity.is_signed() { -max } else { 0.0 }, max)
         }
     };
@@ -149,28 +147,28 @@ pub(super) fn veil_legend(maps: &[&TemperatureMap], before: Option<&Legend>) -> 
     })
 }
 
-/// Calls `paint` with the linear colour of each grain in turn, whose numbers are those of `world`.
+/// Calls `paint` with the linear colour of each grain in turn: what `legend` makes of its number, or
+/// that of its species where there is none.
 pub fn colours(
-    world: &World,
-    colour_by: ColourBy,
+    species: &[SpeciesId],
+    values: &[f64],
     map: ColourMap,
     legend: Option<&Legend>,
     mut paint: impl FnMut([f32; 3]),
 ) {
-    let (Some(quantity), Some(legend)) = (colour_by.quantity(), legend) else {
+    let Some(legend) = legend else {
         let palette = SPECIES.map(linear);
-        for (i, species) in world.grains.species.iter().enumerate() {
+        for (i, species) in species.iter().enumerate() {
             let colour = palette[usize::from(species.0) % palette.len()];
             paint(colour.map(|c| c * individual_lightness(i)));
         }
         return;
     };
-    let table: Vec<[f32; 3]> = (0..=255)
-        .map(|t| linear(map.colour(f64::from(t) / 255.0)))
-        .collect();
-    for value in values(&[world], quantity) {
-        let place = 255.0 * legend.share(value).min(1.0);
-        paint(table[place.round() as usize]);
+    let table: [[f32; 3]; 256] = std::array::from_fn(|t| linear(map.colour(t as f64 / 255.0)));
+    for value in values {
+        let place = 255.0 * legend.share(*value).min(1.0);
+        // To the nearest: `round` is a call on older processors.
+        paint(table[(place + 0.5) as usize]);
     }
 }
 
@@ -190,33 +188,24 @@ pub(super) fn quantile(numbers: &mut [f64], share: f64) -> Option<f64> {
 }
 
 /// The numbers that these shares of the grains stay below.
-fn percentiles(worlds: &[&World], quantity: GrainQuantity, low: f64, high: f64) -> (f64, f64) {
-    let mut values = sampled_values(worlds, quantity);
+fn percentiles(values: &[&[f64]], low: f64, high: f64) -> (f64, f64) {
+    let mut values = sampled(values);
     let mut at = |share, of_none| quantile(&mut values, share).unwrap_or(of_none);
     (at(low, 0.0), at(high, 1.0))
 }
 
-/// The numbers behind the colours of all grains.
-fn values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
-    let mut values = Vec::with_capacity(worlds.iter().map(|world| world.grains.len()).sum());
-    for world in worlds {
-        quantity.append(world, &mut values);
-    }
-    values
-}
-
-/// A sample of them, evenly spaced; only finite numbers.
-fn sampled_values(worlds: &[&World], quantity: GrainQuantity) -> Vec<f64> {
-    let values = values(worlds, quantity);
-    let stride = stride(values.len());
-    let sampled = values.into_iter().step_by(stride);
+/// A sample of all these numbers, evenly spaced; only finite ones.
+fn sampled(values: &[&[f64]]) -> Vec<f64> {
+    let count = values.iter().map(|values| values.len()).sum();
+    let all = values.iter().copied().flatten().copied();
+    let sampled = all.step_by(stride(count));
     sampled.filter(|value| value.is_finite()).collect()
 }
 
 /// A round number that all but a fiftieth of the grains stay below; for counts a multiple of four,
 /// at least 8.
-fn automatic_maximum(worlds: &[&World], quantity: GrainQuantity, before: Option<&Legend>) -> f64 {
-    let mut values = sampled_values(worlds, quantity);
+fn automatic_maximum(values: &[&[f64]], quantity: GrainQuantity, before: Option<&Legend>) -> f64 {
+    let mut values = sampled(values);
     if quantity.is_signed() {
         for value in &mut values {
             *value = value.abs();
@@ -304,6 +293,7 @@ pub(crate) fn contrast(one: [u8; 3], other: [u8; 3]) -> f32 {
 mod tests {
     use super::*;
     use crate::view::ink::srgb;
+    use grainfall::world::World;
 
     #[test]
     fn words_in_the_picture_stand_out_from_its_background() {
@@ -316,6 +306,23 @@ mod tests {
                 assert!(contrast >= 4.5, "{background:?} {ink:?}: {contrast}");
             }
         }
+    }
+
+    /// The legend of grains coloured by `quantity` in all `worlds`.
+    fn legend_of(
+        worlds: &[&World],
+        quantity: GrainQuantity,
+        range: (ColourRange, bool),
+        before: Option<&Legend>,
+    ) -> Option<Legend> {
+        let values = |world: &&World| {
+            let mut values = Vec::new();
+            quantity.append(world, &mut values);
+            values
+        };
+        let values: Vec<Vec<f64>> = worlds.iter().map(values).collect();
+        let values: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
+        legend(&values, ColourBy::Quantity(quantity), range, before)
     }
 
     #[test]
@@ -365,9 +372,9 @@ mod tests {
                 velocity.x = speed;
             }
             world.grains.velocity[0].x = 100.0;
-            shown = legend(
+            shown = legend_of(
                 &[&world],
-                ColourBy::Quantity(GrainQuantity::Speed),
+                GrainQuantity::Speed,
                 (ColourRange::Automatic, false),
                 shown.as_ref(),
             );
@@ -378,16 +385,16 @@ mod tests {
             );
         }
         let fixed = ColourRange::Fixed(0.1, 0.7);
-        let shown = legend(
+        let shown = legend_of(
             &[&world],
-            ColourBy::Quantity(GrainQuantity::Speed),
+            GrainQuantity::Speed,
             (fixed, false),
             shown.as_ref(),
         )
         .unwrap();
         assert_eq!((shown.min, shown.max), (0.1, 0.7));
         assert_eq!(
-            legend(&[&world], ColourBy::Species, (fixed, false), None),
+            legend(&[&[1.0]], ColourBy::Species, (fixed, false), None),
             None
         );
     }
@@ -399,13 +406,7 @@ mod tests {
             world.grains.velocity.iter_mut().for_each(|v| v.x = speed);
         }
         let range = |range, worlds: &[&World]| {
-            let legend = legend(
-                worlds,
-                ColourBy::Quantity(GrainQuantity::Speed),
-                (range, false),
-                None,
-            )
-            .unwrap();
+            let legend = legend_of(worlds, GrainQuantity::Speed, (range, false), None).unwrap();
             (legend.min, legend.max)
         };
         let all = ColourRange::Percentiles(0.0, 1.0);
@@ -421,13 +422,7 @@ mod tests {
             velocity.x = -(10.0_f64.powi(i - 4));
         }
         let of = |quantity, range, is_log| {
-            legend(
-                &[&world],
-                ColourBy::Quantity(quantity),
-                (range, is_log),
-                None,
-            )
-            .unwrap()
+            legend_of(&[&world], quantity, (range, is_log), None).unwrap()
         };
         let fixed = ColourRange::Fixed(1e-4, 1.0);
         let log = of(GrainQuantity::Speed, fixed, true);

@@ -154,7 +154,7 @@ fn spawn(
 ) {
     let mut material = |half: Half, has_facets: bool| {
         materials.add(GhostMaterial {
-            grains: grains.handle(half).clone(),
+            grains: grains.handles(half).grains.clone(),
             cut: CutPlanes::default(),
             look: GhostLook::default(),
             has_facets,
@@ -194,7 +194,7 @@ fn look(
             strength: STRENGTH / (count.max(1) as f32).cbrt(),
             darkens: f32::from(u8::from(settings.background == Background::Light)),
         };
-        let buffer = grains.handle(half);
+        let buffer = &grains.handles(half).grains;
         for handle in [&own.spheres[half.index()], &own.polyhedra[half.index()]] {
             let stale = |material: &GhostMaterial| {
                 material.cut != cut || material.look != look || material.grains != *buffer

@@ -2,13 +2,14 @@
 //! what is cut away.
 //!
 //! In: the world shown and how to colour it. Out: one buffer with an entry per grain, rewritten
-//! when the world or the colours change, and the legend. Who draws a shape finds its grains in that
-//! buffer by their index, so that nothing is done per grain on the processor but filling it.
+//! when the world or the colours change, one with the shadow of each, rewritten whenever a round of
+//! them is done, and the legend. Who draws a shape finds its grains in these buffers by their index,
+//! so that nothing is done per grain on the processor but filling them.
 
 use crate::view::colour;
-use crate::view::occlusion::Shadows;
+use crate::view::occlusion::{Occlusion, Shadows};
 use crate::view::shown_worlds::{ShownWorlds, ViewSystems};
-use crate::view::view_settings::{ColourBy, ColourMap, ColourRange, Cut, ViewSettings};
+use crate::view::view_settings::{ColourBy, ColourMap, ColourRange, Cut, Legend, ViewSettings};
 use bevy::asset::{RenderAssetUsages, load_internal_asset, uuid_handle};
 use bevy::prelude::*;
 use bevy::render::render_resource::ShaderType;
@@ -43,12 +44,21 @@ pub struct GrainBuffer {
     shadows_are_whole: bool,
 }
 
-/// The buffer of one half.
+/// The buffers of one half.
 #[derive(Default)]
 struct HalfBuffer {
-    /// The buffer; another one whenever the number of grains is another.
-    handle: Handle<ShaderBuffer>,
+    /// Others whenever the number of grains is another.
+    handles: GrainHandles,
     count: usize,
+}
+
+/// What the shaders read of the grains in one half of the picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct GrainHandles {
+    /// A [`DrawnGrain`] of each.
+    pub grains: Handle<ShaderBuffer>,
+    /// An [`Occlusion`] of each.
+    pub shadows: Handle<ShaderBuffer>,
 }
 
 /// A grain as the shaders read it.
@@ -59,15 +69,10 @@ struct DrawnGrain {
     /// For a polyhedron that of the sphere round it.
     radius: f32,
     colour: [f32; 3],
-    /// [`Occlusion`](crate::view::occlusion::Occlusion), in its order.
-    hidden_mean: f32,
-    hidden_gradient: [f32; 3],
-    hidden_quadrupole: [f32; 5],
-    /// From body axes to the world's: x, y, z, w; zeros of a sphere without a pattern.
-    orientation: [f32; 4],
     /// 1 where a liquid covers it, else 0.
     wet: f32,
-    unused: [f32; 3],
+    /// From body axes to the world's: x, y, z, w; zeros of a sphere without a pattern.
+    orientation: [f32; 4],
 }
 
 /// The planes beyond all of which everything is cut away, as the shaders read them.
@@ -132,15 +137,18 @@ impl ColouredGrains {
 #[derive(Default)]
 struct ColouredHalf {
     forms: Forms,
-    /// Radius of the sphere of the same volume as each polyhedron [m]; none where all are spheres.
+    /// Radius of the sphere of the same volume as each polyhedron [m], for its shadow; none where all
+    /// are spheres.
     radii: Vec<f32>,
-    spheres: Vec<(Vec3, f32)>,
+    /// Which grains have faces; none where all are spheres. Their shapes lie far apart in memory.
+    are_faceted: Vec<bool>,
+    /// The numbers that the colours show, of each grain.
+    values: Vec<f64>,
     shadows: Shadows,
-    drawn: Vec<DrawnGrain>,
 }
 
-/// Rewrites the buffer when the world or the colouring has changed, and while shadows are still
-/// being computed.
+/// Rewrites the buffers of grains when the world or the colouring has changed, those of shadows
+/// when these are computed.
 fn fill(
     shown: Res<ShownWorlds>,
     mut settings: ResMut<ViewSettings>,
@@ -156,41 +164,43 @@ fn fill(
         settings.grain_size,
         settings.show_turning,
     );
-    let moved = shown.is_changed();
-    let recoloured = kept.colouring != Some(colouring);
-    if !moved && !recoloured && kept.shadows_are_whole() {
-        return;
-    }
-    if moved || recoloured {
+    if shown.is_changed() || kept.colouring != Some(colouring) {
         kept.colouring = Some(colouring);
-        let told = |half| tells_colour(&shown, half, settings.colour_by);
-        let worlds: Vec<&World> = Half::ALL.into_iter().filter_map(told).collect();
-        let before = settings.legend.as_ref();
-        let range = (settings.range, settings.log_colours);
-        settings.legend = colour::legend(&worlds, settings.colour_by, range, before);
+        settings.legend = kept.evaluate(&shown, &settings);
         for half in Half::ALL {
-            let turned = shown.turned(half);
-            let told = tells_colour(&shown, half, settings.colour_by);
-            let worlds = shown.half(half).map(|world| (world, told));
-            kept.halves[half.index()].redraw(worlds, turned, &settings);
+            let drawn = kept.halves[half.index()].redraw(&shown, half, &settings);
+            buffer.halves[half.index()].write(drawn, &mut buffers);
         }
     }
-    for (half, buffer) in kept.halves.iter_mut().zip(&mut buffer.halves) {
-        let has_shadows = half.shadows.take(half.spheres.len());
-        if has_shadows || moved || recoloured {
-            half.shade();
-            buffer.write(&half.drawn, &mut buffers);
+    for (half, buffer) in kept.halves.iter_mut().zip(&buffer.halves) {
+        if let Some(shadows) = half.shadows.take(buffer.count)
+            && let Some(mut buffer) = buffers.get_mut(&buffer.handles.shadows)
+        {
+            buffer.data = Some(shadows);
         }
     }
-    buffer.shadows_are_whole = kept.shadows_are_whole();
+    let is_whole = kept.shadows_are_whole();
+    if buffer.shadows_are_whole != is_whole {
+        buffer.shadows_are_whole = is_whole;
+    }
 }
 
 /// Begins another round of shadows where they are out of date.
-fn begin_shadows(settings: Res<ViewSettings>, mut kept: ResMut<ColouredGrains>) {
+fn begin_shadows(
+    shown: Res<ShownWorlds>,
+    settings: Res<ViewSettings>,
+    mut kept: ResMut<ColouredGrains>,
+) {
     let cut = CutPlanes::of(settings.cut);
-    for half in &mut kept.halves {
+    for half in Half::ALL {
+        let ColouredHalf { radii, shadows, .. } = &mut kept.halves[half.index()];
         let absent = move |centre| cut.take_away(centre);
-        half.shadows.begin(&half.spheres, absent);
+        let place = |spheres: &mut Vec<(Vec3, f32)>| {
+            if let Some(world) = shown.half(half) {
+                place(world, radii, settings.grain_size, spheres);
+            }
+        };
+        shadows.begin(place, absent);
     }
 }
 
@@ -209,110 +219,139 @@ impl GrainBuffer {
         self.shadows_are_whole
     }
 
-    /// The buffer of this half of the picture.
-    pub(super) fn handle(&self, half: Half) -> &Handle<ShaderBuffer> {
-        &self.halves[half.index()].handle
+    /// The buffers of this half of the picture.
+    pub(super) fn handles(&self, half: Half) -> &GrainHandles {
+        &self.halves[half.index()].handles
     }
 }
 
 impl HalfBuffer {
-    fn write(&mut self, grains: &[DrawnGrain], buffers: &mut Assets<ShaderBuffer>) {
-        // A buffer cannot be empty; nobody draws this one.
-        let nobody = [DrawnGrain::zeroed()];
-        if grains.is_empty() && self.count == nobody.len() {
+    /// Hands the bytes of all grains over.
+    fn write(&mut self, mut grains: Vec<u8>, buffers: &mut Assets<ShaderBuffer>) {
+        if grains.is_empty() {
+            // A buffer cannot be empty; nobody draws this one.
+            grains.extend_from_slice(bytemuck::bytes_of(&DrawnGrain::zeroed()));
+        }
+        let count = grains.len() / size_of::<DrawnGrain>();
+        if count == self.count
+            && let Some(mut buffer) = buffers.get_mut(&self.handles.grains)
+        {
+            buffer.data = Some(grains);
             return;
         }
-        let grains = if grains.is_empty() { &nobody } else { grains };
-        let bytes = bytemuck::cast_slice(grains);
-        if grains.len() == self.count
-            && let Some(mut buffer) = buffers.get_mut(&self.handle)
-        {
-            buffer.data = Some(bytes.to_vec());
-        } else {
-            self.count = grains.len();
-            self.handle = buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
+        self.count = count;
+        // Until they are known.
+        let no_shadows = vec![0; count * size_of::<Occlusion>()];
+        let mut add =
+            |data: &[u8]| buffers.add(ShaderBuffer::new(data, RenderAssetUsages::RENDER_WORLD));
+        self.handles = GrainHandles {
+            grains: add(&grains),
+            shadows: add(&no_shadows),
+        };
+    }
+}
+
+impl ColouredGrains {
+    /// Computes the numbers that the colours show; what these mean.
+    fn evaluate(&mut self, shown: &ShownWorlds, settings: &ViewSettings) -> Option<Legend> {
+        for half in Half::ALL {
+            let values = &mut self.halves[half.index()].values;
+            values.clear();
+            if let (Some(world), Some(quantity)) = (
+                tells_colour(shown, half, settings.colour_by),
+                settings.colour_by.quantity(),
+            ) {
+                quantity.append(world, values);
+            }
         }
+        let values = self.halves.each_ref().map(|half| half.values.as_slice());
+        let is_told = |half| tells_colour(shown, half, settings.colour_by).is_some();
+        let range = (settings.range, settings.log_colours);
+        let before = settings.legend.as_ref();
+        let legend = || colour::legend(&values, settings.colour_by, range, before);
+        Half::ALL.into_iter().any(is_told).then(legend).flatten()
     }
 }
 
 impl ColouredHalf {
-    /// Writes places and colours of a world, with the one whose numbers those tell, and lets the
-    /// shadows follow.
-    fn redraw(
-        &mut self,
-        worlds: Option<(&World, Option<&World>)>,
-        turned: Option<&[Quat]>,
-        settings: &ViewSettings,
-    ) {
-        self.drawn.clear();
-        self.spheres.clear();
-        if let Some((world, told)) = worlds {
-            self.place(world, settings.grain_size);
-            self.colour(world, told, turned, settings);
-        }
+    /// Places and colours of the world in this half, a [`DrawnGrain`] each, as bytes; the shadows are
+    /// out of date from now on.
+    fn redraw(&mut self, shown: &ShownWorlds, half: Half, settings: &ViewSettings) -> Vec<u8> {
         self.shadows.outdate();
-    }
-
-    fn place(&mut self, world: &World, size: f32) {
-        let grains = &world.grains;
-        if self.forms.renew(world) {
-            self.radii.clear();
-            if world.polyhedra.is_some() {
-                let round = |i| polyhedron(world.polyhedra.as_deref(), i).map(round_radius);
-                let radius = |i: usize| round(i).unwrap_or(grains.radius[i]) as f32;
-                self.radii.extend((0..grains.len()).map(radius));
-            }
-        }
-        let own = |i: usize| (self.radii.get(i).copied()).unwrap_or(grains.radius[i] as f32);
-        let places = grains.position.iter().enumerate();
-        (self.spheres).extend(places.map(|(i, x)| (x.as_vec3(), size * own(i))));
-    }
-
-    fn colour(
-        &mut self,
-        world: &World,
-        told: Option<&World>,
-        turned: Option<&[Quat]>,
-        settings: &ViewSettings,
-    ) {
-        let polyhedra = world.polyhedra.as_deref();
-        let has_pattern = settings.shows_turning(world);
-        let turn_of = |i: usize| match (polyhedra, turned) {
-            // Without its rotation a sphere has no pattern.
-            _ if !has_pattern && polyhedron(polyhedra, i).is_none() => None,
-            (Some(polyhedra), _) => Some(polyhedra.orientation[i].as_quat()),
-            (None, turned) => turned.and_then(|turned| turned.get(i).copied()),
+        let Some(world) = shown.half(half) else {
+            return Vec::new();
         };
+        self.look_at_shapes(world);
+        let is_told = tells_colour(shown, half, settings.colour_by).is_some();
+        let turn_of = self.turn_of(world, shown.turned(half), settings);
         let has_liquid = world.wetting().is_some();
         let is_wet = |i: usize| has_liquid && world.grains.film[i] > 0.0;
-        let (drawn, spheres) = (&mut self.drawn, &self.spheres);
+        let mut bytes = Vec::with_capacity(world.grains.len() * size_of::<DrawnGrain>());
+        let mut places = world.grains.position.iter().enumerate();
         colour::colours(
-            told.unwrap_or(world),
-            settings.colour_by,
+            &world.grains.species,
+            &self.values,
             settings.colour_map,
-            settings.legend.as_ref().filter(|_| told.is_some()),
+            settings.legend.as_ref().filter(|_| is_told),
             |colour| {
-                let i = drawn.len();
-                drawn.push(DrawnGrain {
-                    centre: spheres[i].0.to_array(),
+                let Some((i, x)) = places.next() else { return };
+                bytes.extend_from_slice(bytemuck::bytes_of(&DrawnGrain {
+                    centre: x.as_vec3().to_array(),
                     radius: settings.grain_size * world.grains.radius[i] as f32,
                     colour,
-                    orientation: turn_of(i).map_or([0.0; 4], Quat::to_array),
                     wet: if is_wet(i) { 1.0 } else { 0.0 },
-                    ..DrawnGrain::zeroed()
-                });
+                    orientation: turn_of(i),
+                }));
             },
         );
+        bytes
     }
 
-    /// Writes the shadows, as far as they are known.
-    fn shade(&mut self) {
-        for (grain, hidden) in self.drawn.iter_mut().zip(self.shadows.hidden()) {
-            grain.hidden_mean = hidden.mean;
-            grain.hidden_gradient = hidden.gradient.to_array();
-            grain.hidden_quadrupole = hidden.quadrupole;
+    /// Notes what of the shapes of `world` each frame needs, where they are others.
+    fn look_at_shapes(&mut self, world: &World) {
+        if !self.forms.renew(world) {
+            return;
+        }
+        self.radii.clear();
+        self.are_faceted.clear();
+        if world.polyhedra.is_some() {
+            for i in 0..world.grains.len() {
+                let shape = polyhedron(world.polyhedra.as_deref(), i);
+                let radius = shape.map_or(world.grains.radius[i], round_radius);
+                self.radii.push(radius as f32);
+                self.are_faceted.push(shape.is_some());
+            }
         }
     }
+
+    /// How far each grain of `world` has turned, as the shaders read it.
+    fn turn_of<'a>(
+        &'a self,
+        world: &'a World,
+        turned: Option<&'a [Quat]>,
+        settings: &ViewSettings,
+    ) -> impl Fn(usize) -> [f32; 4] + use<'a> {
+        let polyhedra = world.polyhedra.as_deref();
+        let has_pattern = settings.shows_turning(world);
+        let is_faceted = |i: usize| self.are_faceted.get(i).copied().unwrap_or(false);
+        move |i| {
+            let turn = match (polyhedra, turned) {
+                // Without its rotation a sphere has no pattern.
+                _ if !has_pattern && !is_faceted(i) => None,
+                (Some(polyhedra), _) => Some(polyhedra.orientation[i].as_quat()),
+                (None, turned) => turned.and_then(|turned| turned.get(i).copied()),
+            };
+            turn.map_or([0.0; 4], Quat::to_array)
+        }
+    }
+}
+
+/// Appends the spheres (centre, radius) that throw the shadows of `world` to `spheres`.
+fn place(world: &World, radii: &[f32], size: f32, spheres: &mut Vec<(Vec3, f32)>) {
+    let grains = &world.grains;
+    let own = |i: usize| (radii.get(i).copied()).unwrap_or(grains.radius[i] as f32);
+    let places = grains.position.iter().enumerate();
+    spheres.extend(places.map(|(i, x)| (x.as_vec3(), size * own(i))));
 }
 
 /// The shapes of the grains of a world, kept to notice when they change.

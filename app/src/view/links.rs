@@ -158,10 +158,15 @@ struct Link {
     shape: [u8; 4],
 }
 
+/// The whole number nearest to `x`, which is none below zero; `round` is a call on older processors.
+fn nearest(x: f64) -> u8 {
+    (x + 0.5) as u8
+}
+
 impl Link {
     fn new(ends: [DVec3; 2], radii: [f64; 2], kind: LinkKind) -> Self {
         let radius = radii[0].max(radii[1]);
-        let share = |r: f64| (255.0 * r / radius).round() as u8;
+        let share = |r: f64| nearest(255.0 * r / radius);
         Self {
             from: ends[0].as_vec3().to_array(),
             radius: radius as f32,
@@ -172,13 +177,13 @@ impl Link {
 
     /// It with a middle of this `waist` over its radius; from there it widens as a parabola.
     fn with_waist(mut self, waist: f64) -> Self {
-        self.shape[3] = (255.0 * (1.0 - waist)).round() as u8;
+        self.shape[3] = nearest(255.0 * (1.0 - waist));
         self
     }
 
     /// It in the colour at this `share` of the reference force.
     fn coloured(mut self, share: f64) -> Self {
-        let level = (share.clamp(0.0, 1.0) * (LEVELS - 1) as f64).round() as u8;
+        let level = nearest(share.clamp(0.0, 1.0) * (LEVELS - 1) as f64);
         self.shape[2] |= level << 2;
         self
     }
@@ -193,7 +198,6 @@ impl Link {
 struct Links {
     /// Capacity of its mesh and its buffer, in bars.
     room: usize,
-    drawn: Vec<Link>,
 }
 
 fn spawn(
@@ -257,27 +261,25 @@ fn update(
         settings.link_scales = scales;
     }
     for (&DrawnIn(half), mut links, mut mesh, material, mut visibility) in &mut halves {
-        links.drawn.clear();
-        if let Some(world) = shown.half(half) {
-            links.draw(world, &settings);
-        }
-        if links.drawn.is_empty() {
+        let world = shown.half(half);
+        let parts = world.map_or_else(Vec::new, |world| bars(world, &settings));
+        let count = parts.iter().map(Vec::len).sum();
+        if count == 0 {
             visibility.set_if_neq(Visibility::Hidden);
             continue;
         }
         visibility.set_if_neq(Visibility::Inherited);
-        let room = room_for(links.drawn.len(), links.room);
-        links.drawn.resize(room, Link::zeroed());
-        let bytes: &[u8] = bytemuck::cast_slice(&links.drawn);
+        let room = room_for(count, links.room);
+        let bytes = together(&parts, room);
         let handle = materials.get(&material.0).map(|m| m.links.clone());
         if room == links.room
             && let Some(mut buffer) = handle.and_then(|handle| buffers.get_mut(&handle))
         {
-            buffer.data = Some(bytes.to_vec());
+            buffer.data = Some(bytes);
         } else if let Some(mut material) = materials.get_mut(&material.0) {
             let all: Vec<u32> = (0..room as u32).collect();
             mesh.0 = meshes.add(quads(&all));
-            let buffer = ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD);
+            let buffer = ShaderBuffer::new(&bytes, RenderAssetUsages::RENDER_WORLD);
             material.links = buffers.add(buffer);
             links.room = room;
         }
@@ -335,101 +337,116 @@ fn scales(worlds: &[&World], settings: &ViewSettings) -> LinkScales {
     scales
 }
 
-impl Links {
-    /// Makes the bars of `world`, as large as the scales say.
-    fn draw(&mut self, world: &World, settings: &ViewSettings) {
+/// The bars of `world`, as large as the scales say, in several lists.
+fn bars(world: &World, settings: &ViewSettings) -> Vec<Vec<Link>> {
+    let radius = mean_radius(world);
+    let mut parts = Vec::new();
+    if let Some(reference) = settings.link_scales.force {
+        parts = force_bars(world, reference, radius);
+    }
+    if settings.show_bridges {
+        let bridge = |contact: &Contact| bridge_bar(world, contact);
+        parts.push(world.contacts.iter().filter_map(bridge).collect());
+    }
+    if let Some(reference) = settings.link_scales.speed {
+        parts.push(arrows(world, reference, radius));
+    }
+    if settings.cut.is_some() {
         let cut = CutPlanes::of(settings.cut);
-        let radius = mean_radius(world);
-        if let Some(reference) = settings.link_scales.force {
-            self.forces(world, reference, radius);
-        }
-        if settings.show_bridges {
-            for contact in &world.contacts {
-                self.bridge(world, contact);
-            }
-        }
-        if let Some(reference) = settings.link_scales.speed {
-            self.arrows(world, reference, radius);
-        }
-        if settings.cut.is_some() {
-            self.drawn.retain(|link| !cut.take_away(link.middle()));
+        for part in &mut parts {
+            part.retain(|link| !cut.take_away(link.middle()));
         }
     }
+    parts
+}
 
-    fn push(&mut self, ends: [DVec3; 2], radii: [f64; 2], kind: LinkKind) {
-        self.drawn.push(Link::new(ends, radii, kind));
+/// The bytes of all bars of these `parts`, and of some without a size that fill the `room`.
+fn together(parts: &[Vec<Link>], room: usize) -> Vec<u8> {
+    let length = room * size_of::<Link>();
+    let mut bytes = Vec::with_capacity(length);
+    for part in parts {
+        bytes.extend_from_slice(bytemuck::cast_slice(part));
     }
+    bytes.resize(length, 0);
+    bytes
+}
 
-    /// The bars of all forces, of many by several threads.
-    fn forces(&mut self, world: &World, reference: f64, radius: f64) {
-        let bars = |_: usize, contacts: &[Contact]| {
-            let mut part = Self::default();
-            for contact in contacts {
-                part.force(world, contact, reference, radius);
-            }
-            part.drawn
-        };
-        if world.contacts.len() <= PART {
-            self.drawn.append(&mut bars(0, &world.contacts));
-            return;
+/// The bars of all forces, of many by several threads.
+fn force_bars(world: &World, reference: f64, radius: f64) -> Vec<Vec<Link>> {
+    let bars = |_: usize, contacts: &[Contact]| {
+        let mut part = Vec::with_capacity(contacts.len());
+        for contact in contacts {
+            push_force(world, contact, [reference, radius], &mut part);
         }
-        let pool = ComputeTaskPool::get();
-        for mut part in world.contacts.par_chunk_map(pool, PART, bars) {
-            self.drawn.append(&mut part);
-        }
+        part
+    };
+    if world.contacts.len() <= PART {
+        return vec![bars(0, &world.contacts)];
     }
+    let pool = ComputeTaskPool::get();
+    world.contacts.par_chunk_map(pool, PART, bars)
+}
 
-    fn force(&mut self, world: &World, contact: &Contact, reference: f64, radius: f64) {
-        let share = contact.force.length() / reference;
-        if share.is_nan() || share < SMALLEST {
-            return;
-        }
-        let [from, to] = ends(world, contact);
-        let thick = FORCE_RADIUS * radius * share.min(LARGEST);
-        if contact.force.dot(to - from) <= 0.0 {
-            let bar = Link::new([from, to], [thick; 2], LinkKind::Push);
-            self.drawn.push(bar.coloured(share));
-            return;
-        }
-        let (middle, thin) = (0.5 * (from + to), WAIST * thick);
-        for (ends, radii) in [
-            ([from, middle], [thick, thin]),
-            ([middle, to], [thin, thick]),
-        ] {
-            let bar = Link::new(ends, radii, LinkKind::Pull);
-            self.drawn.push(bar.coloured(share));
-        }
+/// Appends the bars of a contact's force where the bar of the `reference` is as thick as grains of
+/// this `radius` have it.
+fn push_force(
+    world: &World,
+    contact: &Contact,
+    [reference, radius]: [f64; 2],
+    bars: &mut Vec<Link>,
+) {
+    let share = contact.force.length() / reference;
+    if share.is_nan() || share < SMALLEST {
+        return;
     }
+    let [from, to] = ends(world, contact);
+    let thick = FORCE_RADIUS * radius * share.min(LARGEST);
+    if contact.force.dot(to - from) <= 0.0 {
+        let bar = Link::new([from, to], [thick; 2], LinkKind::Push);
+        bars.push(bar.coloured(share));
+        return;
+    }
+    let (middle, thin) = (0.5 * (from + to), WAIST * thick);
+    for (ends, radii) in [
+        ([from, middle], [thick, thin]),
+        ([middle, to], [thin, thick]),
+    ] {
+        let bar = Link::new(ends, radii, LinkKind::Pull);
+        bars.push(bar.coloured(share));
+    }
+}
 
-    fn bridge(&mut self, world: &World, contact: &Contact) {
-        let (Some(bridge), Partner::Grain(j)) = (&contact.bridge, contact.partner) else {
-            return;
-        };
-        let grains = &world.grains;
-        let (i, j) = (contact.grain as usize, j as usize);
-        let radii = [grains.radius[i], grains.radius[j]];
-        let [from, to] = ends(world, contact);
-        let normal = (to - from).normalize_or_zero();
-        let gap = (to - from).length() - radii[0] - radii[1];
-        let ring = meniscus_ring(bridge.volume, gap, radii);
-        // From where it meets one sphere to where it meets the other.
-        let inside = |r: f64| (r * r - (ring * ring).min(r * r)).sqrt();
-        let ends = [
-            from + normal * inside(radii[0]),
-            to - normal * inside(radii[1]),
-        ];
-        let bar = Link::new(ends, [ring; 2], LinkKind::Liquid);
-        self.drawn.push(bar.with_waist(MENISCUS_WAIST));
-    }
+/// The meniscus of a contact; none where it has no bridge.
+fn bridge_bar(world: &World, contact: &Contact) -> Option<Link> {
+    let (Some(bridge), Partner::Grain(j)) = (&contact.bridge, contact.partner) else {
+        return None;
+    };
+    let grains = &world.grains;
+    let (i, j) = (contact.grain as usize, j as usize);
+    let radii = [grains.radius[i], grains.radius[j]];
+    let [from, to] = ends(world, contact);
+    let normal = (to - from).normalize_or_zero();
+    let gap = (to - from).length() - radii[0] - radii[1];
+    let ring = meniscus_ring(bridge.volume, gap, radii);
+    // From where it meets one sphere to where it meets the other.
+    let inside = |r: f64| (r * r - (ring * ring).min(r * r)).sqrt();
+    let ends = [
+        from + normal * inside(radii[0]),
+        to - normal * inside(radii[1]),
+    ];
+    let bar = Link::new(ends, [ring; 2], LinkKind::Liquid);
+    Some(bar.with_waist(MENISCUS_WAIST))
+}
 
-    fn arrows(&mut self, world: &World, reference: f64, radius: f64) {
-        for (x, v) in world.grains.position.iter().zip(&world.grains.velocity) {
-            if v.length() > SMALLEST * reference {
-                let tip = *x + *v * (ARROW_LENGTH * radius / reference);
-                self.push([*x, tip], [ARROW_RADIUS * radius, 0.0], LinkKind::Velocity);
-            }
-        }
-    }
+fn arrows(world: &World, reference: f64, radius: f64) -> Vec<Link> {
+    let arrow = |(x, v): (&DVec3, &DVec3)| {
+        let tip = *x + *v * (ARROW_LENGTH * radius / reference);
+        let radii = [ARROW_RADIUS * radius, 0.0];
+        let is_seen = v.length() > SMALLEST * reference;
+        is_seen.then(|| Link::new([*x, tip], radii, LinkKind::Velocity))
+    };
+    let grains = world.grains.position.iter().zip(&world.grains.velocity);
+    grains.filter_map(arrow).collect()
 }
 
 /// The two centres, or the centre and the nearest point of the wall [m].
@@ -535,9 +552,9 @@ mod tests {
         };
         let along = (world.grains.position[1] - world.grains.position[0]).normalize();
         let bars = |force: DVec3, world: &mut World| {
-            let mut links = Links::default();
-            links.force(world, &contact(force), 1.0, 1e-3);
-            links.drawn
+            let mut bars = Vec::new();
+            push_force(world, &contact(force), [1.0, 1e-3], &mut bars);
+            bars
         };
         let [push] = bars(-0.5 * along, &mut world)[..] else {
             panic!("a push is one bar");

@@ -9,9 +9,11 @@
 use bevy::math::{USizeVec3, Vec3};
 use bevy::tasks::futures::check_ready;
 use bevy::tasks::{AsyncComputeTaskPool, Task};
+use bytemuck::{Pod, Zeroable};
 
-/// Share of the sky hidden as a function of the surface normal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Share of the sky hidden as a function of the surface normal, as the shaders read it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub(super) struct Occlusion {
     /// The mean `c`.
     pub mean: f32,
@@ -57,7 +59,6 @@ impl Occlusion {
 /// waits for them.
 #[derive(Default)]
 pub(super) struct Shadows {
-    hidden: Vec<Occlusion>,
     /// Whether the spheres have changed since the last round began.
     is_stale: bool,
     under_way: Option<Task<Round>>,
@@ -66,11 +67,6 @@ pub(super) struct Shadows {
 }
 
 impl Shadows {
-    /// What hides the sky from each sphere, as far as is known.
-    pub(super) fn hidden(&self) -> &[Occlusion] {
-        &self.hidden
-    }
-
     /// Whether all are up to date.
     pub(super) fn are_whole(&self) -> bool {
         !self.is_stale && self.under_way.is_none()
@@ -81,36 +77,32 @@ impl Shadows {
         self.is_stale = true;
     }
 
-    /// Takes over a finished round of `count` spheres; true where the shadows have changed.
-    pub(super) fn take(&mut self, count: usize) -> bool {
-        let ended = self.under_way.as_mut().and_then(check_ready);
-        let has_ended = ended.is_some();
-        if let Some(mut round) = ended {
-            self.under_way = None;
-            std::mem::swap(&mut self.hidden, &mut round.hidden);
-            self.done = round;
-        }
-        if self.hidden.len() != count {
-            // They were those of another scene.
-            self.hidden.clear();
-        }
-        has_ended
+    /// What a finished round found, an [`Occlusion`] for each of `count` spheres, as bytes; none while
+    /// it is under way, nor where it was one of another scene.
+    pub(super) fn take(&mut self, count: usize) -> Option<Vec<u8>> {
+        let mut round = self.under_way.as_mut().and_then(check_ready)?;
+        self.under_way = None;
+        let bytes = std::mem::take(&mut round.bytes);
+        let has_all = round.spheres.len() == count;
+        self.done = round;
+        has_all.then_some(bytes)
     }
 
-    /// Begins a round where the `spheres` (centre, radius) have changed since the last one. Spheres for
-    /// which `absent` holds hide nothing.
+    /// Begins a round where the spheres have changed since the last one: `place` lists them (centre,
+    /// radius). Those for which `absent` holds hide nothing.
     pub(super) fn begin(
         &mut self,
-        spheres: &[(Vec3, f32)],
+        place: impl FnOnce(&mut Vec<(Vec3, f32)>),
         absent: impl Fn(Vec3) -> bool + Send + 'static,
     ) {
         if self.is_stale && self.under_way.is_none() {
             self.is_stale = false;
             let mut round = std::mem::take(&mut self.done);
             round.spheres.clear();
-            round.spheres.extend_from_slice(spheres);
+            place(&mut round.spheres);
             self.under_way = Some(AsyncComputeTaskPool::get().spawn(async move {
                 round.look(absent);
+                round.bytes = bytemuck::cast_slice(&round.hidden).to_vec();
                 round
             }));
         }
@@ -123,6 +115,8 @@ struct Round {
     spheres: Vec<(Vec3, f32)>,
     cells: ShadowCells,
     hidden: Vec<Occlusion>,
+    /// What is hidden, for a buffer.
+    bytes: Vec<u8>,
 }
 
 impl Round {
@@ -361,21 +355,37 @@ mod tests {
         let mut spheres = scattered();
         let expected = occlusions(&spheres, false);
         let mut shadows = Shadows::default();
+        let begin = |shadows: &mut Shadows, spheres: &[(Vec3, f32)]| {
+            shadows.begin(|placed| placed.extend_from_slice(spheres), |_| false);
+        };
         // Elsewhere at first: a round is under way when they all move.
         spheres.reverse();
         shadows.outdate();
-        assert!(!shadows.take(spheres.len()), "none has begun yet");
-        shadows.begin(&spheres, |_| false);
+        assert_eq!(shadows.take(spheres.len()), None, "none has begun yet");
+        begin(&mut shadows, &spheres);
         spheres.reverse();
         shadows.outdate();
-        let mut rounds = 0;
+        let mut rounds = Vec::new();
         while !shadows.are_whole() {
-            rounds += u32::from(shadows.take(spheres.len()));
-            shadows.begin(&spheres, |_| false);
+            rounds.extend(shadows.take(spheres.len()));
+            begin(&mut shadows, &spheres);
             std::thread::yield_now();
         }
-        assert_eq!(rounds, 2);
-        assert_eq!(shadows.hidden(), expected);
+        assert_eq!(rounds.len(), 2);
+        assert_eq!(rounds[1], bytemuck::cast_slice::<_, u8>(&expected));
+    }
+
+    #[test]
+    fn shadows_of_other_spheres_are_not_taken() {
+        AsyncComputeTaskPool::get_or_init(Default::default);
+        let spheres = scattered();
+        let mut shadows = Shadows::default();
+        shadows.outdate();
+        shadows.begin(|placed| placed.extend_from_slice(&spheres), |_| false);
+        while !shadows.are_whole() {
+            assert_eq!(shadows.take(spheres.len() - 1), None);
+            std::thread::yield_now();
+        }
     }
 
     #[test]

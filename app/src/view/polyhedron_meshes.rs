@@ -76,6 +76,8 @@ struct PolyhedronMaterial {
     /// Where each grain's planes are among them.
     #[storage(3, read_only)]
     bodies: Handle<ShaderBuffer>,
+    #[storage(4, read_only)]
+    shadows: Handle<ShaderBuffer>,
 }
 
 /// Whether anything is cut away: part of the pipeline's key, because only then sections and depths
@@ -227,7 +229,8 @@ fn start_over(
             let bodies = buffers.add(buffer(&[PlaneRange::zeroed()]));
             meshing.materials = Half::ALL.map(|half| {
                 materials.add(PolyhedronMaterial {
-                    grains: grains.handle(half).clone(),
+                    grains: grains.handles(half).grains.clone(),
+                    shadows: grains.handles(half).shadows.clone(),
                     cut: CutPlanes::default(),
                     planes: planes.clone(),
                     bodies: bodies.clone(),
@@ -296,13 +299,15 @@ fn update(
 ) {
     let cut = CutPlanes::of(settings.cut);
     for half in Half::ALL {
-        let (material, own) = (&meshing.materials[half.index()], grains.handle(half));
-        let stale = |material: &PolyhedronMaterial| material.cut != cut || material.grains != *own;
+        let (material, own) = (&meshing.materials[half.index()], grains.handles(half));
+        let stale =
+            |material: &PolyhedronMaterial| material.cut != cut || material.grains != own.grains;
         if materials.get(material).is_some_and(stale)
             && let Some(mut material) = materials.get_mut(material)
         {
             material.cut = cut;
-            material.grains = own.clone();
+            material.grains = own.grains.clone();
+            material.shadows = own.shadows.clone();
         }
     }
 }

@@ -41,6 +41,8 @@ struct SphereMaterial {
     grains: Handle<ShaderBuffer>,
     #[uniform(1)]
     cut: CutPlanes,
+    #[storage(2, read_only)]
+    shadows: Handle<ShaderBuffer>,
 }
 
 impl Material for SphereMaterial {
@@ -99,7 +101,8 @@ fn spawn(
             },
             Mesh3d(meshes.add(quads(&[0]))),
             MeshMaterial3d(materials.add(SphereMaterial {
-                grains: grains.handle(half).clone(),
+                grains: grains.handles(half).grains.clone(),
+                shadows: grains.handles(half).shadows.clone(),
                 cut: CutPlanes::default(),
             })),
             Visibility::Hidden,
@@ -144,14 +147,15 @@ fn update(
         } else {
             Visibility::Hidden
         });
-        let own = grains.handle(half);
+        let own = grains.handles(half);
         if materials
             .get(&material.0)
-            .is_some_and(|material| material.cut != cut || material.grains != *own)
+            .is_some_and(|material| material.cut != cut || material.grains != own.grains)
             && let Some(mut material) = materials.get_mut(&material.0)
         {
             material.cut = cut;
-            material.grains = own.clone();
+            material.grains = own.grains.clone();
+            material.shadows = own.shadows.clone();
         }
     }
 }
