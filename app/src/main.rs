@@ -32,6 +32,12 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// That of the GNU C library keeps what a thread left in pieces when the thread is gone; every run has
+/// threads of its own, so that a window that opens run after run would grow. Other systems' give back.
+#[cfg(all(feature = "desktop", target_os = "linux", target_env = "gnu"))]
+#[global_allocator]
+static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;
+
 fn main() -> ExitCode {
     let arguments = Arguments::of_the_process();
     match carry_out(arguments) {

@@ -12,7 +12,6 @@ use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
 use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
 use crate::window::environment::{Missing, adapters, display};
 use crate::window::memory_log::MemoryLogPlugin;
-use crate::window::memory_return::MemoryReturnPlugin;
 use crate::window::one_by_one::OneByOnePlugin;
 use crate::window::opening_comparison::{OpeningComparison, begin_comparison};
 use crate::window::screenshot_job::{Failure, ScreenshotJobs, ScreenshotPlugin};
@@ -84,7 +83,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     if job.picture.is_none() {
         dock.remember(UserMemory::user());
         keep_unsaved_work(&mut app);
-        app.add_plugins((MemoryLogPlugin, MemoryReturnPlugin));
+        app.add_plugins(MemoryLogPlugin);
     }
     let mut dock = app.world_mut().resource_mut::<Dock>();
     match &job.opened {

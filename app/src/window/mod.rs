@@ -18,7 +18,6 @@
 //! | `canvas` | an image to draw into where there is no display |
 //! | `environment` | what a window needs of the machine |
 //! | `memory_log` | where its memory goes, in the log |
-//! | `memory_return` | gives free memory back to the system |
 //! | `one_by_one` | systems of a frame one after the other |
 
 mod app;
@@ -28,7 +27,6 @@ mod film_reel;
 mod film_studio;
 mod headless_film;
 mod memory_log;
-mod memory_return;
 pub mod one_by_one;
 mod opening_comparison;
 mod screenshot_job;
