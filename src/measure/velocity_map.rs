@@ -58,11 +58,12 @@ impl KernelSums {
             // Not branched to: what lies beyond the reach adds zero.
             let squared = squared + row.0;
             let is_near = squared < grain.reach_squared;
+            let is_over = squared < grain.radius_squared;
             let weight = if is_near { weight * row.1 } else { 0.0 };
             *sum += weight;
             *x += weight * grain.velocity.x;
             *y += weight * grain.velocity.y;
-            *covered |= is_near & (squared < grain.radius_squared);
+            *covered |= is_near & is_over;
         }
     }
 }
