@@ -45,7 +45,7 @@ impl Plugin for ViewPlugin {
                 links::plugin,
                 ghosts::plugin,
             ))
-            .add_systems(Startup, rig::spawn)
+            .add_systems(Startup, (rig::look_for_no_lamps, rig::spawn))
             .add_systems(
                 Update,
                 (take_newest, (trace::follow, trace::measure))

@@ -11,7 +11,7 @@ use crate::view::shown_worlds::{ShownWorlds, layers};
 use crate::view::view_settings::{ProjectionKind, ViewSettings};
 use bevy::camera::{ClearColorConfig, ScalingMode, SubCameraView, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
-use bevy::light::cluster::ClusterConfig;
+use bevy::light::cluster::{ClusterConfig, GlobalClusterSettings};
 use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy_egui::egui;
@@ -30,6 +30,15 @@ pub(super) fn spawn(mut commands: Commands, settings: Res<ViewSettings>) {
     };
     for half in Half::ALL {
         commands.spawn((WorldCamera, world_camera(half, half == Half::Left), samples));
+    }
+}
+
+/// No lamp stands in a scene that would have to be looked for: the sun shines on all of it. Bevy 0.19
+/// would look on the graphics device, with five pipelines to translate, and keep 40 bytes of each frame
+/// for ever (`metadata_staging_pending_buffers`).
+pub(super) fn look_for_no_lamps(clusters: Option<ResMut<GlobalClusterSettings>>) {
+    if let Some(mut clusters) = clusters {
+        clusters.gpu_clustering = None;
     }
 }
 

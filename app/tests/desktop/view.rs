@@ -8,8 +8,10 @@ use crate::window_of_panels::standing;
 use bevy::app::Plugins;
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::message::Messages;
+use bevy::light::cluster::GlobalClusterSettings;
 use bevy::math::{UVec2, Vec2, Vec3};
 use bevy::prelude::*;
+use bevy::render::RenderApp;
 use bevy::render::view::screenshot::ScreenshotCaptured;
 use bevy_egui::{
     EguiContexts, EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui,
@@ -302,6 +304,19 @@ fn outline(camera: &OrbitCamera, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
     let focal = camera.distance() / camera.metres_per_point();
     let place_at = |angle: f32| middle + outward * focal * angle.tan();
     (place_at(away - half_angle), place_at(away + half_angle))
+}
+
+/// That took five pipelines, and 40 bytes of each frame for good.
+#[test]
+fn no_lamps_are_looked_for_on_the_graphics_device() {
+    let Some(_guard) = studio() else { return };
+    let mut app = laboratory(SIZE, standing(), ());
+    app.update();
+    let pictures = app.sub_app(RenderApp).world();
+    for world in [app.world(), pictures] {
+        let clusters = world.resource::<GlobalClusterSettings>();
+        assert!(clusters.gpu_clustering.is_none());
+    }
 }
 
 #[test]
