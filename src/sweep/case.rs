@@ -9,6 +9,7 @@ use crate::runner::{self, Advance, Job, Part, RunnerError, Watch};
 use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Largest summary that is read [bytes].
@@ -18,6 +19,7 @@ const LARGEST: u64 = 256 << 20;
 #[derive(Default)]
 pub struct CaseProgress {
     share: AtomicU64,
+    first_share: OnceLock<f64>,
     is_preparing: AtomicBool,
 }
 
@@ -25,6 +27,12 @@ impl CaseProgress {
     /// 0 … 1, and 1 only of a case that is over.
     pub fn get(&self) -> f64 {
         f64::from_bits(self.share.load(Ordering::Relaxed))
+    }
+
+    /// How much of it has been done since it was first heard of: not what an earlier call had done.
+    pub fn since_first(&self) -> f64 {
+        let share = self.get();
+        share - self.first_share.get().unwrap_or(&share)
     }
 
     /// Whether its bed is being settled now, or its grains are being cut.
@@ -45,6 +53,7 @@ impl CaseProgress {
     /// Says that it has come so far.
     pub fn set(&self, share: f64) {
         self.is_preparing.store(false, Ordering::Relaxed);
+        self.first_share.get_or_init(|| share);
         self.share.store(share.to_bits(), Ordering::Relaxed);
     }
 }
@@ -235,4 +244,21 @@ pub fn run(
     };
     let method = stated_method(&job.out)?;
     Ok(Some(CaseResult::of(case, ending, results, view, method)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_earlier_call_had_done_is_not_done_in_this_one() {
+        let mut half = &CaseProgress::default();
+        assert_eq!(half.since_first(), 0.0);
+        half.running(0.5, &String::new);
+        half.running(0.75, &String::new);
+        assert_eq!((half.get(), half.since_first()), (0.75, 0.25));
+        let done = CaseProgress::default();
+        done.set(1.0);
+        assert_eq!((done.get(), done.since_first()), (1.0, 0.0));
+    }
 }

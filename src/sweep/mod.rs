@@ -359,19 +359,16 @@ fn follow(
 ) {
     let all: f64 = cases.iter().map(Case::cost).sum();
     let started = Instant::now();
-    let done = || -> f64 {
-        let parts = cases.iter().zip(shares).map(|(c, s)| c.cost() * s.get());
+    let sum = |part: fn(&CaseProgress) -> f64| -> f64 {
+        let parts = cases.iter().zip(shares).map(|(c, s)| c.cost() * part(s));
         parts.sum::<f64>() / all
     };
-    let mut before = None;
     while working() {
         // Until a case is over, or for so long.
         std::thread::park_timeout(LOOK_TIME);
-        let share = done();
-        // What earlier calls had done took no time in this one.
-        let before = *before.get_or_insert(share);
+        let share = sum(CaseProgress::get);
         let elapsed = started.elapsed().as_secs_f64();
-        let left = elapsed * (1.0 - share) / (share - before);
+        let left = elapsed * (1.0 - share) / sum(CaseProgress::since_first);
         let finished = shares.iter().filter(|share| share.get() >= 1.0).count();
         let preparing = shares.iter().filter(|share| share.is_preparing()).count();
         watch.parts(&shares.iter().map(CaseProgress::part).collect::<Vec<_>>());
