@@ -221,6 +221,17 @@ pub struct LessonLook {
     pub from: Option<LessonView>,
     /// What is drawn beside the grains.
     pub show: Vec<Shown>,
+    /// What is cut away; nothing where there is none.
+    pub cut: Option<LessonCut>,
+}
+
+/// What of a lesson's picture is cut away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum LessonCut {
+    /// What lies in front of the plane z = 0.
+    Across,
+    /// The quarter with x > 0 and z > 0.
+    Quarter,
 }
 
 /// From where a lesson's picture is seen.
@@ -247,4 +258,8 @@ pub enum Shown {
     Velocities,
     /// How grains have turned.
     Turning,
+    /// The flowing layer of a drum.
+    Flow,
+    /// The granular temperature, as a veil.
+    Temperature,
 }

@@ -5,8 +5,8 @@
 //! stands in `docs/lessons.md`.
 
 use super::description::{
-    Change, Lesson, LessonLook, LessonStep, LessonView, Measurement, Question, QuestionKind,
-    RunScatter, Shown, Statistic, Touch,
+    Change, Lesson, LessonCut, LessonLook, LessonStep, LessonView, Measurement, Question,
+    QuestionKind, RunScatter, Shown, Statistic, Touch,
 };
 use crate::measure::{GrainQuantity, Measure};
 use crate::parameters::{Parameter, Value};
@@ -112,6 +112,7 @@ struct LookFile {
     colour_by: Option<String>,
     from: Option<LessonView>,
     show: Vec<Shown>,
+    cut: Option<LessonCut>,
 }
 
 /// A map from keys to texts, in the order of the file.
@@ -297,6 +298,7 @@ impl LookFile {
             colour_by: self.colour_by.map(quantity).transpose()?,
             from: self.from,
             show: self.show,
+            cut: self.cut,
         })
     }
 }

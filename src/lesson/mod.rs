@@ -30,8 +30,8 @@ mod verdict;
 
 pub use built_in::{BuiltInLesson, built_in_lessons};
 pub use description::{
-    Change, Lesson, LessonLook, LessonStep, LessonView, Measurement, Prediction, Question,
-    QuestionKind, RunScatter, Shown, Statistic, Touch,
+    Change, Lesson, LessonCut, LessonLook, LessonStep, LessonView, Measurement, Prediction,
+    Question, QuestionKind, RunScatter, Shown, Statistic, Touch,
 };
 pub use experiment::Seen;
 pub use reading::LessonError;

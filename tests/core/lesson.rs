@@ -2,7 +2,8 @@
 
 use grainfall::lab::{DriverKind, Lab, LabCommand, Options, Status};
 use grainfall::lesson::{
-    Change, Lesson, LessonUnderWay, Prediction, QuestionKind, Seen, Stage, Touch, built_in_lessons,
+    Change, Lesson, LessonCut, LessonUnderWay, Prediction, QuestionKind, Seen, Shown, Stage, Touch,
+    built_in_lessons,
 };
 use grainfall::measure::{Estimate, Verdict};
 use grainfall::parameters::Parameter;
@@ -64,7 +65,7 @@ Lesson(
 
 const MOON: &str = r#"set: {"gravity": "1.62"},
             speed: 50,
-            look: (show: [Forces]),
+            look: (show: [Forces, Flow, Temperature], cut: Quarter),
             ask: Change(
                 question: "And there?",
                 quantity: "kinetic energy",
@@ -116,6 +117,9 @@ fn a_lesson_is_told_from_a_scene_and_read_with_its_scene() {
         (*than, *same_within, *expected),
         (1, 1e-6, Some(Change::Lower))
     );
+    let look = lesson.steps[2].look.as_ref().unwrap();
+    assert_eq!(look.show, [Shown::Forces, Shown::Flow, Shown::Temperature]);
+    assert_eq!(look.cut, Some(LessonCut::Quarter));
     let beside = Path::new(&name).with_file_name("falling.ron");
     assert!(!Lesson::is_at(&beside.display().to_string()));
     assert!(!Lesson::is_at("/dev/zero") && !Lesson::is_at("small-drum"));
@@ -240,6 +244,7 @@ fn an_answer_that_cannot_be_is_refused() {
             "Did you mean `speed`?",
         ),
         ("from: Front", "from: Frnt", "Did you mean `Front`?"),
+        ("cut: Quarter", "cut: Quater", "Did you mean `Quarter`?"),
         (
             "steps: [",
             "steps: [], other: [",

@@ -12,11 +12,11 @@ use crate::ui::widgets::field;
 use crate::ui::widgets::focus::is_entered;
 use crate::ui::widgets::touch;
 use crate::ui::words::names::{parameter_name, value_in_words};
-use crate::view::{CameraRequest, ColourBy, StandardView, ViewSettings};
+use crate::view::{CameraRequest, ColourBy, CoordinateAxis, Cut, StandardView, ViewSettings};
 use bevy_egui::egui::{self, RichText, ScrollArea, WidgetInfo, WidgetType};
 use grainfall::lesson::{
-    Change, Lesson, LessonLook, LessonStep, LessonUnderWay, LessonView, Prediction, Question,
-    QuestionKind, Seen, Shown, Stage, Touch,
+    Change, Lesson, LessonCut, LessonLook, LessonStep, LessonUnderWay, LessonView, Prediction,
+    Question, QuestionKind, Seen, Shown, Stage, Touch,
 };
 use grainfall::measure::{Verdict, numeral};
 use grainfall::run::Command;
@@ -369,6 +369,15 @@ pub fn show_look(look: &LessonLook, view: &mut ViewSettings) {
     view.show_bridges = shows(Shown::Bridges);
     view.show_velocities = shows(Shown::Velocities);
     view.show_turning = shows(Shown::Turning).then_some(true);
+    view.show_flow = shows(Shown::Flow);
+    view.show_temperature = shows(Shown::Temperature);
+    view.cut = look.cut.map(|cut| match cut {
+        LessonCut::Across => Cut::Beyond {
+            axis: CoordinateAxis::Z,
+            position: 0.0,
+        },
+        LessonCut::Quarter => Cut::Quarter { x: 0.0, z: 0.0 },
+    });
     let request = look.from.map(|from| match from {
         LessonView::Home => CameraRequest::Home,
         LessonView::Front => CameraRequest::From(StandardView::Front),
@@ -377,5 +386,27 @@ pub fn show_look(look: &LessonLook, view: &mut ViewSettings) {
     });
     if request.is_some() {
         view.camera_request = request;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_look_leaves_nothing_of_the_one_before() {
+        let mut view = ViewSettings::default();
+        let look = LessonLook {
+            show: vec![Shown::Forces, Shown::Flow, Shown::Temperature],
+            cut: Some(LessonCut::Quarter),
+            ..LessonLook::default()
+        };
+        show_look(&look, &mut view);
+        assert!(view.show_forces && view.shows_ghosts());
+        assert!(view.show_flow && view.show_temperature);
+        assert_eq!(view.cut, Some(Cut::Quarter { x: 0.0, z: 0.0 }));
+        show_look(&LessonLook::default(), &mut view);
+        assert!(!view.show_forces && !view.show_flow && !view.show_temperature);
+        assert_eq!((view.cut, view.grain_size), (None, 1.0));
     }
 }
