@@ -23,7 +23,7 @@
 //! | `notice` | what is told for a few seconds |
 //! | `dialogs` | windows over the rest: scenes with their pictures, a path to choose, sheets of text |
 //! | `bars` | menu bar, the bar under the picture with its time slider, the film's bar, the badge of trust |
-//! | `shortcuts`, `keyboard` | what each key does; what was held with it |
+//! | `shortcuts`, `keyboard`, `pointer` | what each key does; what was held with it; where the pointer lets go |
 //! | `user_memory` | what is remembered from start to start |
 //! | `panels` | the panels on both sides, one in each file |
 //! | `panel` | what a panel is |
@@ -60,6 +60,7 @@ mod playback;
 mod plot_export;
 mod plots;
 mod plugin;
+mod pointer;
 mod register;
 mod repeat;
 mod request;

@@ -12,7 +12,7 @@ use crate::ui::opener::{OpenWith, Opening, finish_opening};
 use crate::ui::request::{Request, Requests};
 use crate::ui::screenshot_orders::{FilmState, ScreenshotOrders};
 use crate::ui::second_pass::{SecondPicturePass, draw_second_picture};
-use crate::ui::{keyboard, theme};
+use crate::ui::{keyboard, pointer, theme};
 use crate::view::{OrbitCamera, ViewSettings, viewport_ui};
 use bevy::asset::AssetEventSystems;
 use bevy::prelude::*;
@@ -40,7 +40,8 @@ impl Plugin for UiPlugin {
             .add_systems(Update, follow_full_screen)
             .add_systems(
                 PreUpdate,
-                keyboard::tell_modifiers
+                (keyboard::tell_modifiers, pointer::end_drags_where_they_end)
+                    .chain()
                     .after(EguiPreUpdateSet::ProcessInput)
                     .before(EguiPreUpdateSet::BeginPass),
             )
