@@ -2,7 +2,7 @@
 //!
 //! In: a mean and what stands behind it; or the values of single events. Out: an [`Estimate`], the
 //! one form in which every mean of the program carries its error. Time averages come from
-//! `blocking`.
+//! `slow_waves`.
 
 /// Fewest independent events whose spread says how well their mean is known. Of five, one standard
 /// error on either side holds the truth in 63 of 100 cases; of ten in 66; of many in 68.
@@ -17,8 +17,8 @@ pub struct Estimate {
     pub error: Option<f64>,
     /// How many independent samples it is worth.
     pub samples: usize,
-    /// Degrees of freedom with which the error is known: the independent parts that it was taken
-    /// from, less one.
+    /// Degrees of freedom with which the error is known: of events and runs their number, less one;
+    /// of a time average the waves that it was taken from.
     pub freedom: usize,
 }
 

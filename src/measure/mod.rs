@@ -31,7 +31,7 @@
 //! | `column` | a column at its start: `α_eff`, `μ_p`; the laws of Man et al. 2023 |
 //! | `collapse` | when a column was fastest, when it came to rest, what it left |
 //! | `estimate` | a mean with its standard error: [`Estimate`]; the means of events and of runs |
-//! | `blocking` | the standard error of a time average, from its autocorrelation |
+//! | `slow_waves` | the standard error of a time average, from its slowest changes |
 //! | `difference` | whether two means differ by more than their scatter: [`Difference`] |
 //! | `verdict` | what becomes of a statement, and by which rules: [`Verdict`] |
 //! | `rigid_rotation` | where rotation alone looks like flow |
@@ -49,7 +49,6 @@
 //! `near_pairs` finds the pairs of grains that are near each other, `window` averages over samples.
 
 mod avalanches;
-mod blocking;
 mod collapse;
 mod column;
 mod column_summary;
@@ -79,6 +78,7 @@ mod sample;
 mod sample_column;
 mod sampled_quantity;
 mod series;
+mod slow_waves;
 mod summary;
 mod surface;
 mod temperature;
@@ -90,7 +90,6 @@ mod wet_bed;
 mod window;
 
 pub use avalanches::{Avalanche, SMALLEST_DROP, SMOOTHING_TIME, avalanches};
-pub use blocking::time_average;
 pub use collapse::Collapse;
 pub use column::{
     CRITICAL_ASPECT_RATIO, InitialColumn, PEAK_TIME_LAW, REST_TIME_LAW, TALL_ASPECT_RATIO,
@@ -121,6 +120,7 @@ pub use run_summary::{LEFT_OUT, results, summarise};
 pub use sample::{Sample, mean_speed, sample, sample_and_surface};
 pub use sampled_quantity::Measure;
 pub use series::Series;
+pub use slow_waves::time_average;
 pub use summary::{Summary, SummaryEntry};
 pub use surface::{MIDDLE_SHARE, SurfaceLine, surface_line};
 pub use temperature::{Temperatures, granular_temperatures, rotation_temperature};

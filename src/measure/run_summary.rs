@@ -124,7 +124,7 @@ fn add_case(summary: &mut Summary, world: &World) {
 
 fn add_means(summary: &mut Summary, window: &Window) {
     for measure in MEANS {
-        let note = "mean over the samples of the window, its error by blocking".to_owned();
+        let note = "mean over the samples of the window, its error by slow waves".to_owned();
         summary.add_noted_mean(measure, window.mean(measure), note);
     }
     let ruptures = window.rate(Measure::Ruptures);

@@ -3,10 +3,10 @@
 //! In: a [`Series`]. Out: means, medians and rates; NaN where no sample has a value.
 
 use super::avalanches::{Avalanche, SMOOTHING_TIME, avalanches};
-use super::blocking::time_average;
 use super::estimate::Estimate;
 use super::sampled_quantity::Measure;
 use super::series::Series;
+use super::slow_waves::time_average;
 use super::summary::Summary;
 use std::ops::Range;
 
