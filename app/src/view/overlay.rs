@@ -248,12 +248,20 @@ fn from_afar(
     size: bevy_egui::egui::Vec2,
     lines: impl Iterator<Item = (String, Color32)>,
 ) {
-    let font = FontId::proportional((size.y / 12.0).min(size.x / 8.0));
+    let font = FontId::proportional(size_from_afar(size));
     let mut at = corner;
     for (text, colour) in lines {
         let place = ink.grounded(at, Align2::LEFT_TOP, &text, font.clone(), colour, ink.veil);
         at.y = place.bottom();
     }
+}
+
+/// The size of letters that are read from afar, in a picture of this `size` [points]. It takes steps:
+/// every size of every letter is drawn once and kept, and a picture can be dragged to any size.
+fn size_from_afar(size: bevy_egui::egui::Vec2) -> f32 {
+    const STEP: f32 = 4.0;
+    let fitting = (size.y / 12.0).min(size.x / 8.0);
+    STEP * (fitting / STEP).floor().max(1.0)
 }
 
 /// The distance of every fifth ring on the floor from the axis of a column, to the right before it,
@@ -474,4 +482,26 @@ fn gradient(rect: Rect, map: ColourMap) -> Mesh {
         mesh.add_triangle(2 * i + 1, 2 * i + 3, 2 * i + 2);
     }
     mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_read_from_afar_have_few_sizes() {
+        let mut sizes = Vec::new();
+        for height in 200..2161_u16 {
+            let height = f32::from(height);
+            let size = size_from_afar(vec2(1.6 * height, height));
+            assert!(
+                size <= height / 12.0 && size > 0.7 * height / 12.0,
+                "{size} of {height}"
+            );
+            sizes.push(size);
+        }
+        sizes.dedup();
+        assert_eq!(sizes.len(), 42);
+        assert!(size_from_afar(vec2(1.0, 1.0)) > 0.0);
+    }
 }

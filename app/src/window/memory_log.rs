@@ -1,13 +1,14 @@
 //! Where the memory of a window goes, for those who look for leaks: `RUST_LOG=grainfall_app=debug`.
 //!
 //! In: the runs shown, every ten seconds. Out: a line of the log with the memory that the program
-//! holds, what of it is in use, by its graphics driver too, where the allocator tells, and what its
-//! runs keep by design [bytes].
+//! holds, what of it is in use, by its graphics driver too, where the allocator tells, and what is
+//! kept by design [bytes]: by its runs, and of the letters that were written so far.
 
 use crate::simulation::Simulation;
 use bevy::log::debug;
-use bevy::prelude::{App, IntoScheduleConfigs, Plugin, Res, Update};
+use bevy::prelude::{App, IntoScheduleConfigs, Plugin, Query, Res, Update};
 use bevy::time::common_conditions::on_real_timer;
+use bevy_egui::{EguiContext, egui};
 use grainfall::lab::Half;
 use grainfall::run::resident_memory;
 use std::time::Duration;
@@ -24,16 +25,33 @@ impl Plugin for MemoryLogPlugin {
     }
 }
 
-fn tell_memory(simulation: Option<Res<Simulation>>) {
+/// Copies of a picture of letters: of egui, two on its way to the renderer, the renderer's own, which
+/// a software driver has here.
+const COPIES: usize = 4;
+
+fn tell_memory(simulation: Option<Res<Simulation>>, mut contexts: Query<&mut EguiContext>) {
     let (Some(simulation), Some(resident)) = (simulation, resident_memory()) else {
         return;
     };
     let shown = 1 + usize::from(simulation.comparison().is_some());
     let runs = Half::ALL.into_iter().take(shown);
     let kept = runs.map(|half| simulation.half(half).kept_memory().total());
-    let kept: usize = kept.sum();
+    let letters = contexts
+        .iter_mut()
+        .map(|mut context| letters(context.get_mut()));
+    let kept = kept.sum::<usize>() + letters.sum::<usize>();
     let used = in_use().map_or(String::new(), |used| format!(" in use {used}"));
     debug!("memory {resident}{used} kept {kept}");
+}
+
+/// What the pictures take into which each letter is drawn once in each size [bytes]. They grow by
+/// doubling, and begin anew when they are nearly as high as wide.
+fn letters(context: &egui::Context) -> usize {
+    if context.cumulative_pass_nr() == 0 {
+        return 0;
+    }
+    let [width, height] = context.fonts(|fonts| fonts.font_image_size());
+    COPIES * width * height * size_of::<egui::Color32>()
 }
 
 /// What is allocated and not freed [bytes].
@@ -51,10 +69,32 @@ fn in_use() -> Option<usize> {
     None
 }
 
-#[cfg(all(test, target_os = "linux", target_env = "gnu"))]
+#[cfg(test)]
 mod tests {
-    use super::in_use;
+    use super::*;
 
+    #[test]
+    fn each_size_of_letters_takes_memory_once() {
+        let context = egui::Context::default();
+        assert_eq!(letters(&context), 0);
+        let write = |sizes: std::ops::Range<u8>| {
+            let _ = context.run_ui(egui::RawInput::default(), |ui| {
+                for size in sizes.clone() {
+                    let text = egui::RichText::new("0123456789 ϕθ Σ abc").size(f32::from(size));
+                    ui.label(text);
+                }
+            });
+            letters(&context)
+        };
+        let few = write(12..14);
+        assert!(few > 0);
+        assert_eq!(write(12..14), few);
+        let many = write(12..80);
+        assert!(many > few, "{many} after {few}");
+        assert_eq!(write(12..80), many);
+    }
+
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
     #[test]
     fn what_is_allocated_is_in_use_until_it_is_freed() {
         // More than all that other tests allocate meanwhile; never written, so no memory is taken.
