@@ -11,6 +11,7 @@ use crate::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use crate::window::environment::{Missing, adapters};
+use crate::window::pipelines::PipelinesWaiting;
 use crate::window::screenshot_subject::UNTIL_DRAWN;
 use crate::window::window_job::FilmJob;
 use bevy::prelude::*;
@@ -221,12 +222,15 @@ fn photographed(app: &mut App, frames: u32) -> Option<Image> {
     None
 }
 
-/// Whether all meshes and shadows fit the state shown.
+/// Whether all meshes and shadows fit the state shown, and the renderer has all that it draws with.
 fn is_whole(app: &App) -> bool {
     let world = app.world();
+    let pipelines = world.get_resource::<PipelinesWaiting>();
     let meshes = world.get_resource::<Meshing>();
     let grains = world.get_resource::<GrainBuffer>();
-    meshes.is_none_or(Meshing::is_whole) && grains.is_none_or(GrainBuffer::is_whole)
+    meshes.is_none_or(Meshing::is_whole)
+        && grains.is_none_or(GrainBuffer::is_whole)
+        && pipelines.is_none_or(PipelinesWaiting::is_none)
 }
 
 /// The simulation of `app`.

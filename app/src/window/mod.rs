@@ -16,6 +16,7 @@
 //! | `opening_comparison` | the second run that a window opens with |
 //! | `window_job` | what to open and how; why there may be no window |
 //! | `canvas` | an image to draw into where there is no display |
+//! | `pipelines` | what the renderer has still to make |
 //! | `environment` | what a window needs of the machine |
 //! | `memory_log` | where its memory goes, in the log |
 //! | `one_by_one` | systems of a frame one after the other |
@@ -29,6 +30,7 @@ mod headless_film;
 mod memory_log;
 pub mod one_by_one;
 mod opening_comparison;
+pub mod pipelines;
 mod screenshot_job;
 mod screenshot_subject;
 mod second_set;

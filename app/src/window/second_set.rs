@@ -6,18 +6,16 @@
 use crate::ui::SecondPicturePass;
 use crate::view::{OfSecondPicture, SecondLook, SecondOverlay, SecondPicture, second_camera};
 use crate::window::canvas::target_image;
+use crate::window::pipelines::PipelinesWaiting;
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, ClearColorConfig, RenderTarget};
 use bevy::ecs::system::SystemParam;
 use bevy::math::UVec2;
 use bevy::prelude::*;
-use bevy::render::render_resource::{BlendState, PipelineCache};
+use bevy::render::render_resource::BlendState;
 use bevy::render::view::screenshot::Screenshot;
-use bevy::render::{Render, RenderApp, RenderSystems};
 use bevy_egui::{EguiGlobalSettings, EguiSchedule};
 use grainfall::lab::Half;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What the cameras draw into while nothing is wanted [pixels].
 const NOTHING: RenderTarget = RenderTarget::None {
@@ -31,24 +29,10 @@ struct Target {
     has_cameras: bool,
 }
 
-/// How many pipelines the renderer has still to make before everything is drawn.
-#[derive(Resource, Clone, Default)]
-struct PipelinesWaiting(Arc<AtomicUsize>);
-
 /// Prepares `app` for second pictures.
 pub(super) fn plugin(app: &mut App) {
-    let waiting = PipelinesWaiting::default();
-    app.init_resource::<Target>()
-        .insert_resource(waiting.clone());
-    if let Some(renderer) = app.get_sub_app_mut(RenderApp) {
-        renderer.insert_resource(waiting);
-        renderer.add_systems(Render, count_pipelines.in_set(RenderSystems::Cleanup));
-    }
-}
-
-fn count_pipelines(cache: Option<Res<PipelineCache>>, waiting: Res<PipelinesWaiting>) {
-    let count = cache.map_or(0, |cache| cache.waiting_pipelines().count());
-    waiting.0.store(count, Ordering::Relaxed);
+    app.init_resource::<Target>();
+    PipelinesWaiting::count_in(app);
 }
 
 /// The second picture as whoever takes it works it.
@@ -124,7 +108,7 @@ impl SecondSet<'_, '_> {
 
     /// Whether the renderer has all that it draws with.
     pub(super) fn is_ready(&self) -> bool {
-        self.pipelines.0.load(Ordering::Relaxed) == 0
+        self.pipelines.is_none()
     }
 }
 

@@ -35,6 +35,7 @@ use grainfall_app::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use grainfall_app::window::environment::adapters;
+use grainfall_app::window::pipelines::PipelinesWaiting;
 use std::io::Write;
 use std::panic::Location;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -202,6 +203,11 @@ pub fn photographed(app: &mut App, name: &str) -> Photograph {
     for _ in 0..WARM_UP {
         app.update();
     }
+    let has_pipelines = (0..2000).any(|_| {
+        app.update();
+        app.world().resource::<PipelinesWaiting>().is_none()
+    });
+    assert!(has_pipelines, "the renderer still makes pipelines");
     let taken: Arc<Mutex<Option<Image>>> = Arc::default();
     let slot = taken.clone();
     let canvas = app.world().resource::<Canvas>().clone();
