@@ -50,8 +50,8 @@ fn letters(context: &egui::Context) -> usize {
     if context.cumulative_pass_nr() == 0 {
         return 0;
     }
-    let [width, height] = context.fonts(|fonts| fonts.font_image_size());
-    COPIES * width * height * size_of::<egui::Color32>()
+    let pixels: usize = context.fonts(|fonts| fonts.font_image_size().iter().product());
+    COPIES * pixels * size_of::<egui::Color32>()
 }
 
 /// What is allocated and not freed [bytes].
