@@ -5,7 +5,7 @@
 //! taken is not decided here.
 
 use crate::view::OfSecondPicture;
-use crate::window::pipelines::PipelinesWaiting;
+use crate::window::pipelines::Pipelines;
 use bevy::app::{PluginGroupBuilder, PluginsState};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::RenderTarget;
@@ -19,7 +19,7 @@ use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 
 /// Frames to draw before a picture is whole: textures and panels' sizes need a few, pipelines may
-/// need more ([`PipelinesWaiting`]).
+/// need more ([`Pipelines`]).
 pub const WARM_UP: u32 = 6;
 
 /// Bevy's plugins for drawing where there is no display.
@@ -67,7 +67,7 @@ impl Plugin for CanvasPlugin {
         let image = target_image(self.0);
         let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
         app.insert_resource(Canvas(image)).add_observer(redirect);
-        PipelinesWaiting::count_in(app);
+        Pipelines::count_in(app);
     }
 }
 

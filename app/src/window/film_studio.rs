@@ -11,7 +11,7 @@ use crate::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use crate::window::environment::{Missing, adapters};
-use crate::window::pipelines::PipelinesWaiting;
+use crate::window::pipelines::Pipelines;
 use crate::window::screenshot_subject::UNTIL_DRAWN;
 use crate::window::window_job::FilmJob;
 use bevy::prelude::*;
@@ -225,12 +225,12 @@ fn photographed(app: &mut App, frames: u32) -> Option<Image> {
 /// Whether all meshes and shadows fit the state shown, and the renderer has all that it draws with.
 fn is_whole(app: &App) -> bool {
     let world = app.world();
-    let pipelines = world.get_resource::<PipelinesWaiting>();
+    let pipelines = world.get_resource::<Pipelines>();
     let meshes = world.get_resource::<Meshing>();
     let grains = world.get_resource::<GrainBuffer>();
     meshes.is_none_or(Meshing::is_whole)
         && grains.is_none_or(GrainBuffer::is_whole)
-        && pipelines.is_none_or(PipelinesWaiting::is_none)
+        && pipelines.is_none_or(Pipelines::are_made)
 }
 
 /// The simulation of `app`.

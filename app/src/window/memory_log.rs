@@ -2,9 +2,11 @@
 //!
 //! In: the runs shown, every ten seconds. Out: a line of the log with the memory that the program
 //! holds, what of it is in use, by its graphics driver too, where the allocator tells, and what is
-//! kept by design [bytes]: by its runs, and of the letters that were written so far.
+//! kept by design [bytes]: by its runs, and of the letters that were written so far; and how many
+//! pipelines the renderer has, of which a driver keeps something, too.
 
 use crate::simulation::Simulation;
+use crate::window::pipelines::Pipelines;
 use bevy::log::debug;
 use bevy::prelude::{App, IntoScheduleConfigs, Plugin, Query, Res, Update};
 use bevy::time::common_conditions::on_real_timer;
@@ -29,7 +31,11 @@ impl Plugin for MemoryLogPlugin {
 /// a software driver has here.
 const COPIES: usize = 4;
 
-fn tell_memory(simulation: Option<Res<Simulation>>, mut contexts: Query<&mut EguiContext>) {
+fn tell_memory(
+    simulation: Option<Res<Simulation>>,
+    mut contexts: Query<&mut EguiContext>,
+    pipelines: Option<Res<Pipelines>>,
+) {
     let (Some(simulation), Some(resident)) = (simulation, resident_memory()) else {
         return;
     };
@@ -41,7 +47,8 @@ fn tell_memory(simulation: Option<Res<Simulation>>, mut contexts: Query<&mut Egu
         .map(|mut context| letters(context.get_mut()));
     let kept = kept.sum::<usize>() + letters.sum::<usize>();
     let used = in_use().map_or(String::new(), |used| format!(" in use {used}"));
-    debug!("memory {resident}{used} kept {kept}");
+    let pipelines = pipelines.map_or(0, |pipelines| pipelines.count());
+    debug!("memory {resident}{used} kept {kept} pipelines {pipelines}");
 }
 
 /// What the pictures take into which each letter is drawn once in each size [bytes]. They grow by

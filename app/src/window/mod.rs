@@ -16,7 +16,7 @@
 //! | `opening_comparison` | the second run that a window opens with |
 //! | `window_job` | what to open and how; why there may be no window |
 //! | `canvas` | an image to draw into where there is no display |
-//! | `pipelines` | what the renderer has still to make |
+//! | `pipelines` | what the renderer draws with, and has still to make |
 //! | `environment` | what a window needs of the machine |
 //! | `memory_log` | where its memory goes, in the log |
 //! | `one_by_one` | systems of a frame one after the other |

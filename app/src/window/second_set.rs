@@ -6,7 +6,7 @@
 use crate::ui::SecondPicturePass;
 use crate::view::{OfSecondPicture, SecondLook, SecondOverlay, SecondPicture, second_camera};
 use crate::window::canvas::target_image;
-use crate::window::pipelines::PipelinesWaiting;
+use crate::window::pipelines::Pipelines;
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, ClearColorConfig, RenderTarget};
 use bevy::ecs::system::SystemParam;
@@ -32,7 +32,7 @@ struct Target {
 /// Prepares `app` for second pictures.
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Target>();
-    PipelinesWaiting::count_in(app);
+    Pipelines::count_in(app);
 }
 
 /// The second picture as whoever takes it works it.
@@ -42,7 +42,7 @@ pub(super) struct SecondSet<'w, 's> {
     target: ResMut<'w, Target>,
     images: ResMut<'w, Assets<Image>>,
     cameras: Query<'w, 's, &'static mut RenderTarget, OfSecondPicture>,
-    pipelines: Res<'w, PipelinesWaiting>,
+    pipelines: Res<'w, Pipelines>,
     panels: Option<Res<'w, EguiGlobalSettings>>,
     commands: Commands<'w, 's>,
 }
@@ -108,7 +108,7 @@ impl SecondSet<'_, '_> {
 
     /// Whether the renderer has all that it draws with.
     pub(super) fn is_ready(&self) -> bool {
-        self.pipelines.is_none()
+        self.pipelines.are_made()
     }
 }
 

@@ -35,7 +35,7 @@ use grainfall_app::window::canvas::{
     Canvas, CanvasPlugin, WARM_UP, make_ready, offscreen_plugins, screenshot,
 };
 use grainfall_app::window::environment::adapters;
-use grainfall_app::window::pipelines::PipelinesWaiting;
+use grainfall_app::window::pipelines::Pipelines;
 use std::io::Write;
 use std::panic::Location;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -205,7 +205,7 @@ pub fn photographed(app: &mut App, name: &str) -> Photograph {
     }
     let has_pipelines = (0..2000).any(|_| {
         app.update();
-        app.world().resource::<PipelinesWaiting>().is_none()
+        app.world().resource::<Pipelines>().are_made()
     });
     assert!(has_pipelines, "the renderer still makes pipelines");
     let taken: Arc<Mutex<Option<Image>>> = Arc::default();
