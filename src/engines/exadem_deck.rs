@@ -114,13 +114,12 @@ fn refused(handed: Handed) -> Vec<String> {
 fn what_is_implicit(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::Explicit => "All forces are",
-        Integrator::Imex => "Dashpots are",
         Integrator::Implicit => "Springs and dashpots are",
     }
 }
 
-/// The engine's clock: its step is the scene's, or shorter where that is one for implicit dashpots
-/// or springs alone.
+/// The engine's clock: its step is the scene's, or shorter where that is one for implicit springs
+/// and dashpots.
 fn clock(handed: Handed) -> Clock {
     let stated = handed.world.clock.time_step;
     if handed.world.integrator().is_explicit() {

@@ -198,13 +198,16 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// A number in plain characters in those of print: a true minus sign, `2.00·10⁻⁹` for `2.00e-9`.
+/// A number in plain characters in those of print: a true minus sign, none before what is rounded to
+/// nought, `2.00·10⁻⁹` for `2.00e-9`.
 fn typeset(plain: &str) -> String {
     let (mantissa, exponent) = match plain.split_once('e') {
         Some((mantissa, exponent)) => (mantissa, format!("·10{}", raised(exponent))),
         None => (plain, String::new()),
     };
-    format!("{}{exponent}", mantissa.replacen('-', "−", 1))
+    let is_nought = !mantissa.contains(|digit| ('1'..='9').contains(&digit));
+    let sign = if is_nought { "" } else { "−" };
+    format!("{}{exponent}", mantissa.replacen('-', sign, 1))
 }
 
 /// A whole number in superscript.
@@ -261,6 +264,7 @@ mod tests {
         assert_eq!(short(f64::INFINITY), "∞");
         assert_eq!(power_of_ten(-40), "10⁻⁴⁰");
         assert_eq!(fixed(-0.25, 1), "−0.2");
+        assert_eq!(fixed(-0.04, 1), "0.0");
     }
 
     #[test]
@@ -285,6 +289,7 @@ mod tests {
         );
         assert_eq!(with_error(845.2, 23.0, ""), "845 ± 23");
         assert_eq!(with_error(-12.34, 0.4, "mJ"), "(−12.3 ± 0.4) mJ");
+        assert_eq!(with_error(-0.03, 0.2, "1/m"), "(0.0 ± 0.2) 1/m");
         assert_eq!(with_error(1.0, 0.0, ""), "1 ± 0");
         assert_eq!(with_error(0.0, 0.0, "mm"), "(0 ± 0) mm");
         // The larger of the two decides the power of ten.

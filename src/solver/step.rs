@@ -97,9 +97,9 @@ pub trait Share: Send {
         phase: &InPhase<'_, ForcePhase>,
     ) -> Tally;
 
-    /// Whether there is another sweep after so many, in which bodies respond to their pairs and
-    /// pairs resist their bodies: none where all forces are explicit. All workers say the same.
-    fn has_sweep(&self, _sweep: usize) -> bool {
+    /// Whether there is another sweep, in which bodies respond to their pairs and pairs resist their
+    /// bodies: none where all forces are explicit. All workers say the same.
+    fn has_sweep(&self) -> bool {
         false
     }
 
@@ -310,7 +310,7 @@ impl Course {
 
             let tally = share.compute_forces(self.processor, &walls, &forces);
             let mut sweep = 0;
-            while share.has_sweep(sweep) {
+            while share.has_sweep() {
                 let responding = forces.meet();
                 share.respond(self.processor, sweep, &responding);
                 forces = responding.meet();

@@ -12,7 +12,6 @@ mod drum;
 mod evaluate;
 mod faults;
 mod golden;
-mod imex;
 mod impact;
 mod implicit;
 mod liggghts;

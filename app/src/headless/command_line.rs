@@ -191,7 +191,7 @@ pub enum Task {
     TimeSteps {
         /// A scene file, or the name of a built-in scene
         scene: String,
-        /// Change a value, as in a single run: friction.glass.glass=0.3, integrator=imex
+        /// Change a value, as in a single run: friction.glass.glass=0.3, integrator=implicit
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// As JSON, in SI units

@@ -83,21 +83,16 @@ pub static TIME_STEP: ParameterRow = ParameterRow {
     ..super::AT_START
 };
 
-static INTEGRATORS: [Choice; 3] = [
+static INTEGRATORS: [Choice; 2] = [
     Choice {
         key: "explicit",
         name: "explicit",
         number: 0.0,
     },
     Choice {
-        key: "imex",
-        name: "IMEX, dashpots implicit",
-        number: 1.0,
-    },
-    Choice {
         key: "implicit",
         name: "springs and dashpots implicit",
-        number: 2.0,
+        number: 1.0,
     },
 ];
 
@@ -105,9 +100,9 @@ pub static INTEGRATOR: ParameterRow = ParameterRow {
     key: "integrator",
     name: |_| "integrator",
     kind: Kind::Choice(&INTEGRATORS),
-    expected: "`explicit`, `imex` or `implicit`, in a scene of polyhedra",
-    description: "How polyhedra are moved: with IMEX, their dashpots do not limit the time step, which may be several times as \
-                  long; where springs are implicit too, neither do they.",
+    expected: "`explicit` or `implicit`, in a scene of polyhedra",
+    description: "How polyhedra are moved: where springs and dashpots are implicit, they do not limit the time step, which may be \
+                  eighteen times as long.",
     in_scene: Some(InScene {
         read: |scene, _| {
             let integrators = scene.is_polyhedral().then_some(&INTEGRATORS)?;
@@ -118,7 +113,6 @@ pub static INTEGRATOR: ParameterRow = ParameterRow {
         write: |scene, _, value| {
             scene.integrator = match value {
                 Value::Choice(choice) if choice.key == "explicit" => Integrator::Explicit,
-                Value::Choice(choice) if choice.key == "imex" => Integrator::Imex,
                 Value::Choice(choice) if choice.key == "implicit" => Integrator::Implicit,
                 _ => return None,
             };

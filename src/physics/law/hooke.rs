@@ -63,20 +63,8 @@ impl LawFacts for Hooke {
     fn step_limits(&self, grain: &SmallestGrain, at: &Circumstances) -> Vec<StepLimit> {
         let touching = at.are_polyhedra.then_some(self.features);
         let stiffness = self.normal_stiffness.max(self.tangential_stiffness);
-        match (touching, at.integrator) {
-            (Some(rule), Integrator::Imex) => {
-                return vec![
-                    self.stability_limit(grain, rule),
-                    impact_limit(grain, stiffness, STEPS_PER_IMPACT),
-                ];
-            }
-            (Some(_), Integrator::Implicit) => {
-                return vec![
-                    impact_limit(grain, stiffness, IMPLICIT_STEPS_PER_IMPACT),
-                    way_limit(at),
-                ];
-            }
-            _ => {}
+        if touching.is_some() && at.integrator == Integrator::Implicit {
+            return vec![impact_limit(grain, stiffness), way_limit(at)];
         }
         let dashpots = touching.map(|rule| dashpot_limit(grain, self.normal_stiffness, rule));
         std::iter::once(spring_limit(grain, stiffness, touching))
@@ -108,35 +96,10 @@ impl LawFacts for Hooke {
     }
 }
 
-impl Hooke {
-    /// Up to which step velocity Verlet is stable on the springs of the smallest grain, `2/Ω`: `M`
-    /// contacts in all directions pull it back with `M (K_n + 2 K_t)/3` along any of them, and
-    /// twice as hard where its neighbours give way.
-    fn stability_limit(&self, grain: &SmallestGrain, rule: FeatureRule) -> StepLimit {
-        let contacts = contacts_of_grain(rule);
-        let along = (self.normal_stiffness + 2.0 * self.tangential_stiffness) / 3.0;
-        let square = 2.0 * contacts * along / grain.mass();
-        StepLimit {
-            name: "springs of a polyhedron",
-            time_step: 2.0 / square.sqrt(),
-            reason: format!(
-                "2/Ω = 2/√(2 · {contacts} · {along:.3e} N/m / {:.3e} kg), the smallest grain of {} on the springs of \
-                 {contacts} contacts with neighbours that give way",
-                grain.mass(),
-                grain.material.name
-            ),
-        }
-    }
-}
-
-/// What an impact on one spring must last at least, in steps: half a period of two equal grains.
-/// With so many, restitution is right to three per cent, and nothing gets so deep that it comes
-/// through.
-const STEPS_PER_IMPACT: f64 = 9.0;
-
-/// The same where springs are taken implicitly too: in columns of the paper energy and front are
-/// then within one per cent of those of short steps, or two.
-const IMPLICIT_STEPS_PER_IMPACT: f64 = 3.6;
+/// What an impact on one spring must last at least where springs are taken implicitly, in steps: half
+/// a period of two equal grains. In columns of the paper energy and front are then within one per
+/// cent of those of short steps, or two.
+const STEPS_PER_IMPACT: f64 = 3.6;
 
 /// Share of the sphero-radius that the fastest grain may move in a step where nothing else limits
 /// it: light grains that turn came to twice its speed, and at half of it the solver stops.
@@ -153,13 +116,13 @@ fn way_limit(at: &Circumstances) -> StepLimit {
     }
 }
 
-fn impact_limit(grain: &SmallestGrain, stiffness: f64, steps: f64) -> StepLimit {
+fn impact_limit(grain: &SmallestGrain, stiffness: f64) -> StepLimit {
     let time = PI * (0.5 * grain.mass() / stiffness).sqrt();
     StepLimit {
         name: "linear contact",
-        time_step: time / steps,
+        time_step: time / STEPS_PER_IMPACT,
         reason: format!(
-            "1/{steps} of the {time:.3e} s that two grains of {} touch on one spring of {stiffness:.3e} N/m",
+            "1/{STEPS_PER_IMPACT} of the {time:.3e} s that two grains of {} touch on one spring of {stiffness:.3e} N/m",
             grain.material.name
         ),
     }

@@ -238,7 +238,7 @@ fn meaning(key: &str) -> &'static str {
         "between" => "two materials, `(\"glass\", \"drum\")`",
         "normal_stiffness" | "tangential_stiffness" => "a spring's stiffness in N/m",
         "law" => ContactLaw::FORMS,
-        "integrator" => "`Explicit`, `Imex` or `Implicit`",
+        "integrator" => "`Explicit` or `Implicit`",
         "time_step" => {
             "`Automatic`, `Following`, `Reference`, `Fast` or `Given(…)` with a time in s"
         }

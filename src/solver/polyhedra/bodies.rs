@@ -8,8 +8,8 @@
 //! tables (in jobs). Angular momentum is what is integrated, as torque changes it alone; the spin
 //! follows from it and the orientation.
 //!
-//! Not here: what forces there are ([`super::forces`]), how dashpots that are taken implicitly
-//! change velocities ([`super::dashpots`]).
+//! Not here: what forces there are ([`super::forces`]), how springs and dashpots that are taken
+//! implicitly change velocities ([`super::joint`]).
 
 use super::super::row::{Row, length_squared, row, vector};
 use super::nearest::Places;
@@ -78,7 +78,7 @@ impl Load {
         self.force[3]
     }
 
-    /// It and what dashpots do.
+    /// It and what springs and dashpots do that are taken implicitly.
     #[inline(always)]
     #[must_use]
     pub fn with(&self, resistance: &Self) -> Self {
@@ -344,6 +344,25 @@ impl Body {
         }
     }
 
+    /// Velocity and spin half a step ahead under `load`, at the present orientation.
+    #[inline(always)]
+    pub fn half_a_step_ahead(&self, load: &Load, dt: f64, gravity: Row) -> [Row; 2] {
+        let [xx, xy, xz, yy, yz, zz] = self.inverse_inertia();
+        let (inverse_mass, turn) = (
+            self.inverse_mass(),
+            [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
+        );
+        let (mut velocity, mut spin) = ([0.0; 4], [0.0; 4]);
+        let [tx, ty, tz, _] = load.torque;
+        for axis in 0..3 {
+            let [x, y, z] = turn[axis];
+            let acceleration = load.force[axis] * inverse_mass + gravity[axis];
+            velocity[axis] = self.velocity[axis] + dt * acceleration;
+            spin[axis] = self.spin[axis] + dt * (x * tx + y * ty + z * tz);
+        }
+        [velocity, spin]
+    }
+
     /// A full step of position and orientation; the spin follows.
     #[inline(always)]
     pub fn drift(&mut self, dt: f64) {
@@ -481,7 +500,7 @@ impl Body {
 /// bodies may come in one step half of the way at which they touch.
 pub fn largest_move(integrator: Integrator) -> f64 {
     match integrator {
-        Integrator::Explicit | Integrator::Imex => 0.25,
+        Integrator::Explicit => 0.25,
         Integrator::Implicit => 0.5,
     }
 }

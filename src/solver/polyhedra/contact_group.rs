@@ -10,7 +10,7 @@
 //! force on the first side is `−p K_t ξ − R n`, its torque that about the centroid.
 //!
 //! Not here: which features are measured ([`super::workspace`]), sums over a pair's contacts
-//! ([`super::forces`]), dashpots that are taken implicitly ([`super::dashpots`]).
+//! ([`super::forces`]), what of it is taken implicitly ([`super::joint`]).
 
 use super::super::tangential::{Slip, update};
 use super::nearest::Nearest;
@@ -53,7 +53,7 @@ pub struct NormalForces<N: Lanes> {
     pub slip: [N; 3],
     /// What the law makes of them.
     pub along: NormalContact<N>,
-    /// Repulsion, but for dashpots that are taken implicitly [N].
+    /// Repulsion, of the spring alone where dashpots are taken implicitly [N].
     pub repulsion: N,
     /// Those dashpots, none where the contact has let go [N s/m].
     pub dashpot: N,
@@ -71,10 +71,10 @@ pub struct ContactForces<N: Lanes> {
     pub energies: [N::Quad; WIDEST],
     /// Tangential springs [m] and their stiffness [N/m].
     pub springs: [N::Quad; WIDEST],
-    /// Where dashpots are taken implicitly: normals and dashpots [N s/m], arms across the normals
-    /// [m] and springs, arms [m] and tangential springs; springs of contacts that have let go or
-    /// slide are none [N/m].
-    pub dashpots: [[N::Quad; WIDEST]; 3],
+    /// Where springs and dashpots are taken implicitly: normals and dashpots [N s/m], arms across the
+    /// normals [m] and springs, arms [m] and tangential springs; springs of contacts that have let go
+    /// or slide are none [N/m].
+    pub implicit: [[N::Quad; WIDEST]; 3],
     /// Of gaps that close within the step: springs [N/m] and overlaps, which are negative [m].
     pub closing: [N::Quad; WIDEST],
 }
@@ -196,7 +196,7 @@ impl<N: Lanes> ContactGroup<N> {
             moments: N::rows([moment[0], moment[1], moment[2], dashpot]),
             energies: N::rows([in_dashpot, updated.lost, stored, zero]),
             springs: updated.rows,
-            dashpots: if IMPLICIT {
+            implicit: if IMPLICIT {
                 let [tx, ty, tz] = cross(arm, normal);
                 let sticking =
                     self.stiffness_across(processor, stiffness, updated.slides, (&pressed, step));

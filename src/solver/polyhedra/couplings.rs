@@ -21,9 +21,9 @@
 
 use super::super::row::sub;
 use super::bodies::Body;
-use super::damping::{Matrix, Packed, ROWS, SUM, entry};
-use super::dashpots::{Dashpot, Response, relative};
 use super::gaps::{ClosingGaps, Gap};
+use super::implicit_contact::ImplicitContact;
+use super::matrix::{ENTRIES, Matrix, Packed, ROWS, entry};
 use super::motion::crossed;
 use super::nearest::group;
 use super::pairs::{PackedPartner, Pair, PairForce};
@@ -31,7 +31,10 @@ use crate::lanes::{Lanes, Quad, Row, WIDEST, Work, cross, minus, plus, side_by_s
 use crate::world::{Grains, Partner};
 use std::ops::Range;
 
-/// Where the ratio of dashpot to spring stands behind the entries of a matrix.
+/// Where the sum of the springs stands behind the entries of a matrix.
+const SUM: usize = ENTRIES;
+
+/// Where the ratio of dashpot to spring stands behind it.
 const RATIO: usize = SUM + 1;
 
 /// Springs and dashpots of a pair together.
@@ -112,13 +115,13 @@ impl Coupling {
         processor: Q::Processor,
         (number, pair): (u32, &Pair),
         ratio: f64,
-        contacts: &[Dashpot],
+        contacts: &[ImplicitContact],
     ) -> Option<Self> {
         let mut sums = Sums::<Q>::none(processor);
         for contact in contacts {
             sums.add(processor, contact);
         }
-        let closing: f64 = contacts.iter().map(Dashpot::closing_spring).sum();
+        let closing: f64 = contacts.iter().map(ImplicitContact::closing_spring).sum();
         if sums.springs + sums.arms[3] + closing == 0.0 {
             return None;
         }
@@ -188,7 +191,7 @@ impl<Q: Quad> Sums<Q> {
     }
 
     #[inline(always)]
-    fn add(&mut self, processor: Q::Processor, contact: &Dashpot) {
+    fn add(&mut self, processor: Q::Processor, contact: &ImplicitContact) {
         let [nx, ny, nz, _] = contact.normal;
         let [tx, ty, tz, spring] = contact.moment;
         let [x, y, z, stick] = contact.arm;
@@ -264,10 +267,7 @@ fn rows_of(matrix: &Packed) -> [Row; ROWS] {
 
 /// Columns that a group of pairs keeps from the assembly on: the entries of `H`, from the second
 /// centroid to the first, the wrench at the velocities of half a step ago.
-const COLUMNS: usize = SUM + 3 + 6;
-
-/// How walls move before a step and change in it.
-pub type WallMotions<'a> = &'a [([Row; 3], Response)];
+const COLUMNS: usize = ENTRIES + 3 + 6;
 
 /// The matrices of a worker's pairs.
 pub struct Assembly<'a> {
@@ -282,10 +282,10 @@ pub struct Assembly<'a> {
     pub changes: Option<&'a [Motion]>,
     /// Every body as it was half a step ago.
     pub bodies: &'a [Body],
-    /// How each responds, and the sum of all its normal springs.
-    pub responses: &'a [Response],
-    /// How walls move.
-    pub walls: WallMotions<'a>,
+    /// The sum of the normal springs on each over its mass [1/s²].
+    pub stiffnesses: &'a [f64],
+    /// Position, velocity and spin of every wall.
+    pub walls: &'a [[Row; 3]],
     /// Groups of pairs, [`COLUMNS`] after each other.
     pub columns: &'a mut Vec<f64>,
     /// Wrenches at the velocities of half a step ago.
@@ -315,33 +315,25 @@ struct Placed<N> {
 }
 
 impl Assembly<'_> {
-    /// These sides; what of a wall it takes: it has no inverse mass.
+    /// These sides; of a wall no mass counts its springs.
     #[inline(always)]
     fn side<N: Lanes>(&self, processor: N::Processor, sides: [PackedPartner; WIDEST]) -> Side<N> {
         let of = |side: PackedPartner| match side.unpack() {
             Partner::Grain(i) => {
-                let (body, response) = (&self.bodies[i as usize], &self.responses[i as usize]);
-                ([&body.position, &body.velocity, &body.spin], response)
+                let (body, stiffness) = (&self.bodies[i as usize], self.stiffnesses[i as usize]);
+                ([&body.position, &body.velocity, &body.spin], stiffness)
             }
-            Partner::Wall(w) => {
-                let (motion, response) = &self.walls[w as usize];
-                (motion.each_ref(), response)
-            }
+            Partner::Wall(w) => (self.walls[w as usize].each_ref(), 0.0),
         };
         let all = side_by_side::<N, _>(|k| of(sides[k]));
         let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| all[k].0[0]));
         let [vx, vy, vz, _] = N::gather(processor, side_by_side::<N, _>(|k| all[k].0[1]));
         let [wx, wy, wz, _] = N::gather(processor, side_by_side::<N, _>(|k| all[k].0[2]));
-        let velocities = side_by_side::<N, _>(|k| &all[k].1.velocity);
-        let spins = side_by_side::<N, _>(|k| &all[k].1.spin);
-        let ([.., inverse_mass], [.., springs]) = (
-            N::gather(processor, velocities),
-            N::gather(processor, spins),
-        );
+        let stiffnesses = side_by_side::<N, _>(|k| all[k].1);
         Side {
             position: [x, y, z],
             motion: [[vx, vy, vz], [wx, wy, wz]],
-            stiffness: springs * inverse_mass,
+            stiffness: N::load(processor, &stiffnesses[..N::COUNT]),
         }
     }
 
@@ -379,7 +371,7 @@ impl Assembly<'_> {
         let sigma = soft / (one + soft);
         let beta = quarter * (one + sigma) * (one + sigma);
         let weight = theta * dt * ratio + beta;
-        for k in 0..SUM {
+        for k in 0..ENTRIES {
             matrix.0[k] = weight * normal.0[k] + quarter * matrix.0[k];
         }
         let mut wrench = normal.times(placed.before);
@@ -423,7 +415,7 @@ impl Assembly<'_> {
                 let velocity = add(body.velocity, change.velocity);
                 [body.position, velocity, add(body.spin, change.spin)]
             }
-            Partner::Wall(w) => self.walls[w as usize].0,
+            Partner::Wall(w) => self.walls[w as usize],
         }
     }
 
@@ -446,7 +438,7 @@ impl Assembly<'_> {
         for part in 0..6 {
             wrench[part] = wrench[part] - share * (push[part] / dt + closed[part]);
         }
-        for k in 0..SUM {
+        for k in 0..ENTRIES {
             matrix.0[k] = matrix.0[k] + share * dt * springs.0[k];
         }
     }
@@ -485,7 +477,10 @@ impl Work for Assembly<'_> {
             let placed = self.place::<N>(processor, own);
             let (matrix, wrench) = self.matrix(processor, own, &placed);
             let columns = self.columns[start * COLUMNS..].chunks_exact_mut(N::COUNT);
-            let kept = matrix.0[..SUM].iter().chain(&placed.between).chain(&wrench);
+            let kept = matrix.0[..ENTRIES]
+                .iter()
+                .chain(&placed.between)
+                .chain(&wrench);
             for (column, value) in columns.zip(kept) {
                 value.store(column);
             }
@@ -610,10 +605,10 @@ impl Product<'_> {
         let zero = N::splat(processor, 0.0);
         let mut between = [zero; 3];
         for k in 0..3 {
-            between[k] = N::load(processor, &columns[(SUM + k) * N::COUNT..][..N::COUNT]);
+            between[k] = N::load(processor, &columns[(ENTRIES + k) * N::COUNT..][..N::COUNT]);
         }
         let mut matrix = Matrix([zero; 4 * ROWS]);
-        for k in 0..SUM {
+        for k in 0..ENTRIES {
             matrix.0[k] = N::load(processor, &columns[k * N::COUNT..][..N::COUNT]);
         }
         let u = relative(between, [first, second]);
@@ -621,7 +616,7 @@ impl Product<'_> {
         if let Some(factor) = factor {
             let factor = N::splat(processor, factor);
             for k in 0..6 {
-                let column = &columns[(SUM + 3 + k) * N::COUNT..][..N::COUNT];
+                let column = &columns[(ENTRIES + 3 + k) * N::COUNT..][..N::COUNT];
                 wrench[k] = wrench[k] * factor + N::load(processor, column);
             }
         }
@@ -670,8 +665,8 @@ pub struct Final<'a> {
     pub dt: f64,
     /// The pairs and the changes `Δu`.
     pub product: Product<'a>,
-    /// How walls move.
-    pub walls: WallMotions<'a>,
+    /// Position, velocity and spin of every wall.
+    pub walls: &'a [[Row; 3]],
     /// What each pair of the worker does.
     pub forces: &'a mut [PairForce],
 }
@@ -691,13 +686,22 @@ impl Work for Final<'_> {
                 effect.first = wrench.first;
                 effect.second = wrench.second;
                 if let Partner::Wall(w) = coupling.second.unpack() {
-                    let ([_, velocity, spin], _) = &self.walls[w as usize];
+                    let [_, velocity, spin] = &self.walls[w as usize];
                     effect.exchanged[Grains::BY_WALLS] =
                         self.dt * (work(&wrench.force, velocity) - work(&wrench.second, spin));
                 }
             }
         }
     }
+}
+
+/// Velocity and spin of the first side relative to the second at the first's centroid.
+#[inline(always)]
+fn relative<N: Lanes>(between: [N; 3], [first, second]: [[[N; 3]; 2]; 2]) -> [N; 6] {
+    let turning = cross(second[1], between);
+    let [vx, vy, vz] = minus(minus(first[0], second[0]), turning);
+    let [wx, wy, wz] = minus(first[1], second[1]);
+    [vx, vy, vz, wx, wy, wz]
 }
 
 /// `a + b` of the vector parts.

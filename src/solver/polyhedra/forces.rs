@@ -14,8 +14,8 @@ use super::super::step::Tally;
 use super::super::tangential::UNLOADED;
 use super::contact_group::ContactGroup;
 use super::couplings::Coupling;
-use super::dashpots::{Damper, Dashpot};
 use super::gaps::Gap;
+use super::implicit_contact::ImplicitContact;
 use super::motion::{Surroundings, crossed};
 use super::nearest::{Nearest, group};
 use super::pairs::{BLOCK, Block, ContactPoint, Pair, PairForce, Terms};
@@ -43,13 +43,20 @@ pub struct Forces<'a> {
     pub effects: &'a mut [PairForce],
     /// Whether they do anything.
     pub acting: &'a mut [bool],
-    /// Whether their dashpots are left for [`super::dashpots`], or springs and dashpots for
-    /// [`super::joint`]; none where they act here.
-    pub resisting: Option<&'a mut [bool]>,
-    /// Which numbers those that are solved jointly have, and the first of them; none where none is.
-    pub slots: Option<(&'a mut [u32], u32)>,
+    /// Where to write what is left for [`super::joint`]; none where springs and dashpots act here.
+    pub implicit: Option<ImplicitPairs<'a>>,
     /// Room to work in.
     pub workspace: &'a mut Workspace,
+}
+
+/// Of which pairs springs and dashpots are left for [`super::joint`].
+pub struct ImplicitPairs<'a> {
+    /// Whether they are.
+    pub resisting: &'a mut [bool],
+    /// Which numbers those have.
+    pub slots: &'a mut [u32],
+    /// The first of these numbers.
+    pub base: u32,
 }
 
 impl Work for Forces<'_> {
@@ -64,16 +71,14 @@ impl Work for Forces<'_> {
             points,
             effects,
             acting,
-            mut resisting,
-            mut slots,
+            mut implicit,
             workspace,
         } = self;
         let mut tally = Tally::default();
         acting.fill(false);
-        workspace.dampers.clear();
         workspace.joint.clear();
-        if let Some(resisting) = &mut resisting {
-            resisting.fill(false);
+        if let Some(implicit) = &mut implicit {
+            implicit.resisting.fill(false);
         }
         let blocks = pairs.chunks_mut(BLOCK).zip(terms.chunks_mut(BLOCK));
         let effects = effects.chunks_mut(BLOCK).zip(acting.chunks_mut(BLOCK));
@@ -89,25 +94,18 @@ impl Work for Forces<'_> {
             workspace.choose::<N>(processor, &all, &mut block);
             workspace.measure::<N>(processor, &all, &block);
             tally.fault |= workspace.evaluate_overlaps(&all, &mut block);
-            if let Some(resisting) = &mut resisting {
+            if let Some(implicit) = &mut implicit {
                 let ahead = if all.look_ahead > 0.0 { all.dt } else { 0.0 };
                 workspace.compute_forces::<N, true>(processor, [all.dt, ahead], &mut block);
                 workspace.sum(&all, &block, forces, acting);
                 let first = number * BLOCK;
-                let resisting = &mut resisting[first..];
-                if let Some((slots, base)) = &mut slots {
-                    let slots = (&mut slots[first..], *base);
-                    workspace.collect_couplings::<N::Quad>(
-                        processor,
-                        &block,
-                        first,
-                        (forces, acting),
-                        resisting,
-                        slots,
-                    );
-                } else {
-                    workspace.collect_dashpots(&block, first, forces, resisting);
-                }
+                workspace.collect_couplings::<N::Quad>(
+                    processor,
+                    &block,
+                    first,
+                    (forces, acting),
+                    implicit,
+                );
             } else {
                 workspace.compute_forces::<N, false>(processor, [all.dt, 0.0], &mut block);
                 workspace.sum(&all, &block, forces, acting);
@@ -172,7 +170,8 @@ impl Workspace {
         let (terms, points) = (&*block.terms, &mut *block.points);
         self.effects.resize(self.results.len(), Effect::default());
         if IMPLICIT {
-            self.dashpots.resize(self.results.len(), Dashpot::default());
+            let count = self.results.len();
+            self.implicit.resize(count, ImplicitContact::default());
         }
         let outputs = self.effects.chunks_mut(N::COUNT).enumerate();
         let results = self.results.chunks(N::COUNT);
@@ -188,12 +187,12 @@ impl Workspace {
             let found = contacts.forces::<IMPLICIT>(processor, dt, springs, ahead);
             if IMPLICIT {
                 let begin = group_number * N::COUNT;
-                let dashpots = &mut self.dashpots[begin..begin + effects.len()];
-                for (k, dashpot) in dashpots.iter_mut().enumerate() {
-                    dashpot.normal = found.dashpots[0][k].row();
-                    dashpot.moment = found.dashpots[1][k].row();
-                    dashpot.arm = found.dashpots[2][k].row();
-                    dashpot.closing = found.closing[k].row();
+                let implicit = &mut self.implicit[begin..begin + effects.len()];
+                for (k, contact) in implicit.iter_mut().enumerate() {
+                    contact.normal = found.implicit[0][k].row();
+                    contact.moment = found.implicit[1][k].row();
+                    contact.arm = found.implicit[2][k].row();
+                    contact.closing = found.closing[k].row();
                 }
             }
             for (k, (effect, number)) in effects.iter_mut().zip(numbers).enumerate() {
@@ -239,33 +238,6 @@ impl Workspace {
 }
 
 impl Workspace {
-    /// Collects the dashpots of each pair, `first` being the number of the block's first pair.
-    #[inline(always)]
-    fn collect_dashpots(
-        &mut self,
-        block: &Block<'_>,
-        first: usize,
-        forces: &mut [PairForce],
-        resisting: &mut [bool],
-    ) {
-        for (number, active) in self.active.iter().enumerate() {
-            if !active.touches {
-                continue;
-            }
-            let dashpots = &self.dashpots[self.results_of(number)];
-            let own = active.pair as usize;
-            let pair = &block.pairs[own];
-            let number = (first + own) as u32;
-            if let Some(damper) = Damper::of(number, pair, dashpots) {
-                forces[own].set_dashpots(damper.strength());
-                resisting[own] = true;
-                self.dampers.push(damper);
-            }
-        }
-    }
-}
-
-impl Workspace {
     /// Collects springs and dashpots of each pair, `first` being the number of the block's first
     /// pair; the worker's first of them has the number `base`.
     #[inline(always)]
@@ -275,11 +247,10 @@ impl Workspace {
         block: &Block<'_>,
         first: usize,
         (forces, acting): (&mut [PairForce], &mut [bool]),
-        resisting: &mut [bool],
-        (slots, base): (&mut [u32], u32),
+        implicit: &mut ImplicitPairs<'_>,
     ) {
         for (number, active) in self.active.iter().enumerate() {
-            let contacts = &self.dashpots[self.results_of(number)];
+            let contacts = &self.implicit[self.results_of(number)];
             let first_gap = self.joint.gaps.len();
             self.joint.gaps.extend(contacts.iter().filter_map(Gap::of));
             let gaps = first_gap..self.joint.gaps.len();
@@ -298,9 +269,9 @@ impl Workspace {
                     forces[own] = PairForce::default();
                     acting[own] = true;
                 }
-                forces[own].set_dashpots(coupling.stiffness());
-                resisting[own] = true;
-                slots[own] = base + self.joint.couplings.len() as u32;
+                forces[own].set_stiffness(coupling.stiffness());
+                implicit.resisting[first + own] = true;
+                implicit.slots[first + own] = implicit.base + self.joint.couplings.len() as u32;
                 self.joint.couplings.push(coupling);
             }
         }

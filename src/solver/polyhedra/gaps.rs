@@ -22,8 +22,8 @@
 //!
 //! Not here: which features are measured ([`super::workspace`]), the solution ([`super::joint`]).
 
-use super::damping::{Packed, ROWS, entry};
-use super::dashpots::Dashpot;
+use super::implicit_contact::ImplicitContact;
+use super::matrix::{Packed, ROWS, entry};
 use crate::lanes::Row;
 
 /// A gap that closes within a step at the pace of half a step ago.
@@ -38,7 +38,7 @@ pub struct Gap {
 impl Gap {
     /// That of a `contact`, if it is one.
     #[inline(always)]
-    pub fn of(contact: &Dashpot) -> Option<Self> {
+    pub fn of(contact: &ImplicitContact) -> Option<Self> {
         let ([nx, ny, nz, _], [tx, ty, tz, _]) = (contact.normal, contact.moment);
         let [spring, overlap, ..] = contact.closing;
         (spring > 0.0).then_some(Self {

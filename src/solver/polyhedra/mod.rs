@@ -22,10 +22,10 @@
 //! | `workspace` | which features are measured in a step, and their measurement |
 //! | `contact_group` | the contact law between features, lane by lane |
 //! | `forces` | contact forces of blocks of pairs |
-//! | `damping` | matrices of the dashpots of pairs |
-//! | `dashpots` | the dashpots of all pairs, taken implicitly pair by pair |
+//! | `matrix` | symmetric matrices of six rows |
+//! | `implicit_contact` | a contact whose springs and dashpot are taken implicitly |
 //! | `couplings` | springs and dashpots of pairs as what couples their bodies within a step |
-//! | `gaps` | gaps of pairs that close within a step, as part of that
+//! | `gaps` | gaps of pairs that close within a step, as part of that |
 //! | `joint` | springs and dashpots of all pairs, taken implicitly for all bodies together |
 //! | `working_copy` | what is kept between loading a world and storing it |
 //! | `share` | what one worker works on in the two phases of a step |
@@ -37,14 +37,14 @@
 mod bodies;
 mod contact_group;
 mod couplings;
-mod damping;
-mod dashpots;
 mod extents;
 mod forces;
 mod gaps;
+mod implicit_contact;
 mod joint;
 mod listed;
 mod listing;
+mod matrix;
 mod motion;
 mod nearest;
 mod neighbours;

@@ -234,8 +234,8 @@ impl ContactPoint {
 pub struct PairForce {
     /// Force on the first [N]; 1 while the two touch, else 0.
     pub force: Row,
-    /// Torque on the first [N m]; the sum of the dashpots that are taken implicitly [N s/m], or of
-    /// the normal springs where those are too [N/m].
+    /// Torque on the first [N m]; the sum of the normal springs, where they are taken implicitly
+    /// [N/m].
     pub first: Row,
     /// Torque on the second [N m].
     pub second: Row,
@@ -263,17 +263,16 @@ impl PairForce {
         self.force[3]
     }
 
-    /// The sum of its dashpots that are left to be taken implicitly [N s/m], or of its normal springs
-    /// where those are too [N/m].
+    /// The sum of its normal springs, where they are taken implicitly [N/m].
     #[inline(always)]
-    pub fn dashpots(&self) -> f64 {
+    pub fn stiffness(&self) -> f64 {
         self.first[3]
     }
 
     /// Takes note of it.
     #[inline(always)]
-    pub fn set_dashpots(&mut self, strength: f64) {
-        self.first[3] = strength;
+    pub fn set_stiffness(&mut self, stiffness: f64) {
+        self.first[3] = stiffness;
     }
 }
 

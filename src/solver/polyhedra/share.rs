@@ -5,7 +5,7 @@
 //!
 //! | column | length | written by | read by all in |
 //! |---|---|---|---|
-//! | bodies, vertices, planes, responses | bodies, features | the body's worker, motion phase | force phase |
+//! | bodies, vertices, planes, stiffnesses | bodies, features | the body's worker, motion phase | force phase |
 //! | changes, motions, products | bodies, bundles | the body's worker, motion phase | force phase |
 //! | forces, acting, resistances, resisting | pairs | the pair's worker, force phase | motion phase |
 //! | slots, wrenches, blocks | pairs | the pair's worker, force phase | motion phase |
@@ -27,9 +27,8 @@ use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
 use super::PolyhedronKernel;
 use super::bodies::{Body, Geometry, Load, Place, Shapes};
 use super::couplings::{Assembly, Blocks, Final, Image, Motion, Product, Wrench};
-use super::dashpots::{DampingSweep, Response, SWEEPS, responses_of_walls};
 use super::extents::Extents;
-use super::forces::Forces;
+use super::forces::{Forces, ImplicitPairs};
 use super::joint::{BUNDLE, Beginning, Bodies, Next, SharedColumns, Stage};
 use super::motion::{Surroundings, motions_of};
 use super::nearest::Places;
@@ -53,11 +52,13 @@ pub struct PolyhedraShare<'a> {
     /// Read by all in the motion phase, as is which of them act.
     forces: Column<'a, PairForce, ForcePhase>,
     acting: Column<'a, bool, ForcePhase>,
-    /// What dashpots that are taken implicitly do, and which: read by all in the motion phase.
+    /// What springs and dashpots that are taken implicitly do, and which: read by all in the motion
+    /// phase.
     resistances: Column<'a, PairForce, ForcePhase>,
     resisting: Column<'a, bool, ForcePhase>,
-    /// How the bodies respond to them: read by all in the force phase.
-    responses: Column<'a, Response, MotionPhase>,
+    /// The sum of the normal springs on each body over its mass, where they are implicit [1/s²]:
+    /// read by all in the force phase.
+    stiffnesses: Column<'a, f64, MotionPhase>,
     /// What the joint solution of springs and dashpots shares.
     joint: JointColumns<'a>,
     /// What only this worker touches: loads of its bodies, all that is kept of its pairs.
@@ -68,8 +69,6 @@ pub struct PolyhedraShare<'a> {
     workspace: &'a mut Workspace,
     /// The origin, and the velocity and the spin of every wall.
     wall_motions: Vec<[Row; 3]>,
-    /// The same, and how it responds to dashpots: not at all.
-    wall_responses: Vec<([Row; 3], Response)>,
 }
 
 /// The columns of the joint solution: see [`SharedColumns`].
@@ -203,7 +202,7 @@ impl<'a> PolyhedraShare<'a> {
         let needed = batch.size().max(world.workspaces.len());
         world.workspaces.resize_with(needed, Workspace::default);
         let count = world.bodies.len();
-        world.responses.resize(count, Response::default());
+        world.stiffnesses.resize(count, 0.0);
         if world.integrator == Integrator::Implicit {
             world.implicit.resize(world.pairs.list.len(), count);
         } else {
@@ -215,7 +214,6 @@ impl<'a> PolyhedraShare<'a> {
         let vertices = division.vertices.iter().cloned();
         let planes = division.planes.iter().cloned();
         let wall_motions = motions_of(&world.walls);
-        let wall_responses = responses_of_walls(&wall_motions);
         let common = Common {
             shapes: &world.shapes,
             pairs_of: &world.pairs_of,
@@ -235,7 +233,7 @@ impl<'a> PolyhedraShare<'a> {
         let mut acting = batch.lend_ranges(&mut world.acting, by_pair());
         let mut resistances = batch.lend_ranges(&mut world.resistances, by_pair());
         let mut resisting = batch.lend_ranges(&mut world.resisting, by_pair());
-        let mut responses = batch.lend_ranges(&mut world.responses, by_body());
+        let mut stiffnesses = batch.lend_ranges(&mut world.stiffnesses, by_body());
         let mut joint = JointColumns::all(&mut world.implicit, batch, &division);
         let mut loads = split_once(&mut world.loads, by_body());
         let mut pairs = split_once(&mut world.pairs.list, by_pair());
@@ -253,7 +251,7 @@ impl<'a> PolyhedraShare<'a> {
                 acting: acting.next()?,
                 resistances: resistances.next()?,
                 resisting: resisting.next()?,
-                responses: responses.next()?,
+                stiffnesses: stiffnesses.next()?,
                 joint: joint.next()?,
                 loads: loads.next()?,
                 pairs: pairs.next()?,
@@ -261,7 +259,6 @@ impl<'a> PolyhedraShare<'a> {
                 points: points.next()?,
                 workspace: workspaces.next()?,
                 wall_motions: wall_motions.clone(),
-                wall_responses: wall_responses.clone(),
             })
         };
         by_body().filter_map(share).collect()
@@ -299,24 +296,24 @@ impl Share for PolyhedraShare<'_> {
             points: &mut *self.points,
             effects: self.forces.write_first(phase),
             acting: self.acting.write_first(phase),
-            resisting: (common.integrator != Integrator::Explicit)
-                .then(|| self.resisting.write_first(phase)),
-            slots: (common.integrator == Integrator::Implicit)
-                .then(|| (self.joint.slots.write_first(phase), self.joint.base)),
+            implicit: (common.integrator == Integrator::Implicit).then(|| ImplicitPairs {
+                resisting: self.resisting.write_first(phase),
+                slots: self.joint.slots.write_first(phase),
+                base: self.joint.base,
+            }),
             workspace: &mut *self.workspace,
         })
     }
 
-    fn has_sweep(&self, sweep: usize) -> bool {
+    fn has_sweep(&self) -> bool {
         match self.common.integrator {
             Integrator::Explicit => false,
-            Integrator::Imex => sweep < SWEEPS,
             Integrator::Implicit => !self.workspace.joint.progress.is_done,
         }
     }
 
     fn respond(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, MotionPhase>) {
-        if self.common.integrator == Integrator::Implicit && sweep > 0 {
+        if sweep > 0 {
             return self.move_jointly(processor, phase);
         }
         let incidence = Incidence {
@@ -327,33 +324,15 @@ impl Share for PolyhedraShare<'_> {
             pairs_of: self.common.pairs_of,
         };
         let bodies = self.bodies.write_first(phase);
-        let responses = self.responses.write_first(phase);
-        let all = bodies.iter().zip(&mut *self.loads).zip(responses);
-        for (i, ((body, load), response)) in self.own.clone().zip(all) {
-            if sweep == 0 {
-                let strength = incidence.sum(i, load);
-                *response = body.response(load, self.common.dt, self.common.gravity, strength);
-            } else {
-                let resistance = incidence.resistance(i);
-                let load = load.with(&resistance);
-                *response = response.under(body, &load, self.common.dt, self.common.gravity);
-            }
+        let stiffnesses = self.stiffnesses.write_first(phase);
+        let all = bodies.iter().zip(&mut *self.loads).zip(stiffnesses);
+        for (i, ((body, load), stiffness)) in self.own.clone().zip(all) {
+            *stiffness = incidence.sum(i, load) * body.inverse_mass();
         }
     }
 
     fn resist(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, ForcePhase>) {
-        if self.common.integrator == Integrator::Implicit {
-            return self.resist_jointly(processor, sweep, phase);
-        }
-        processor.run(DampingSweep {
-            first: sweep == 0,
-            dt: self.common.dt,
-            dampers: &mut self.workspace.dampers,
-            bodies: self.bodies.read(phase),
-            responses: self.responses.read(phase),
-            walls: &self.wall_responses,
-            forces: self.resistances.write_first(phase),
-        });
+        self.resist_jointly(processor, sweep == 0, phase);
     }
 
     fn move_grains(
@@ -368,7 +347,6 @@ impl Share for PolyhedraShare<'_> {
             loads: &mut *self.loads,
             vertices: self.vertices.write_first(phase),
             planes: self.planes.write_first(phase),
-            responses: self.responses.write_first(phase),
             incidence: Incidence {
                 forces: self.forces.read(phase),
                 acting: self.acting.read(phase),
@@ -424,15 +402,14 @@ impl PolyhedraShare<'_> {
         });
     }
 
-    /// What the worker's pairs do in a `sweep`.
+    /// What the worker's pairs do in a sweep; `begins` at the first of a step.
     fn resist_jointly(
         &mut self,
         processor: Processor,
-        sweep: usize,
+        begins: bool,
         phase: &InPhase<'_, ForcePhase>,
     ) {
         let (joint, own) = (&mut self.joint, &mut self.workspace.joint);
-        let begins = sweep == 0;
         if !begins {
             let products = joint.products.read(phase);
             if own.progress.next == Next::Sum {
@@ -449,8 +426,8 @@ impl PolyhedraShare<'_> {
                 gaps: &mut own.gaps,
                 changes: amends.then(|| joint.changes.read(phase)),
                 bodies: self.bodies.read(phase),
-                responses: self.responses.read(phase),
-                walls: &self.wall_responses,
+                stiffnesses: self.stiffnesses.read(phase),
+                walls: &self.wall_motions,
                 columns: &mut own.columns,
                 wrenches: joint.wrenches.write_first(phase),
                 blocks: joint.blocks.write_first(phase),
@@ -473,7 +450,7 @@ impl PolyhedraShare<'_> {
             processor.run(Final {
                 dt: self.common.dt,
                 product,
-                walls: &self.wall_responses,
+                walls: &self.wall_motions,
                 forces: self.resistances.write_first(phase),
             });
         } else {
@@ -493,7 +470,7 @@ struct Incidence<'a> {
     forces: &'a [PairForce],
     /// Which of them act.
     acting: &'a [bool],
-    /// What its dashpots do where they are taken implicitly, and which of them do.
+    /// What springs and dashpots do that are taken implicitly, and which pairs have such.
     resistances: &'a [PairForce],
     resisting: &'a [bool],
     /// Which pairs are whose.
@@ -509,8 +486,6 @@ struct Finish<'a> {
     loads: &'a mut [Load],
     vertices: &'a mut [Row],
     planes: &'a mut [Row],
-    /// How they respond to dashpots that are taken implicitly, where those are.
-    responses: &'a [Response],
     /// Where to find the forces.
     incidence: Incidence<'a>,
     common: Common<'a>,
@@ -527,13 +502,11 @@ impl Work for Finish<'_> {
         let half = 0.5 * common.dt;
         let mut outcome = Outcome::default();
         let from = shapes.places[self.own.start];
-        let start = self.own.start;
         for (i, (body, load)) in self.own.zip(self.bodies.iter_mut().zip(self.loads)) {
             if common.integrator == Integrator::Explicit {
                 self.incidence.sum(i, load);
             } else {
-                let response = &self.responses[i - start];
-                self.incidence.resist(i, body, load, response, common);
+                self.incidence.resist(i, body, load, common);
             }
             body.kick(load, half, common.gravity);
             if self.last {
@@ -573,7 +546,7 @@ impl Incidence<'_> {
         }
     }
 
-    /// Sums what the dashpots of its pairs do to body `i`, in the pairs' order.
+    /// Sums what springs and dashpots that are taken implicitly do to body `i`, in the pairs' order.
     #[inline(always)]
     fn resistance(&self, i: usize) -> Load {
         let (as_second, as_first) = self.pairs_of.of_body(i);
@@ -600,37 +573,30 @@ impl Incidence<'_> {
         load
     }
 
-    /// Adds what the dashpots do to body `i` to its load, and books what they lose: what walls do
+    /// Adds what they do to body `i` to its load, and books what they lose: what walls do
     /// against them, less what they do to the body by the mean of its velocities before and after,
     /// `½ Δt (F·(v⁻ + v⁺) + T·(ω⁻ + ω⁺))`: what they change of its kinetic energy from half step to
     /// half step, but for how its inertia turns meanwhile.
     #[inline(always)]
-    fn resist(
-        &self,
-        i: usize,
-        body: &Body,
-        load: &mut Load,
-        response: &Response,
-        common: &Common<'_>,
-    ) {
+    fn resist(&self, i: usize, body: &Body, load: &mut Load, common: &Common<'_>) {
         let resistance = self.resistance(i);
         *load = load.with(&resistance);
-        let after = response.under(body, load, common.dt, common.gravity);
+        let [velocity, spin] = body.half_a_step_ahead(load, common.dt, common.gravity);
         let mut work = 0.0;
         for axis in 0..3 {
-            work += resistance.force[axis] * (body.velocity[axis] + after.velocity[axis]);
-            work += resistance.torque[axis] * (body.spin[axis] + after.spin[axis]);
+            work += resistance.force[axis] * (body.velocity[axis] + velocity[axis]);
+            work += resistance.torque[axis] * (body.spin[axis] + spin[axis]);
         }
         let by_walls = resistance.exchanged[Grains::BY_WALLS];
         load.exchanged[Grains::IN_DASHPOTS] += by_walls - 0.5 * common.dt * work;
         load.exchanged[Grains::BY_WALLS] += by_walls;
     }
 
-    /// Sums what the pairs of body `i` do to it, in the pairs' order; returns the sum of its
-    /// dashpots that are left to be taken implicitly.
+    /// Sums what the pairs of body `i` do to it, in the pairs' order; returns the sum of its normal
+    /// springs, where they are taken implicitly [N/m].
     #[inline(always)]
     fn sum(&self, i: usize, load: &mut Load) -> f64 {
-        let mut strength = 0.0;
+        let mut stiffness = 0.0;
         let (as_second, as_first) = self.pairs_of.of_body(i);
         self.fetch(i + 2);
         load.force = [0.0; 4];
@@ -645,7 +611,7 @@ impl Incidence<'_> {
                 load.torque[axis] += force.second[axis];
             }
             load.force[3] += force.contact_count();
-            strength += force.dashpots();
+            stiffness += force.stiffness();
         }
         for pair in as_first {
             if !self.acting[pair] {
@@ -657,8 +623,8 @@ impl Incidence<'_> {
                 load.torque[axis] += force.first[axis];
                 load.exchanged[axis] += force.exchanged[axis];
             }
-            strength += force.dashpots();
+            stiffness += force.stiffness();
         }
-        strength
+        stiffness
     }
 }

@@ -5,10 +5,10 @@
 //! [`super::contact_group`]) as a block of its own, with the velocities of half a step ago: so
 //! nothing of a force is derived twice.
 //!
-//! Dashpots that are taken implicitly act for the pair as one ([`super::dashpots`]): of the force
-//! that was applied they are what all else leaves, and each feature is told its share, in
-//! proportion to its own dashpot. Where springs are implicit too ([`super::joint`]), what they yield
-//! within a step is told with the dashpots; of features that have all let go each is told as much.
+//! Springs and dashpots that are taken implicitly act for the pair as one ([`super::joint`]): the
+//! dashpots are what all else leaves of the force that was applied, with what springs yield within a
+//! step, and each feature is told its share, in proportion to its own dashpot; of features that have
+//! all let go each is told as much.
 
 use super::super::row::{row, vector};
 use super::super::terms::{AT_THE_BOUND, ForceTerms};
@@ -35,7 +35,7 @@ pub fn force_terms(world: &World, contact: &Contact) -> Vec<ForceTerms> {
     let alone = PairAlone::of(world, contact);
     match polyhedra.integrator {
         Integrator::Explicit => alone.terms::<false>(world, features),
-        Integrator::Imex | Integrator::Implicit => {
+        Integrator::Implicit => {
             let mut terms = alone.terms::<true>(world, features);
             share_dashpots(&mut terms, contact.force);
             terms

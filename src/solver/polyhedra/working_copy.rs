@@ -3,7 +3,6 @@
 use super::super::row::Row;
 use super::super::walls::Walls;
 use super::bodies::{Body, Load, Shapes};
-use super::dashpots::Response;
 use super::extents::Extents;
 use super::joint::SharedColumns;
 use super::neighbours::{PairList, PairsOfBodies};
@@ -34,13 +33,13 @@ pub struct PolyhedronKernel {
     pub(super) forces: Vec<PairForce>,
     /// Which pairs act.
     pub(super) acting: Vec<bool>,
-    /// What the dashpots of every pair do, where they are taken implicitly; of those that do not
-    /// resist, anything.
+    /// What springs and dashpots of every pair do that are taken implicitly, beyond its contact
+    /// force; of those that do not resist, anything.
     pub(super) resistances: Vec<PairForce>,
-    /// Which pairs' dashpots act implicitly.
+    /// Which pairs have such.
     pub(super) resisting: Vec<bool>,
-    /// How each body responds to them.
-    pub(super) responses: Vec<Response>,
+    /// The sum of the normal springs on each body over its mass, where they are [1/s²].
+    pub(super) stiffnesses: Vec<f64>,
     /// What all workers share of the joint solution of springs and dashpots.
     pub(super) implicit: SharedColumns,
     /// Which pairs are whose.

@@ -15,7 +15,7 @@
 //! Not here: forces ([`super::forces`]), how a list is made ([`super::listing`]).
 
 use super::super::row::{Row, vector};
-use super::dashpots::{Damper, Dashpot};
+use super::implicit_contact::ImplicitContact;
 use super::joint::Joint;
 use super::listed::Listed;
 use super::listing::{Search, Wanted, choose};
@@ -99,10 +99,8 @@ pub struct Workspace {
     pub result_of: Vec<ResultOf>,
     /// What each contact does.
     pub effects: Vec<Effect>,
-    /// Its dashpot, where that is taken implicitly.
-    pub dashpots: Vec<Dashpot>,
-    /// The dashpots of every pair of the worker that has some.
-    pub dampers: Vec<Damper>,
+    /// Its springs and its dashpot, where they are taken implicitly.
+    pub implicit: Vec<ImplicitContact>,
     /// The worker's part of the joint solution of springs and dashpots.
     pub joint: Joint,
 }

@@ -1,6 +1,5 @@
-//! A collapsing column of polyhedra: the same bits for any threads, lanes and slices, with dashpots
-//! that are forces like any other, with dashpots that are taken implicitly, and with springs that are
-//! too.
+//! A collapsing column of polyhedra: the same bits for any threads, lanes and slices, with springs and
+//! dashpots that are explicit, and that are implicit.
 
 use super::*;
 use grainfall::solver::Processor;
@@ -34,7 +33,7 @@ pub fn column(rule: &str, integrator: &str, dt: f64) -> World {
 }
 
 /// The step that each integrator is tried with [s].
-const STEPS: [(&str, f64); 3] = [("Explicit", 2e-6), ("Imex", 8e-6), ("Implicit", 2e-5)];
+const STEPS: [(&str, f64); 2] = [("Explicit", 2e-6), ("Implicit", 2e-5)];
 
 #[test]
 fn collapse_has_the_same_bits_for_any_threads_lanes_and_slices() {

@@ -112,18 +112,6 @@ fn polyhedra_whose_features_share_their_stiffness_have_the_bits_they_always_had(
 }
 
 #[test]
-fn polyhedra_whose_dashpots_are_implicit_have_the_bits_they_always_had() {
-    let mut scene = polyhedra("Full");
-    scene.set("integrator", "imex").unwrap();
-    assert_golden(
-        "polyhedra, implicit dashpots (IMEX)",
-        &scene,
-        1000,
-        "11eae710fe5a95d5cd84741910ed1f1b",
-    );
-}
-
-#[test]
 fn polyhedra_whose_springs_are_implicit_have_the_bits_they_always_had() {
     let mut scene = polyhedra("Full");
     scene.set("integrator", "implicit").unwrap();

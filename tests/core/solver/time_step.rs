@@ -250,7 +250,6 @@ fn impacts_give_back_what_they_do_in_closed_form_the_nearer_the_shorter_the_step
     for (name, integrator, exact, tolerance) in [
         ("dry-r3", None, 0.95, 3e-4),
         ("column", Some("explicit"), never_pulling, 3e-3),
-        ("column", Some("imex"), never_pulling, 3e-3),
         ("column", Some("implicit"), never_pulling, 3e-2),
     ] {
         let mut scene = Scene::open(name).unwrap();
