@@ -9,7 +9,7 @@ use crate::ui::{
     Dock, RescuePlugin, SessionLook, UiPlugin, UserMemory, first_speed, show_look, title_in_words,
 };
 use crate::view::{OrbitCamera, ViewPlugin, ViewSettings};
-use crate::window::canvas::{CanvasPlugin, offscreen_plugins};
+use crate::window::canvas::{CanvasPlugin, offscreen_plugins, renderer};
 use crate::window::environment::{Missing, adapters, display};
 use crate::window::memory_log::MemoryLogPlugin;
 use crate::window::one_by_one::OneByOnePlugin;
@@ -21,7 +21,6 @@ use bevy::app::{ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin};
 use bevy::log::{Level, LogPlugin};
 use bevy::math::UVec2;
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use grainfall::lab::Options;
@@ -165,11 +164,7 @@ fn window_plugins(title: String, picture: Option<&PictureJob>) -> impl PluginGro
             close_when_requested: false,
             ..default()
         })
-        .set(RenderPlugin {
-            // A picture must not be taken while a pipeline is still missing.
-            synchronous_pipeline_compilation: picture.is_some(),
-            ..default()
-        })
+        .set(renderer(picture.is_some()))
         .set(log())
         // Ours keeps what is in no file first.
         .disable::<TerminalCtrlCHandlerPlugin>()

@@ -14,6 +14,7 @@ use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::settings::{MemoryHints, WgpuSettings};
 use bevy::render::view::screenshot::Screenshot;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
@@ -33,10 +34,22 @@ pub fn offscreen_plugins() -> PluginGroupBuilder {
             exit_condition: ExitCondition::DontExit,
             ..default()
         })
-        .set(RenderPlugin {
-            synchronous_pipeline_compilation: true,
-            ..default()
-        })
+        .set(renderer(true))
+}
+
+/// The renderer, which takes memory of the graphics device in blocks of 8 to 64 MiB: by default it
+/// begins with 128, and keeps another as soon as a film or a large picture does not fit. `waits`
+/// where no pipeline may be missing in a picture.
+pub fn renderer(waits: bool) -> RenderPlugin {
+    let settings = WgpuSettings {
+        memory_hints: MemoryHints::MemoryUsage,
+        ..default()
+    };
+    RenderPlugin {
+        render_creation: settings.into(),
+        synchronous_pipeline_compilation: waits,
+        ..default()
+    }
 }
 
 /// Finishes the plugins of an app that is updated by hand: the graphics device takes a moment.
