@@ -37,12 +37,17 @@ pub fn offscreen_plugins() -> PluginGroupBuilder {
         .set(renderer(true))
 }
 
-/// The renderer, which takes memory of the graphics device in blocks of 8 to 64 MiB: by default it
-/// begins with 128, and keeps another as soon as a film or a large picture does not fit. `waits`
-/// where no pipeline may be missing in a picture.
+/// Blocks in which the renderer takes memory of the graphics device [bytes]. What does not fit has a
+/// block of its own, which goes when it goes; of 128 MiB, the default, a film of the window begins
+/// another that stays.
+const DEVICE_BLOCK: u64 = 8 << 20;
+
+/// The renderer. `waits` where no pipeline may be missing in a picture.
 pub fn renderer(waits: bool) -> RenderPlugin {
     let settings = WgpuSettings {
-        memory_hints: MemoryHints::MemoryUsage,
+        memory_hints: MemoryHints::Manual {
+            suballocated_device_memory_block_size: DEVICE_BLOCK..DEVICE_BLOCK,
+        },
         ..default()
     };
     RenderPlugin {
