@@ -97,8 +97,8 @@ impl LawFacts for Hooke {
 }
 
 /// What an impact on one spring must last at least where springs are taken implicitly, in steps: half
-/// a period of two equal grains. In columns of the paper energy and front are then within one per
-/// cent of those of short steps, or two.
+/// a period of two equal grains. In columns of 1 cm of the paper energy and front are then within one
+/// per cent of those of short steps, or two; the front of one of 5 cm falls 3 % short.
 const STEPS_PER_IMPACT: f64 = 3.6;
 
 /// Share of the sphero-radius that the fastest grain may move in a step where nothing else limits
