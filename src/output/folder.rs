@@ -252,12 +252,14 @@ fn digested(
     Ok(file.digest())
 }
 
-/// Whether the folder at `path` holds files and no summary of a run.
+/// Whether the folder at `path` holds files and no summary of a run. Another program may begin its
+/// run there meanwhile, with the summary before all else: so that is looked for last.
 fn is_foreign(path: &Path) -> io::Result<bool> {
-    let summary = path.join(SUMMARY);
-    if summary.is_file() && contains(&read_whole(&summary, LARGEST)?, MARK) {
-        return Ok(false);
-    }
+    Ok(holds_other_files(path)? && !holds_summary(path)?)
+}
+
+/// Whether anything is in the folder at `path` beside the lock and what a run keeps for itself.
+fn holds_other_files(path: &Path) -> io::Result<bool> {
     for entry in fs::read_dir(path)? {
         let name = entry?.file_name();
         let own = [CHECKPOINT, SAMPLES, PROFILES, FRAME_LOG, LOCK]
@@ -273,6 +275,12 @@ fn is_foreign(path: &Path) -> io::Result<bool> {
         }
     }
     Ok(false)
+}
+
+/// Whether the folder at `path` holds the summary of a run.
+fn holds_summary(path: &Path) -> io::Result<bool> {
+    let summary = path.join(SUMMARY);
+    Ok(summary.is_file() && contains(&read_whole(&summary, LARGEST)?, MARK))
 }
 
 /// Writes the file at `path` with what `fill` writes, whole or not at all.
@@ -312,4 +320,39 @@ fn is_frame(kind: &str, name: &str) -> bool {
 
 fn contains(bytes: &[u8], part: &[u8]) -> bool {
     bytes.windows(part.len()).any(|window| window == part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folder_in_which_a_run_begins_this_moment_is_never_foreign() {
+        let place = tempfile::tempdir().unwrap();
+        for number in 0..200 {
+            let folder = place.path().join(number.to_string());
+            let summary = folder.join(SUMMARY);
+            fs::create_dir(&folder).unwrap();
+            std::thread::scope(|scope| {
+                scope.spawn(|| write_whole_unsynced(&summary, |file| file.write_all(MARK)));
+                while !summary.exists() {
+                    assert!(!is_foreign(&folder).unwrap());
+                }
+            });
+            assert!(!is_foreign(&folder).unwrap());
+        }
+    }
+
+    #[test]
+    fn folder_with_files_and_no_summary_is_foreign() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(LOCK), "").unwrap();
+        assert!(!is_foreign(folder.path()).unwrap());
+        fs::write(folder.path().join("thesis.tex"), "").unwrap();
+        assert!(is_foreign(folder.path()).unwrap());
+        fs::write(folder.path().join(SUMMARY), "{}").unwrap();
+        assert!(is_foreign(folder.path()).unwrap(), "nobody's summary");
+        fs::write(folder.path().join(SUMMARY), MARK).unwrap();
+        assert!(!is_foreign(folder.path()).unwrap());
+    }
 }
