@@ -2,11 +2,12 @@
 //!
 //! Not here: the integration itself, which is the solver's.
 
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, Unexpected};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// How the equations of motion are integrated. Both agree as the step becomes shorter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "Stored", into = "Stored")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(remote = "Self")]
 pub enum Integrator {
     /// Velocity Verlet; dashpots take the velocity of half a step ago. The step must be shorter
     /// than the time in which all dashpots of a grain stop it.
@@ -22,38 +23,59 @@ impl Integrator {
     pub fn is_explicit(&self) -> bool {
         *self == Self::Explicit
     }
-}
 
-/// An integrator as scenes and states write it, with the number that it has there.
-#[derive(Serialize, Deserialize)]
-#[serde(rename = "Integrator")]
-enum Stored {
-    Explicit,
-    /// Of earlier versions: dashpots alone were implicit.
-    Imex,
-    Implicit,
-}
+    /// The number that it has in stored states; 1 was dashpots alone taken implicitly.
+    fn number(self) -> u32 {
+        match self {
+            Self::Explicit => 0,
+            Self::Implicit => 2,
+        }
+    }
 
-impl From<Integrator> for Stored {
-    fn from(integrator: Integrator) -> Self {
-        match integrator {
-            Integrator::Explicit => Self::Explicit,
-            Integrator::Implicit => Self::Implicit,
+    /// The name that it has in scenes.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Explicit => "Explicit",
+            Self::Implicit => "Implicit",
         }
     }
 }
 
-impl TryFrom<Stored> for Integrator {
-    type Error = &'static str;
+impl Serialize for Integrator {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_unit_variant("Integrator", self.number(), self.name())
+    }
+}
 
-    fn try_from(stored: Stored) -> Result<Self, Self::Error> {
-        match stored {
-            Stored::Explicit => Ok(Self::Explicit),
-            Stored::Imex => Err(
-                "the integrator `Imex` is no longer there: write `Implicit`, which takes longer steps and is \
-                 more accurate",
-            ),
-            Stored::Implicit => Ok(Self::Implicit),
+impl<'de> Deserialize<'de> for Integrator {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        if deserializer.is_human_readable() {
+            // By name, as derived.
+            return Self::deserialize(deserializer);
         }
+        let number = u32::deserialize(deserializer)?;
+        let all = [Self::Explicit, Self::Implicit];
+        let known = all.into_iter().find(|own| own.number() == number);
+        known.ok_or_else(|| {
+            Error::invalid_value(
+                Unexpected::Unsigned(number.into()),
+                &"the number of an integrator",
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_stored_states_are_those_of_earlier_builds() {
+        let read = |bytes: &[u8]| postcard::from_bytes::<Integrator>(bytes).ok();
+        for (own, bytes) in [(Integrator::Explicit, [0]), (Integrator::Implicit, [2])] {
+            assert_eq!(postcard::to_stdvec(&own).unwrap(), bytes);
+            assert_eq!(read(&bytes), Some(own));
+        }
+        assert_eq!((read(&[1]), read(&[3])), (None, None));
     }
 }
