@@ -90,7 +90,7 @@ impl<'a> JointColumns<'a> {
         batch: &'a Batch,
         division: &Division,
     ) -> impl Iterator<Item = Self> {
-        let used = !shared.slots.is_empty();
+        let used = !shared.changes.is_empty();
         let within = |ranges: &[Range<usize>]| {
             let ranges = ranges.iter().cloned();
             let ranges: Vec<_> = ranges.map(|own| if used { own } else { 0..0 }).collect();

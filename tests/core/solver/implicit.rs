@@ -205,6 +205,26 @@ fn free_flight_is_that_of_the_explicit_integrator_to_the_bit() {
     assert_eq!(after("Implicit"), after("Explicit"));
 }
 
+#[test]
+fn grains_of_which_no_two_are_near_fly_as_with_the_explicit_integrator() {
+    let after = |integrator: &str| {
+        let grain = |x: f64| {
+            format!(
+                r#"(position: ({x}, 1, 0), shape: Box(size: (0.002, 0.003, 0.004)), rounding: 0.0001, material: "m",
+                    velocity: (0.4, 0, 0), spin: (3, 20, -5))"#
+            )
+        };
+        let grains = format!("{}, {}", grain(0.0), grain(1.0));
+        let mut world = two(&grains, "(0, -9.81, 0)", integrator, STEP);
+        run(&mut world, 1e-3);
+        (
+            world.grains.position.clone(),
+            world.polyhedra.unwrap().orientation,
+        )
+    };
+    assert_eq!(after("Implicit"), after("Explicit"));
+}
+
 /// A box on the floor, and one far away.
 fn resting(velocity: &str) -> World {
     let grain = format!(
