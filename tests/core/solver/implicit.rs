@@ -1,5 +1,5 @@
 //! The implicit integrator: springs and dashpots for all bodies together keep momentum, close the
-//! energy balance, restitute to the second order of the step, let piles rest, and agree with the
+//! energy balance, restitute to the second order of the step, let piles rest, drag and agree like the
 //! explicit integrator as steps become short. Same bits for threads, lanes and slices:
 //! [`super::collapse`].
 
@@ -129,6 +129,56 @@ fn restitution_converges_to_the_closed_form_with_the_square_of_the_step() {
     let explicit = [4e-6, 2e-6].map(|dt| restitution("Explicit", dt) - exact);
     let order = (explicit[0] / explicit[1]).log2();
     assert!((0.8..1.2).contains(&order), "explicit: order {order}");
+}
+
+/// Four hundred boxes that hit the floor obliquely, each alone, turned in all ways; returns how much
+/// of their momentum along the floor and of their energy they lose, the latter to sliding.
+fn drag_of_oblique_impacts(integrator: &str, dt: f64) -> [f64; 2] {
+    let grains = (0..400_u32).map(|i| {
+        // Numbers that fill 0 … 1 evenly, each in its own way.
+        let part = |root: f64| (f64::from(i + 1) * root.sqrt()).fract();
+        let (x, z) = (0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20));
+        let height = 0.0022 + 0.0001 * part(2.0);
+        let speed = 0.1 + 0.2 * part(3.0);
+        let along = speed * (0.2 + part(5.0));
+        let axis = [7.0, 11.0, 13.0].map(|root| 2.0 * part(root) - 1.0);
+        let angle = 360.0 * part(17.0);
+        format!(
+            r#"(position: ({x}, {height}, {z}), shape: Box(size: (0.0016, 0.0018, 0.002)), rounding: 0.0001,
+                material: "m", velocity: ({along}, {}, 0), orientation: Turned(axis: ({}, {}, {}), angle_deg: {angle}))"#,
+            -speed, axis[0], axis[1], axis[2]
+        )
+    });
+    let grains = grains.collect::<Vec<_>>().join(", ");
+    let mut world = two(&grains, "(0, 0, 0)", integrator, dt);
+    let (momentum, energy) = (momenta(&world)[0].x, world.kinetic_energy());
+    run(&mut world, 12e-3);
+    let lost = EnergyLedger::of(&world).sliding_loss;
+    [1.0 - momenta(&world)[0].x / momentum, lost / energy]
+}
+
+#[test]
+fn friction_of_oblique_impacts_comes_to_one_limit_from_both_sides() {
+    let [drag, sliding] = drag_of_oblique_impacts("Explicit", 0.5e-6);
+    println!("of momentum {drag:.4}, of energy {sliding:.4} lost to friction");
+    assert!((0.2..0.4).contains(&drag) && (0.2..0.4).contains(&sliding));
+    let off = |integrator: &str, dt: f64| {
+        let [own, lost] = drag_of_oblique_impacts(integrator, dt);
+        let [own, lost] = [own / drag - 1.0, lost / sliding - 1.0];
+        println!(
+            "{integrator}, {:.1} µs: drag {:+.2} %, lost {:+.2} %",
+            1e6 * dt,
+            1e2 * own,
+            1e2 * lost
+        );
+        assert!(lost.abs() < 0.03);
+        own
+    };
+    let explicit = off("Explicit", 2.2e-6);
+    assert!((-0.06..0.0).contains(&explicit), "{explicit}");
+    let [long, half, quarter] = [20e-6, 10e-6, 5e-6].map(|dt| off("Implicit", dt));
+    assert!(quarter.abs() < half && half < long && long < 0.09);
+    assert!(quarter.abs() < 0.025);
 }
 
 /// The deepest overlap while a box falls flat on the floor in steps of `dt` [s], as the mean of
