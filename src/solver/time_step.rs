@@ -18,8 +18,9 @@ pub use crate::physics::law::StepLimit as Limit;
 use crate::physics::law::{Circumstances, SmallestGrain, lubrication_limit};
 use crate::physics::limits::TIME_STEP;
 use crate::physics::{ContactLaw, Integrator, Liquid, MaterialId, Materials};
-use crate::scene::{Scene, SceneContainer, SceneGrains, TimeStep};
+use crate::scene::{Scene, SceneContainer, SceneGrains, ScenePlane, TimeStep};
 use crate::world::{self, World};
+use glam::DVec3;
 
 /// The step and the limits that it is held against.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -253,12 +254,36 @@ fn smallest_rounding(scene: &Scene) -> f64 {
     }
 }
 
-/// The speed of a free fall from the top of a column; none elsewhere [m/s].
+/// The speed of a free fall from the top of a column, or of listed grains onto planes; none elsewhere
+/// [m/s].
 fn falling_speed(scene: &Scene) -> f64 {
-    match scene.container {
-        SceneContainer::Column { height, .. } => (2.0 * scene.gravity.length() * height).sqrt(),
+    match (&scene.container, &scene.grains) {
+        (SceneContainer::Column { height, .. }, _) => {
+            (2.0 * scene.gravity.length() * height).sqrt()
+        }
+        (SceneContainer::Planes(planes), SceneGrains::List(grains)) => {
+            let speeds = grains.iter().map(|grain| {
+                let work = work_of_fall(planes, grain.position, scene.gravity);
+                (grain.velocity.length_squared() + 2.0 * work).sqrt()
+            });
+            speeds.fold(0.0, f64::max)
+        }
         _ => 0.0,
     }
+}
+
+/// What `gravity` does to a grain that falls from `position` onto the first of the `planes` below it,
+/// over its mass; nothing where there is none [m²/s²].
+fn work_of_fall(planes: &[ScenePlane], position: DVec3, gravity: DVec3) -> f64 {
+    let works = planes.iter().filter_map(|plane| {
+        let (height, pull) = (
+            (position - plane.point).dot(plane.normal),
+            -gravity.dot(plane.normal),
+        );
+        (height > 0.0 && pull > 0.0).then(|| gravity.length_squared() * height / pull)
+    });
+    let least = works.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 fn impact_speed(scene: &Scene) -> f64 {

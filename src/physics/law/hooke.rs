@@ -64,11 +64,13 @@ impl LawFacts for Hooke {
         let touching = at.are_polyhedra.then_some(self.features);
         let stiffness = self.normal_stiffness.max(self.tangential_stiffness);
         if touching.is_some() && at.integrator == Integrator::Implicit {
-            return vec![impact_limit(grain, stiffness), way_limit(at)];
+            let impact = std::iter::once(impact_limit(grain, stiffness));
+            return impact.chain(way_limit(at)).collect();
         }
         let dashpots = touching.map(|rule| dashpot_limit(grain, self.normal_stiffness, rule));
         std::iter::once(spring_limit(grain, stiffness, touching))
             .chain(dashpots)
+            .chain(touching.and_then(|_| way_limit(at)))
             .collect()
     }
 
@@ -102,18 +104,24 @@ impl LawFacts for Hooke {
 const STEPS_PER_IMPACT: f64 = 3.6;
 
 /// Share of the sphero-radius that the fastest grain may move in a step where nothing else limits
-/// it: light grains that turn came to twice its speed, and at half of it the solver stops.
-const LARGEST_WAY: f64 = 0.2;
+/// it, explicitly and implicitly: light grains that turn came to twice its speed, and at a quarter and
+/// a half of it the solver stops.
+const LARGEST_WAYS: [f64; 2] = [0.1, 0.2];
 
-fn way_limit(at: &Circumstances) -> StepLimit {
-    StepLimit {
+fn way_limit(at: &Circumstances) -> Option<StepLimit> {
+    let [explicit, implicit] = LARGEST_WAYS;
+    let share = match at.integrator {
+        Integrator::Explicit => explicit,
+        Integrator::Implicit => implicit,
+    };
+    at.rounding.is_finite().then(|| StepLimit {
         name: "way in a step",
-        time_step: LARGEST_WAY * at.rounding / at.fastest,
+        time_step: share * at.rounding / at.fastest,
         reason: format!(
-            "{LARGEST_WAY} of the smallest sphero-radius of {:.3e} m at {:.3e} m/s, the fastest that a grain falls or hits another",
+            "{share} of the smallest sphero-radius of {:.3e} m at {:.3e} m/s, the fastest that a grain falls or hits another",
             at.rounding, at.fastest
         ),
-    }
+    })
 }
 
 fn impact_limit(grain: &SmallestGrain, stiffness: f64) -> StepLimit {

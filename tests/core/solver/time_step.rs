@@ -1,6 +1,7 @@
 //! The advised time step: its limits, the reasons, the warning.
 
 use super::*;
+use grainfall::measure::EnergyLedger;
 use grainfall::scene::{TimeStep, built_in};
 use grainfall::solver::{Extremes, StepChoice, advise, step_choices};
 use grainfall::world::build_packed;
@@ -289,4 +290,31 @@ fn impacts_are_told_with_the_step_that_a_scene_gives_and_not_where_there_are_no_
             .iter()
             .all(|choice| choice.impact.is_none())
     );
+}
+
+#[test]
+fn polyhedra_that_fall_far_onto_a_plane_are_given_steps_that_they_bear() {
+    for (integrator, share) in [("Explicit", 0.1), ("Implicit", 0.2)] {
+        let text = format!(
+            r#"(
+                title: "A die falls",
+                materials: {{"m": (density: 2650, restitution: 0.1, friction: 0.4)}},
+                container: Planes([(point: (0, 0, 0), normal: (0, 1, 0), material: "m")]),
+                grains: List([(position: (0, 0.5, 0), shape: Box(size: (0.02, 0.03, 0.04)), rounding: 0.0005, material: "m")]),
+                law: Hooke(normal_stiffness: 4000, tangential_stiffness: 2000, features: Full),
+                integrator: {integrator},
+            )"#
+        );
+        let scene = Scene::parse("die", &text).unwrap();
+        let advice = advise(&scene);
+        assert_eq!(advice.limits[0].name, "way in a step");
+        let fastest = (2.0 * 9.81 * 0.5_f64).sqrt();
+        assert_relative("way", advice.time_step * fastest, share * 0.0005, 1e-9);
+        let mut world = build(&scene, advice.time_step);
+        run(&mut world, 0.4);
+        assert!(
+            EnergyLedger::of(&world).dashpot_loss > 0.0,
+            "it hits the plane"
+        );
+    }
 }
