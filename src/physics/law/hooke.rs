@@ -103,17 +103,9 @@ impl LawFacts for Hooke {
 /// per cent of those of short steps, or two; the front of one of 5 cm falls 3 % short.
 const STEPS_PER_IMPACT: f64 = 3.6;
 
-/// Share of the sphero-radius that the fastest grain may move in a step where nothing else limits
-/// it, explicitly and implicitly: light grains that turn came to twice its speed, and at a quarter and
-/// a half of it the solver stops.
-const LARGEST_WAYS: [f64; 2] = [0.1, 0.2];
-
+/// Where nothing else limits the step, the way of the fastest grain does.
 fn way_limit(at: &Circumstances) -> Option<StepLimit> {
-    let [explicit, implicit] = LARGEST_WAYS;
-    let share = match at.integrator {
-        Integrator::Explicit => explicit,
-        Integrator::Implicit => implicit,
-    };
+    let share = at.integrator.advised_move();
     at.rounding.is_finite().then(|| StepLimit {
         name: "way in a step",
         time_step: share * at.rounding / at.fastest,

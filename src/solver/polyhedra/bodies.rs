@@ -14,7 +14,6 @@
 use super::super::row::{Row, length_squared, row, vector};
 use super::nearest::Places;
 use crate::lanes::{Lanes, Quad, Work, prefetch};
-use crate::physics::Integrator;
 use crate::world::{Polyhedron, World};
 use glam::{DQuat, DVec3};
 use std::ops::Range;
@@ -325,7 +324,7 @@ impl Body {
             position: row(grains.position[i], 1.0 / grains.mass[i]),
             velocity: row(
                 grains.velocity[i],
-                largest_move(polyhedra.integrator) * rounding / dt,
+                polyhedra.integrator.largest_move() * rounding / dt,
             ),
             spin: row(grains.spin[i], grains.radius[i]),
             angular_momentum: row(polyhedra.angular_momentum[i], rounding),
@@ -492,16 +491,6 @@ impl Body {
     /// The centroid [m].
     pub fn centre(&self) -> DVec3 {
         vector(self.position)
-    }
-}
-
-/// A body no point of which may move in one step by more than this share of its sphero-radius:
-/// features could pass through each other unseen. Where steps are as long as that allows, two
-/// bodies may come in one step half of the way at which they touch.
-pub fn largest_move(integrator: Integrator) -> f64 {
-    match integrator {
-        Integrator::Explicit => 0.25,
-        Integrator::Implicit => 0.5,
     }
 }
 
