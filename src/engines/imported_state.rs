@@ -161,7 +161,7 @@ fn forget_forces(world: &mut World, frame: &AtomFrame) {
     }
     for feature in (world.polyhedra.iter_mut()).flat_map(|all| &mut all.features) {
         feature.spring = DVec3::NAN;
-        feature.dashpot = f64::NAN;
+        feature.normal_memory = f64::NAN;
     }
     let (gravity, grains) = (world.gravity, &mut world.grains);
     for (i, atom) in frame.atoms.iter().enumerate() {

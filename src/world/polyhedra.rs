@@ -43,8 +43,10 @@ pub struct FeatureContact {
     pub feature: Feature,
     /// Overlap of the rounded features at the last force evaluation [m].
     pub overlap: f64,
-    /// What the normal dashpot added to the spring's push then [N].
-    pub dashpot: f64,
+    /// What is remembered along the normal beside it: what the dashpot added to the spring's push then
+    /// [N]; where both are taken implicitly, the running mean of the speed of approach [m/s], zero where
+    /// they have let go.
+    pub normal_memory: f64,
     /// Tangential spring ξ [m].
     pub spring: DVec3,
     /// Stiffness `k_t` with which the spring was last stretched [N/m].

@@ -423,7 +423,7 @@ impl Polyhedra {
                 || format!("{} does not exist", name("feature")),
             )?;
             vector(contact.spring, LARGEST, || name("spring"))?;
-            let numbers = [contact.overlap, contact.dashpot, contact.stiffness];
+            let numbers = [contact.overlap, contact.normal_memory, contact.stiffness];
             numbers
                 .into_iter()
                 .try_for_each(|value| number(value, || name("force")))?;

@@ -191,7 +191,7 @@ fn feature(grain: u32, partner: Partner, corner: u16, overlap: f64) -> FeatureCo
         partner,
         feature: Feature::VertexFace(corner, 0),
         overlap,
-        dashpot: 0.0,
+        normal_memory: 0.0,
         spring: DVec3::ZERO,
         stiffness: 2000.0,
     }

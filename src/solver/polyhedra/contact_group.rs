@@ -9,6 +9,12 @@
 //! et al. 2023, Eqs. 3.1–3.6): Hooke's law ([`Hooke`]) with the pair's constants times `p`. The
 //! force on the first side is `−p K_t ξ − R n`, its torque that about the centroid.
 //!
+//! Where springs are taken implicitly they push, in a step, by the mean `δ + ¼ Δt² δ''` of their
+//! overlap, which is less than `δ` while an impact is stopped. Friction is bounded by what they push:
+//! by `μ p K_n (δ + ¼ Δt (v_n − w))`, where the running mean `w ← ½ (w + v_n)` of the speed of
+//! approach, which begins with the contact, lags behind it by `Δt v_n'`. By `δ` alone the friction of
+//! an impact would be too large by `¼ Δt² K_n/m`.
+//!
 //! Not here: which features are measured ([`super::workspace`]), sums over a pair's contacts
 //! ([`super::forces`]), what of it is taken implicitly ([`super::joint`]).
 
@@ -37,7 +43,7 @@ pub struct ContactGroup<N> {
     parts: [N; 2],
     /// `K_n`, the normal dashpot, `K_t`, μ.
     law: [N; 4],
-    /// Overlaps [m] and pushes of the dashpots [N] a step ago.
+    /// Overlaps a step ago [m], and what is remembered along the normal ([`ContactPoint::normal_memory`]).
     before: [N; 2],
 }
 
@@ -65,7 +71,7 @@ pub struct NormalForces<N: Lanes> {
 pub struct ContactForces<N: Lanes> {
     /// Force on the first [N]; overlap [m].
     pub forces: [N::Quad; WIDEST],
-    /// Its torque [N m]; push of the dashpot [N].
+    /// Its torque [N m]; what is to be remembered along the normal ([`ContactPoint::normal_memory`]).
     pub moments: [N::Quad; WIDEST],
     /// Energy lost in the dashpot, by the tangential spring, put into the normal spring [J].
     pub energies: [N::Quad; WIDEST],
@@ -89,7 +95,7 @@ impl<N: Lanes> ContactGroup<N> {
         nearest: [&Nearest; WIDEST],
         point: [&ContactPoint; WIDEST],
     ) -> Self {
-        let before = side_by_side::<N, _>(|k| [point[k].overlap, point[k].dashpot, 0.0, 0.0]);
+        let before = side_by_side::<N, _>(|k| [point[k].overlap, point[k].normal_memory, 0.0, 0.0]);
         let [nx, ny, nz, _] = N::gather(processor, side_by_side::<N, _>(|k| &nearest[k].normal));
         let normal = [nx, ny, nz];
         let [mx, my, mz, depth] =
@@ -100,7 +106,7 @@ impl<N: Lanes> ContactGroup<N> {
             N::gather(processor, side_by_side::<N, _>(|k| &pair[k].spin));
         let [x, y, z, _] = N::gather(processor, side_by_side::<N, _>(|k| &pair[k].mean_spin));
         let law = N::gather(processor, law);
-        let [overlap, dashpot, ..] = N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
+        let [overlap, memory, ..] = N::gather(processor, side_by_side::<N, _>(|k| &before[k]));
         Self {
             normal,
             depth,
@@ -110,7 +116,7 @@ impl<N: Lanes> ContactGroup<N> {
             mean_spin: [x, y, z],
             parts: [part, part_before],
             law,
-            before: [overlap, dashpot],
+            before: [overlap, memory],
         }
     }
 
@@ -154,10 +160,50 @@ impl<N: Lanes> ContactGroup<N> {
         }
     }
 
-    /// Coefficients of friction.
+    /// The friction that Coulomb's law allows [N], with the `memory` that contacts keep of this
+    /// step along their normals.
     #[inline(always)]
-    pub fn friction(&self) -> N {
-        self.law[3]
+    pub fn coulomb_bound<const IMPLICIT: bool>(
+        &self,
+        processor: N::Processor,
+        dt: f64,
+        (pressed, memory): (&NormalForces<N>, N),
+    ) -> N {
+        let bounding = pressed.along.bounding;
+        if !IMPLICIT {
+            return self.law[3] * bounding;
+        }
+        let zero = N::splat(processor, 0.0);
+        let faster = N::splat(processor, 0.25 * dt) * (pressed.approach - memory);
+        let bounding = bounding + pressed.stiffness * faster;
+        self.law[3] * N::choose(bounding.exceeds(zero), bounding, zero)
+    }
+
+    /// What contacts remember along their normals of this step ([`ContactPoint::normal_memory`]).
+    #[inline(always)]
+    fn normal_memory<const IMPLICIT: bool>(
+        &self,
+        processor: N::Processor,
+        pressed: &NormalForces<N>,
+    ) -> N {
+        if !IMPLICIT {
+            return pressed.repulsion - pressed.along.elastic;
+        }
+        let (zero, half) = (N::splat(processor, 0.0), N::splat(processor, 0.5));
+        let mean = half * (self.before[1] + pressed.approach);
+        let mean = self.where_held(zero, mean, pressed.approach);
+        // What holds is never remembered by zero.
+        let mean = mean + N::splat(processor, f64::MIN_POSITIVE);
+        N::choose(pressed.stiffness.exceeds(zero), mean, zero)
+    }
+
+    /// `held` of contacts that spring and dashpot, taken implicitly, pressed a step ago, `other` of
+    /// all else.
+    #[inline(always)]
+    fn where_held(&self, zero: N, held: N, other: N) -> N {
+        let [_, mean] = self.before;
+        let other = N::choose(zero.exceeds(mean), held, other);
+        N::choose(mean.exceeds(zero), held, other)
     }
 
     /// Their forces, with the tangential `springs` of a step ago.
@@ -174,6 +220,8 @@ impl<N: Lanes> ContactGroup<N> {
         let (normal, arm, touching) = (self.normal, self.arm, pressed.touching);
         let tangential_stiffness = pressed.along.coefficients.tangential_stiffness;
         let stiffness = N::choose(touching, tangential_stiffness, zero);
+        let memory = self.normal_memory::<IMPLICIT>(processor, &pressed);
+        let bound = self.coulomb_bound::<IMPLICIT>(processor, dt, (&pressed, memory));
         let updated = update::<N>(
             processor,
             springs,
@@ -184,22 +232,25 @@ impl<N: Lanes> ContactGroup<N> {
             normal,
             touching,
             stiffness,
-            self.friction() * pressed.along.bounding,
+            bound,
         );
         let pull = times(updated.spring, -stiffness);
         let force = minus(pull, times(normal, pressed.repulsion));
         let moment = cross(arm, force);
-        let dashpot = pressed.repulsion - pressed.along.elastic;
         let [in_dashpot, stored] = self.normal_energies::<IMPLICIT>(processor, dt, &pressed);
         ContactForces {
             forces: N::rows([force[0], force[1], force[2], pressed.overlap]),
-            moments: N::rows([moment[0], moment[1], moment[2], dashpot]),
+            moments: N::rows([moment[0], moment[1], moment[2], memory]),
             energies: N::rows([in_dashpot, updated.lost, stored, zero]),
             springs: updated.rows,
             implicit: if IMPLICIT {
                 let [tx, ty, tz] = cross(arm, normal);
-                let sticking =
-                    self.stiffness_across(processor, stiffness, updated.slides, (&pressed, step));
+                let sticking = stiffness_across(
+                    processor,
+                    stiffness,
+                    (bound, updated.slides),
+                    (&pressed, step),
+                );
                 [
                     N::rows([normal[0], normal[1], normal[2], pressed.dashpot]),
                     N::rows([tx, ty, tz, pressed.stiffness]),
@@ -225,24 +276,6 @@ impl<N: Lanes> ContactGroup<N> {
         N::choose(self.depth.exceeds(zero), zero, spring)
     }
 
-    /// How stiff contacts are against a change of their slip within a step: a spring where they
-    /// stick, and where they slide no stiffer than the force they drag with over the way they slide.
-    #[inline(always)]
-    fn stiffness_across(
-        &self,
-        processor: N::Processor,
-        stiffness: N,
-        slides: N::Mask,
-        (pressed, step): (&NormalForces<N>, N),
-    ) -> N {
-        let still = N::splat(processor, f64::MIN_POSITIVE);
-        let way = step * dot(pressed.slip, pressed.slip).sqrt() + still;
-        let bound = self.friction() * pressed.along.bounding;
-        let sliding = bound / way;
-        let sliding = N::choose(stiffness.exceeds(sliding), sliding, stiffness);
-        N::choose(slides, sliding, stiffness)
-    }
-
     /// Energy that the step cost along the normal: lost in the dashpot, and put into the spring, by
     /// the mean of what each did before and does now [J].
     #[inline(always)]
@@ -253,11 +286,18 @@ impl<N: Lanes> ContactGroup<N> {
         pressed: &NormalForces<N>,
     ) -> [N; 2] {
         let (half, half_step) = (N::splat(processor, 0.5), N::splat(processor, 0.5 * dt));
-        let ([_, part_before], [overlap_before, dashpot_before]) = (self.parts, self.before);
+        let ([_, part_before], [overlap_before, memory]) = (self.parts, self.before);
         let (elastic, approach) = (pressed.along.elastic, pressed.approach);
+        let elastic_before = self.law[0] * part_before * overlap_before;
+        let dashpot_before = if IMPLICIT {
+            // Where spring and dashpot had let go.
+            let zero = N::splat(processor, 0.0);
+            self.where_held(zero, zero, zero - elastic_before)
+        } else {
+            memory
+        };
         let dashpot = pressed.repulsion - elastic;
         let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
-        let elastic_before = self.law[0] * part_before * overlap_before;
         let springs = elastic_before + elastic;
         let stored = half * (springs * (pressed.overlap - overlap_before));
         if IMPLICIT {
@@ -267,4 +307,20 @@ impl<N: Lanes> ContactGroup<N> {
         }
         [in_dashpot, stored]
     }
+}
+
+/// How stiff contacts are against a change of their slip within a step: a spring where they
+/// stick, and where they slide no stiffer than the force they drag with over the way they slide.
+#[inline(always)]
+fn stiffness_across<N: Lanes>(
+    processor: N::Processor,
+    stiffness: N,
+    (bound, slides): (N, N::Mask),
+    (pressed, step): (&NormalForces<N>, N),
+) -> N {
+    let still = N::splat(processor, f64::MIN_POSITIVE);
+    let way = step * dot(pressed.slip, pressed.slip).sqrt() + still;
+    let sliding = bound / way;
+    let sliding = N::choose(stiffness.exceeds(sliding), sliding, stiffness);
+    N::choose(slides, sliding, stiffness)
 }

@@ -22,11 +22,11 @@
 //! at its end. Gaps that close within the step belong to it as well ([`super::gaps`]).
 //!
 //! Along the surfaces springs of contacts that stick have `σ = 0`. One that slides drags with what
-//! Coulomb's law allows it at this moment, whatever happens in the step; were that all, a light
-//! body would be thrown back and forth by frictions that reverse its slip in a step. Against a
-//! change of its slip it is therefore as stiff as the force that it drags with over the way that it
-//! slides in a step, at most `K_t`: steady slips feel nothing of it, and what they feel of it while
-//! they change falls with the square of the step.
+//! Coulomb's law allows it at this moment ([`super::contact_group`]), whatever happens in the step;
+//! were that all, a light body would be thrown back and forth by frictions that reverse its slip in
+//! a step. Against a change of its slip it is therefore as stiff as the force that it drags with over
+//! the way that it slides in a step, at most `K_t`: steady slips feel nothing of it, and what they
+//! feel of it while they change falls with the square of the step.
 //!
 //! Directions are those of this moment (linearly implicit). With masses and inertias `M` and the
 //! pairs' motions `B u` this is one symmetric, positive system,

@@ -101,7 +101,7 @@ impl PairList {
                 partner: pair.partner(),
                 feature: point.listed.feature,
                 overlap: point.overlap,
-                dashpot: point.dashpot,
+                normal_memory: point.normal_memory,
                 spring: vector(point.spring),
                 stiffness: point.stiffness(),
             })

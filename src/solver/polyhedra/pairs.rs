@@ -195,8 +195,9 @@ pub struct ContactPoint {
     pub spring: Row,
     /// Overlap, zero where it does not touch [m].
     pub overlap: f64,
-    /// What the normal dashpot adds to the spring's push [N].
-    pub dashpot: f64,
+    /// What the normal dashpot adds to the spring's push [N]. Where these are taken implicitly, the
+    /// running mean of the speed of approach [m/s], zero where they have let go.
+    pub normal_memory: f64,
     /// Which features.
     pub listed: Listed,
 }
@@ -212,7 +213,7 @@ impl ContactPoint {
         Self {
             spring: row(contact.spring, contact.stiffness),
             overlap: contact.overlap,
-            dashpot: contact.dashpot,
+            normal_memory: contact.normal_memory,
             listed,
         }
     }
@@ -222,7 +223,7 @@ impl ContactPoint {
         Self {
             spring: UNLOADED,
             overlap: 0.0,
-            dashpot: 0.0,
+            normal_memory: 0.0,
             listed,
         }
     }

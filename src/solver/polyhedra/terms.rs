@@ -178,6 +178,7 @@ impl PairAlone {
         let Some(active) = workspace.active.first() else {
             return Vec::new();
         };
+        let dt = world.clock.time_step;
         let measured = workspace.results.iter().zip(features).zip(&*block.points);
         let terms = measured.map(|((nearest, contact), point)| {
             let law = [&self.constants.law; WIDEST];
@@ -188,23 +189,24 @@ impl PairAlone {
                 [nearest; WIDEST],
                 [point; WIDEST],
             );
-            terms_of::<IMPLICIT>(&group, contact, vector(active.centre))
+            terms_of::<IMPLICIT>(&group, contact, (vector(active.centre), dt))
         });
         terms.collect()
     }
 }
 
-/// The terms of one contact, the first side's centroid being at `centre` [m], and its dashpot where
-/// that is `IMPLICIT` [N s/m]. What the tangential spring does is read where the loop left it.
+/// The terms of one contact, the first side's centroid being at `centre` [m], steps being `dt` long
+/// [s], and its dashpot where that is `IMPLICIT` [N s/m]. What the tangential spring does is read where the loop left it.
 fn terms_of<const IMPLICIT: bool>(
     group: &ContactGroup<One>,
     contact: &FeatureContact,
-    centre: DVec3,
+    (centre, dt): (DVec3, f64),
 ) -> (ForceTerms, f64) {
     let along = |v: [One; 3]| DVec3::from_array(v.map(One::get));
     let pressed = group.normal_forces::<IMPLICIT>(One::splat((), 0.0));
     let (elastic, repulsion) = (pressed.along.elastic.get(), pressed.repulsion.get());
-    let coulomb_bound = (group.friction() * pressed.along.bounding).get();
+    let remembered = (&pressed, One::splat((), contact.normal_memory));
+    let coulomb_bound = group.coulomb_bound::<IMPLICIT>((), dt, remembered).get();
     let (normal, spring) = (along(group.normal), -contact.spring * contact.stiffness);
     let terms = ForceTerms {
         feature: Some(contact.feature),

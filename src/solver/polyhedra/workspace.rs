@@ -110,7 +110,7 @@ pub struct Workspace {
 pub struct Effect {
     /// Force on the first [N]; overlap, none at a gap [m].
     pub force: Row,
-    /// Its torque [N m]; push of the dashpot [N].
+    /// Its torque [N m]; what is to be remembered along the normal ([`ContactPoint::normal_memory`]).
     pub moment: Row,
     /// Energy lost in the dashpot, by the tangential spring, and put into the normal spring [J].
     pub energy: Row,
@@ -123,9 +123,9 @@ impl Effect {
         self.force[3]
     }
 
-    /// What the normal dashpot adds to the spring's push [N].
+    /// What is to be remembered along the normal ([`ContactPoint::normal_memory`]).
     #[inline(always)]
-    pub fn dashpot(&self) -> f64 {
+    pub fn normal_memory(&self) -> f64 {
         self.moment[3]
     }
 }

@@ -119,7 +119,7 @@ fn polyhedra_whose_springs_are_implicit_have_the_bits_they_always_had() {
         "polyhedra, implicit springs and dashpots",
         &scene,
         1000,
-        "09bee53291afad4e6990815cf0c59b8b",
+        "bc89268f7012cf136240586363f50982",
     );
 }
 
