@@ -288,23 +288,23 @@ impl<N: Lanes> ContactGroup<N> {
         let (half, half_step) = (N::splat(processor, 0.5), N::splat(processor, 0.5 * dt));
         let ([_, part_before], [overlap_before, memory]) = (self.parts, self.before);
         let (elastic, approach) = (pressed.along.elastic, pressed.approach);
-        let elastic_before = self.law[0] * part_before * overlap_before;
-        let dashpot_before = if IMPLICIT {
-            // Where spring and dashpot had let go.
-            let zero = N::splat(processor, 0.0);
-            self.where_held(zero, zero, zero - elastic_before)
-        } else {
-            memory
-        };
         let dashpot = pressed.repulsion - elastic;
-        let in_dashpot = half_step * ((dashpot_before + dashpot) * approach);
+        let elastic_before = self.law[0] * part_before * overlap_before;
         let springs = elastic_before + elastic;
-        let stored = half * (springs * (pressed.overlap - overlap_before));
+        let closed = pressed.overlap - overlap_before;
+        let stored = half * (springs * closed);
         if IMPLICIT {
-            // Where a contact begins or ends within a step, the spring takes more than it stores.
-            let taken = half_step * (springs * approach);
-            return [in_dashpot + (taken - stored), stored];
+            let zero = N::splat(processor, 0.0);
+            let let_go_before = self.where_held(zero, zero, elastic_before);
+            // Where a contact begins or ends within a step, the way along the normal is more than its
+            // overlap tells.
+            let way = N::splat(processor, dt) * approach;
+            let both = N::choose(pressed.touching, closed, way);
+            let way = N::choose(overlap_before.exceeds(zero), both, way);
+            let taken = half * ((springs + dashpot - let_go_before) * way);
+            return [taken - stored, stored];
         }
+        let in_dashpot = half_step * ((memory + dashpot) * approach);
         [in_dashpot, stored]
     }
 }

@@ -119,7 +119,7 @@ fn polyhedra_whose_springs_are_implicit_have_the_bits_they_always_had() {
         "polyhedra, implicit springs and dashpots",
         &scene,
         1000,
-        "bc89268f7012cf136240586363f50982",
+        "2a45374a84a9e9e972ab037e69ac6dda",
     );
 }
 
