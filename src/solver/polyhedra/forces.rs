@@ -159,8 +159,7 @@ impl Workspace {
 
     /// The contact law of every active feature of the block, [`Lanes::COUNT`] at a time, whichever
     /// pairs they are of; springs, overlaps and what is remembered beside them go back into the
-    /// points. A last
-    /// group that is not full computes its last feature again.
+    /// points. A last group that is not full computes its last feature again.
     #[inline(always)]
     fn compute_forces<N: Lanes, const IMPLICIT: bool>(
         &mut self,
