@@ -42,7 +42,7 @@
 //! | steps per call | the lists' ages are no part of the world, loading and storing are exact |
 //! | the machine | nothing but + − × ÷ √ reaches the state |
 //!
-//! `tests/core/solver/golden.rs` and `determinism.rs` hold it to that.
+//! `tests/golden` and `tests/core/solver/determinism.rs` hold it to that.
 //!
 //! Formulas of force laws are in [`crate::physics::law`], the lanes that they are computed in are
 //! [`crate::lanes`].

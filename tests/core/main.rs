@@ -10,6 +10,8 @@ mod comparison;
 mod doors;
 mod engines;
 mod events;
+#[path = "../common/hash_table.rs"]
+mod hash_table;
 mod kept_results;
 mod lesson;
 mod measure;

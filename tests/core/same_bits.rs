@@ -1,9 +1,9 @@
 //! One state, by every way to it: threads, lanes, pieces, files, branches, windows' engines. Each
 //! way is a row of a table, and every row of a scene states the same hash.
 //!
-//! `GRAINFALL_HASHES=FILE` writes these rows and those of the golden hashes to a file, for the log
-//! of a build.
+//! Rows are told as `tests/common/hash_table.rs` says.
 
+use crate::hash_table::note;
 use crate::runs::{prepared, set};
 use crate::timeline::{Explored, arrive, change, column_lab, go_on, hash, wet_lab};
 use grainfall::lab::{DriverKind, Half, Lab, LabCommand, Options, Status};
@@ -13,8 +13,6 @@ use grainfall::run::{
 use grainfall::runner::{self, Job, Verdict};
 use grainfall::solver::{Processor, Solver};
 use std::cell::Cell;
-use std::fs::File;
-use std::io::Write;
 use std::time::Duration;
 
 /// Memory for all states that could be wanted [bytes].
@@ -22,16 +20,6 @@ const PLENTY: usize = 1 << 28;
 /// The place whose state every way comes to, and the last one at which something is changed.
 const END: u64 = 8;
 const LAST_CHANGE: u64 = 7;
-
-/// Tells a row of the table: a state of a scene, the way to it, its hash.
-pub fn note(scene: &str, way: &str, hash: impl std::fmt::Display) {
-    let row = format!("{scene:<44} {way:<44} {hash}\n");
-    print!("{row}");
-    if let Some(path) = std::env::var_os("GRAINFALL_HASHES") {
-        let file = File::options().create(true).append(true).open(path);
-        file.unwrap().write_all(row.as_bytes()).unwrap();
-    }
-}
 
 /// What is to be come to, and how.
 struct Goal {

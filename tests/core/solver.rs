@@ -11,7 +11,6 @@ mod determinism;
 mod drum;
 mod evaluate;
 mod faults;
-mod golden;
 mod impact;
 mod implicit;
 mod liggghts;

@@ -1,9 +1,13 @@
 //! Golden hashes: runs that have the bits they always had, on any machine and for any number of
-//! threads, as a step knows nothing but + − × ÷ √. A commit that changes one says why.
+//! threads, as a step knows nothing but + − × ÷ √, however it is compiled. A commit that changes one
+//! says why.
 
-use super::*;
-use grainfall::scene::SceneContainer;
-use grainfall::solver::advise;
+#[path = "../common/hash_table.rs"]
+mod hash_table;
+
+use grainfall::scene::{Scene, SceneContainer};
+use grainfall::solver::{Solver, advise};
+use grainfall::world::build;
 
 /// A scene after it has been given some values, a quickly turning drum where it has one.
 fn scene(name: &str, values: &[(&str, &str)]) -> Scene {
@@ -34,7 +38,7 @@ fn assert_golden(name: &str, scene: &Scene, before: u64, golden: &str) {
         let mut world = start.clone();
         Solver::new(threads).advance(&mut world, 300).unwrap();
         let found = world.hash().to_string();
-        crate::same_bits::note(name, &format!("golden, threads: {threads}"), &found);
+        hash_table::note(name, &format!("golden, threads: {threads}"), &found);
         assert_eq!(found, golden, "{name}, {threads} threads");
     }
 }
