@@ -15,38 +15,72 @@
 //! Not here: walls, which each list asks for their distance, and how long a list lasts.
 
 use super::row::{Row, length_squared, sub};
+use std::ops::Range;
 
 /// How many times smaller than the largest spheres of its level the smallest are, at most.
 const LEVEL: f64 = 4.0;
 /// Levels of size at most; the last one holds all that are smaller.
 const MOST_LEVELS: usize = 16;
 
+/// Spheres and what finds those near each of them: workers may look for a range each.
+pub struct NearSearch {
+    /// Centres and radii [m].
+    spheres: Vec<Row>,
+    /// Surfaces nearer than this are near [m].
+    skin: f64,
+    levels: Levels,
+    grids: Vec<CellGrid>,
+    /// The pairs of spheres of different levels.
+    unequal: Vec<(u32, u32)>,
+}
+
+impl NearSearch {
+    /// A search among `spheres` (centre and radius [m]) whose surfaces are nearer than `skin` [m].
+    pub fn new(spheres: Vec<Row>, skin: f64) -> Self {
+        let levels = Levels::of(&spheres);
+        let grids = levels.grids(&spheres, skin);
+        let unequal = levels.unequal_pairs(&spheres, &grids, skin);
+        Self {
+            spheres,
+            skin,
+            levels,
+            grids,
+            unequal,
+        }
+    }
+
+    /// Calls `visit` with each of these numbers and those of higher number that are near it, in order.
+    pub fn visit(&self, numbers: Range<usize>, mut visit: impl FnMut(u32, &[u32])) {
+        let first = numbers.start as u32;
+        let begin = self.unequal.partition_point(|(low, _)| *low < first);
+        let mut unequal = self.unequal[begin..].iter().peekable();
+        let mut near = Vec::new();
+        for (i, sphere) in (first..).zip(&self.spheres[numbers]) {
+            near.clear();
+            self.grids[self.levels.level(i)].for_near(sphere, |j| {
+                if j > i && are_near(sphere, &self.spheres[j as usize], self.skin) {
+                    near.push(j);
+                }
+            });
+            while let Some((_, j)) = unequal.next_if(|(low, _)| *low == i) {
+                near.push(*j);
+            }
+            near.sort_unstable();
+            visit(i, &near);
+        }
+    }
+}
+
 /// Calls `visit` with the number of every sphere (centre and radius [m]) and those of higher number
 /// whose surfaces are nearer to its own than `skin` [m], in order.
 pub fn for_each_near(
     spheres: impl Iterator<Item = Row>,
     skin: f64,
-    mut visit: impl FnMut(u32, &[u32]),
+    visit: impl FnMut(u32, &[u32]),
 ) {
     let spheres: Vec<Row> = spheres.collect();
-    let levels = Levels::of(&spheres);
-    let grids = levels.grids(&spheres, skin);
-    let unequal = levels.unequal_pairs(&spheres, &grids, skin);
-    let mut unequal = unequal.iter().peekable();
-    let mut near = Vec::new();
-    for (i, sphere) in (0..).zip(&spheres) {
-        near.clear();
-        grids[levels.level(i)].for_near(sphere, |j| {
-            if j > i && are_near(sphere, &spheres[j as usize], skin) {
-                near.push(j);
-            }
-        });
-        while let Some((_, j)) = unequal.next_if(|(low, _)| *low == i) {
-            near.push(*j);
-        }
-        near.sort_unstable();
-        visit(i, &near);
-    }
+    let all = 0..spheres.len();
+    NearSearch::new(spheres, skin).visit(all, visit);
 }
 
 /// The radius of a sphere, the companion of its centre [m].
@@ -286,5 +320,13 @@ mod tests {
         let expected: Vec<(u32, u32)> = all.filter(|(i, j)| near(*i, *j)).collect();
         assert!(expected.len() > 100, "{}", expected.len());
         assert_eq!(found, expected);
+        let search = NearSearch::new(spheres.to_vec(), skin);
+        let mut in_parts = Vec::new();
+        for part in [0..7, 7..7, 7..250, 250..400] {
+            search.visit(part, |i, near| {
+                in_parts.extend(near.iter().map(|j| (i, *j)));
+            });
+        }
+        assert_eq!(in_parts, expected);
     }
 }

@@ -48,7 +48,7 @@ pub trait Kernel {
         Self: 'a;
 
     /// Takes `world` in; what is known of it from the last call is kept.
-    fn load(&mut self, processor: Processor, world: &World);
+    fn load(&mut self, processor: Processor, pool: &mut WorkerPool, world: &World);
 
     /// Kicks and drifts the grains from the forces of the world; true when the lists must be
     /// brought up to date. The walls have moved already.
@@ -56,7 +56,7 @@ pub trait Kernel {
 
     /// Brings the lists up to date with the positions; returns how often neighbours were searched
     /// for.
-    fn refresh_lists(&mut self, world: &World) -> u64;
+    fn refresh_lists(&mut self, pool: &mut WorkerPool, world: &World) -> u64;
 
     /// Makes the lists suit batches of so many steps.
     fn adapt_lists(&mut self, steps: u64);
@@ -71,7 +71,7 @@ pub trait Kernel {
     fn note(&mut self, tally: &Tally);
 
     /// Puts all but clock and walls back into `world`.
-    fn store(&self, world: &mut World);
+    fn store(&self, pool: &mut WorkerPool, world: &mut World);
 
     /// The grain whose state is absurd, and what is wrong with it.
     fn find_fault(&self) -> (usize, FaultKind);
@@ -171,12 +171,14 @@ impl Resources<'_> {
         steps: u64,
     ) -> Result<(), Fault> {
         let processor = self.processor;
+        let pool = &mut *self.pool;
         self.profile
-            .time_stage(Stage::Exchange, || kernel.load(processor, world));
+            .time_stage(Stage::Exchange, || kernel.load(processor, pool, world));
         self.take_steps(kernel, world, steps)
             .map_err(|done| diagnose(kernel, world, done))?;
+        let pool = &mut *self.pool;
         self.profile
-            .time_stage(Stage::Exchange, || store(kernel, world, steps));
+            .time_stage(Stage::Exchange, || store(kernel, pool, world, steps));
         self.profile.listed = kernel.listed();
         Ok(())
     }
@@ -197,9 +199,10 @@ impl Resources<'_> {
         let mut done = 0;
         while done < steps {
             if refresh {
+                let pool = &mut *self.pool;
                 let searches = self
                     .profile
-                    .time_stage(Stage::Neighbours, || kernel.refresh_lists(world));
+                    .time_stage(Stage::Neighbours, || kernel.refresh_lists(pool, world));
                 self.profile.rebuilds += searches;
             }
             let batch = self.take_batch(kernel, steps - done);
@@ -355,8 +358,8 @@ fn raise(flag: &AtomicBool, raised: bool) {
 }
 
 /// Puts the working copy, `steps` steps on, back into `world`.
-fn store(kernel: &mut impl Kernel, world: &mut World, steps: u64) {
-    kernel.store(world);
+fn store(kernel: &mut impl Kernel, pool: &mut WorkerPool, world: &mut World, steps: u64) {
+    kernel.store(pool, world);
     world.clock.step += steps;
     let dt = kernel.time_step();
     kernel.walls().store(&mut world.container, steps, dt);

@@ -16,6 +16,11 @@
 //! | [`ForcePhase`] | bodies, films, vertices and planes of faces | what pairs do to their sides |
 //! | [`MotionPhase`] | what pairs do to their sides | bodies, films, vertices and planes of faces |
 //!
+//! Between batches the caller goes on alone, but for what of a large bed is worth sharing: lists that
+//! are made anew, the way from a world's columns to rows and back. [`WorkerPool::map`] gives each
+//! worker a share of it to own, and puts what comes of them one behind the other: ordinary borrows,
+//! and the same whatever the number of workers.
+//!
 //! What only one worker ever touches (springs, bridges, lists of features, sums of forces) is cut
 //! into ranges by [`super::ranges::split`] and is an ordinary `&mut` slice. What one phase writes
 //! and the other reads is a [`Column`], of which each worker holds the part that is its own.
@@ -30,7 +35,7 @@
 //! and it opens only columns of its own batch, which is checked at each use.
 
 use super::barrier::{Barrier, OwnLine, PATIENCE, wait_until};
-use super::ranges::in_order;
+use super::ranges::{in_order, range_of};
 use std::cell::UnsafeCell;
 use std::hint::spin_loop;
 use std::marker::PhantomData;
@@ -47,6 +52,9 @@ pub struct WorkerPool {
     board: Arc<Board>,
     threads: Vec<JoinHandle<()>>,
 }
+
+/// Fewer grains or pairs than this are gone through before other workers are awake.
+const WORTH_SHARING: usize = 4096;
 
 /// Work for the workers, by number.
 type RoundWork = dyn Fn(usize) + Sync;
@@ -118,18 +126,65 @@ impl WorkerPool {
         );
         let under_way = batch.under_way.swap(true, Ordering::Acquire);
         assert!(!under_way, "a batch runs once at a time");
+        let results = self.hand_out(shares, |worker, share| {
+            work(share, InPhase::begin(batch, worker))
+        });
+        batch.under_way.store(false, Ordering::Release);
+        results
+    }
+
+    /// Cuts `count` things, of which `together` at a time stay together, into ranges to be worked on at
+    /// once: into one where there are too few to be worth it.
+    pub fn ranges(&self, count: usize, together: usize) -> Vec<Range<usize>> {
+        let size = if count < WORTH_SHARING {
+            1
+        } else {
+            self.size()
+        };
+        let pieces = count.div_ceil(together);
+        let range = |worker| {
+            let range = range_of(pieces, worker, size);
+            (together * range.start).min(count)..(together * range.end).min(count)
+        };
+        (0..size).map(range).collect()
+    }
+
+    /// Runs `work` on each of the `shares`, by as many workers as there are of them, and returns what
+    /// comes of each, in their order. A single one is worked on by the caller.
+    ///
+    /// # Panics
+    /// When there are more shares than workers.
+    pub fn map<S: Send, R: Send>(
+        &mut self,
+        shares: Vec<S>,
+        work: impl Fn(S) -> R + Sync,
+    ) -> Vec<R> {
+        assert!(shares.len() <= self.size(), "a worker for each share");
+        if shares.len() <= 1 {
+            return shares.into_iter().map(work).collect();
+        }
+        self.hand_out(shares, |_, share| work(share))
+    }
+
+    /// Runs `work(worker, share)` with each worker's share, where it has one.
+    fn hand_out<S: Send, R: Send>(
+        &mut self,
+        shares: Vec<S>,
+        work: impl Fn(usize, S) -> R + Sync,
+    ) -> Vec<R> {
         let slot = |share| Mutex::new((Some(share), None));
         let slots: Vec<Mutex<(Option<S>, Option<R>)>> = shares.into_iter().map(slot).collect();
         self.run_job(|worker| {
-            let share = slots[worker].lock().map(|mut slot| slot.0.take());
-            if let Ok(Some(share)) = share {
-                let result = work(share, InPhase::begin(batch, worker));
+            let share = slots
+                .get(worker)
+                .and_then(|slot| slot.lock().ok()?.0.take());
+            if let Some(share) = share {
+                let result = work(worker, share);
                 if let Ok(mut slot) = slots[worker].lock() {
                     slot.1 = Some(result);
                 }
             }
         });
-        batch.under_way.store(false, Ordering::Release);
         let results = slots.into_iter().filter_map(|slot| {
             let (_, result) = slot.into_inner().unwrap_or_else(PoisonError::into_inner);
             result
@@ -450,6 +505,21 @@ mod tests {
         let alone = smoothed(1, steps);
         for size in [2, 3, 8] {
             assert_eq!(smoothed(size, steps), alone, "{size} workers");
+        }
+    }
+
+    #[test]
+    fn ranges_to_be_shared_are_whole_and_what_comes_of_them_is_in_their_order() {
+        for size in [1, 2, 3, 8] {
+            let mut pool = WorkerPool::new(size);
+            for (count, together) in [(0, 8), (3, 1), (5000, 1), (5000, 8), (4096, 8)] {
+                let ranges = pool.ranges(count, together);
+                assert_eq!(ranges.len(), if count < WORTH_SHARING { 1 } else { size });
+                let inner = &ranges[..ranges.len() - 1];
+                assert!(inner.iter().all(|range| range.end % together == 0));
+                let found = pool.map(ranges, |range| range.collect::<Vec<usize>>());
+                assert_eq!(found.concat(), (0..count).collect::<Vec<usize>>());
+            }
         }
     }
 

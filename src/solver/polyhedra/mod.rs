@@ -61,7 +61,7 @@ use super::FaultKind;
 use super::row::{row, vector};
 use super::step::{Kernel, Tally};
 use super::walls::Walls;
-use super::workers::Batch;
+use super::workers::{Batch, WorkerPool};
 use crate::lanes::Processor;
 use crate::physics::{FeatureRule, Integrator};
 use crate::world::{Contact, World};
@@ -92,7 +92,7 @@ impl Kernel for PolyhedronKernel {
 
     /// Pairs and lists of the last call are kept where the world is as that call left it; else all
     /// is made anew, to the same results.
-    fn load(&mut self, processor: Processor, world: &World) {
+    fn load(&mut self, processor: Processor, _pool: &mut WorkerPool, world: &World) {
         self.dt = world.clock.time_step;
         if self.integrator != world.integrator() {
             self.integrator = world.integrator();
@@ -132,7 +132,7 @@ impl Kernel for PolyhedronKernel {
     }
 
     /// Finds the pairs anew. Their lists of features have slacks of their own and are left alone.
-    fn refresh_lists(&mut self, world: &World) -> u64 {
+    fn refresh_lists(&mut self, _pool: &mut WorkerPool, world: &World) -> u64 {
         self.find_pairs(world);
         1
     }
@@ -153,7 +153,7 @@ impl Kernel for PolyhedronKernel {
     fn note(&mut self, _tally: &Tally) {}
 
     /// The histories of the features that touch, and the contact force of each pair that does.
-    fn store(&self, world: &mut World) {
+    fn store(&self, _pool: &mut WorkerPool, world: &mut World) {
         let grains = &mut world.grains;
         if let Some(polyhedra) = &mut world.polyhedra {
             for (i, (body, load)) in self.bodies.iter().zip(&self.loads).enumerate() {

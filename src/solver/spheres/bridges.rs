@@ -193,7 +193,7 @@ impl BridgeColumns {
     }
 
     /// Sets it.
-    fn set(&mut self, k: usize, row: &BridgeRow) {
+    pub fn set(&mut self, k: usize, row: &BridgeRow) {
         let columns = self.state.iter_mut().chain(&mut self.drag);
         let columns = columns.chain(&mut self.constants);
         let numbers = row.state.iter().chain(&row.drag[..3]);

@@ -41,6 +41,7 @@ impl Kinds {
     pub fn classify(&mut self, world: &World) -> bool {
         let grains = &world.grains;
         let mut classes = HashMap::new();
+        let mut last = None;
         let class_of: Vec<u32> = (0..grains.len())
             .map(|i| {
                 let material = world.species[usize::from(grains.species[i].0)].material;
@@ -49,8 +50,16 @@ impl Kinds {
                     grains.mass[i].to_bits(),
                     material,
                 );
+                // Grains that are alike follow each other, as a rule.
+                if let Some((known, class)) = last
+                    && known == key
+                {
+                    return class;
+                }
                 let next = classes.len() as u32;
-                *classes.entry(key).or_insert(next)
+                let class = *classes.entry(key).or_insert(next);
+                last = Some((key, class));
+                class
             })
             .collect();
         let wall_materials: Vec<u16> = world
@@ -96,16 +105,55 @@ impl Kinds {
 
     /// The kind of `grain` and its `partner`.
     pub fn of(&mut self, grain: u32, partner: Partner) -> PairKind {
-        let class = self.class_of[grain as usize];
+        let next = PairKind(self.examples.len() as u32);
+        *self
+            .index
+            .entry(self.classes(grain, partner))
+            .or_insert_with(|| {
+                self.examples.push((grain as usize, partner));
+                next
+            })
+    }
+
+    /// Finds kinds that have been met.
+    pub fn finder(&self) -> KindFinder<'_> {
+        KindFinder {
+            kinds: self,
+            last: None,
+        }
+    }
+
+    /// What tells the kind of a pair.
+    fn classes(&self, grain: u32, partner: Partner) -> Classes {
         let side = match partner {
             Partner::Grain(j) => PartnerClass::Class(self.class_of[j as usize]),
             Partner::Wall(w) => PartnerClass::Wall(w),
         };
-        let next = PairKind(self.examples.len() as u32);
-        *self.index.entry((class, side)).or_insert_with(|| {
-            self.examples.push((grain as usize, partner));
-            next
-        })
+        (self.class_of[grain as usize], side)
+    }
+}
+
+/// A grain's class and that of its partner.
+type Classes = (u32, PartnerClass);
+
+/// Finds kinds of pairs that have been met: quickly where pairs of one kind follow each other.
+pub struct KindFinder<'a> {
+    kinds: &'a Kinds,
+    last: Option<(Classes, PairKind)>,
+}
+
+impl KindFinder<'_> {
+    /// The kind of `grain` and its `partner`; none where no pair of it has been met yet.
+    pub fn find(&mut self, grain: u32, partner: Partner) -> Option<PairKind> {
+        let classes = self.kinds.classes(grain, partner);
+        if let Some((known, kind)) = self.last
+            && known == classes
+        {
+            return Some(kind);
+        }
+        let kind = *self.kinds.index.get(&classes)?;
+        self.last = Some((classes, kind));
+        Some(kind)
     }
 }
 

@@ -47,11 +47,12 @@ mod terms;
 mod working_copy;
 
 use super::FaultKind;
+use super::ranges::split_once;
 use super::row::{length_squared, row, vector};
 use super::step::{Kernel, Tally};
 use super::tangential::UNLOADED;
 use super::walls::Walls;
-use super::workers::Batch;
+use super::workers::{Batch, WorkerPool};
 use crate::lanes::Processor;
 use crate::physics::Liquid;
 use crate::physics::law::{BridgeKinds, LawSource, contributions, rupture_gap};
@@ -59,9 +60,9 @@ use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
 use integrate::{SphereLoad, StartStep, StepConstants};
 pub use normal_law::NormalLaw;
-use pair_list::{ContactMemory, PairOrder, SpherePairs};
+use pair_list::{PairOrder, SpherePairs};
 use parts::Part;
-use rows::{PairKind, Sphere, SpherePair, WallId};
+use rows::{PairKind, Sphere, SpherePair};
 use share::SphereShare;
 pub use terms::force_terms;
 pub use working_copy::SphereKernel;
@@ -74,7 +75,7 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
 
     /// Lists and slots of the last call are kept where they still suit the world: they never show
     /// in a result. Histories are always the world's.
-    fn load(&mut self, _processor: Processor, world: &World) {
+    fn load(&mut self, _processor: Processor, pool: &mut WorkerPool, world: &World) {
         if !self.kinds.classify(world) {
             self.neighbours.forget();
         }
@@ -91,10 +92,10 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
             gravity: row(world.gravity, 0.0),
             slack_squared: 0.0,
         };
-        self.load_grains(world);
+        self.load_grains(pool, world);
         self.load_liquid(world);
-        self.fit_lists(world);
-        self.load_histories(&world.contacts);
+        self.fit_lists(pool, world);
+        self.neighbours.load_histories(&world.contacts, &self.slots);
     }
 
     fn start(&mut self, processor: Processor) -> bool {
@@ -110,8 +111,8 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
     }
 
     /// A search may meet kinds of pairs that there were none of before: they need constants.
-    fn refresh_lists(&mut self, world: &World) -> u64 {
-        let searches = self.refresh();
+    fn refresh_lists(&mut self, pool: &mut WorkerPool, world: &World) -> u64 {
+        let searches = self.refresh(pool);
         self.kinds.complete(self.source, world);
         searches
     }
@@ -135,7 +136,7 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
     }
 
     /// Columns are written in the order of the grains' indices, contacts too: slots do not show.
-    fn store(&self, world: &mut World) {
+    fn store(&self, pool: &mut WorkerPool, world: &mut World) {
         let grains = &mut world.grains;
         let indices = self.slots.grains().iter().map(|grain| *grain as usize);
         for (i, (body, load)) in indices.clone().zip(self.bodies.iter().zip(&self.loads)) {
@@ -156,7 +157,7 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
         }
         world.ledger.ruptures += self.ruptures;
         world.contacts.clear();
-        self.collect_contacts(&mut world.contacts);
+        self.collect_contacts(pool, &mut world.contacts);
     }
 
     /// Of several grains the one of lowest index, so that the message does not depend on slots.
@@ -186,15 +187,24 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
 
 impl<S: LawSource> SphereKernel<S> {
     /// Rows of the grains, slot by slot, and of the padding body.
-    fn load_grains(&mut self, world: &World) {
+    fn load_grains(&mut self, pool: &mut WorkerPool, world: &World) {
         let (grains, dt) = (&world.grains, world.clock.time_step);
-        self.bodies.clear();
-        self.loads.clear();
-        for i in self.slots.grains().iter().map(|grain| *grain as usize) {
-            self.bodies.push(Sphere::of(grains, i));
-            self.loads.push(SphereLoad::of(grains, i, dt));
-        }
-        self.bodies.push(Sphere::default());
+        let count = grains.len();
+        self.bodies.resize(count + 1, Sphere::default());
+        self.bodies[count] = Sphere::default();
+        self.loads.resize(count, SphereLoad::default());
+        let ranges = pool.ranges(count, 1);
+        let rows = split_once(&mut self.bodies, ranges.iter().cloned())
+            .zip(split_once(&mut self.loads, ranges.iter().cloned()));
+        let shares = ranges.iter().cloned().zip(rows).collect();
+        let indices = self.slots.grains();
+        pool.map(shares, |(range, (bodies, loads))| {
+            for ((body, load), grain) in bodies.iter_mut().zip(loads).zip(&indices[range]) {
+                let i = *grain as usize;
+                *body = Sphere::of(grains, i);
+                *load = SphereLoad::of(grains, i, dt);
+            }
+        });
     }
 
     /// Films, bridges and what bridges have done; the lists reach as far as any bridge can.
@@ -261,50 +271,44 @@ impl<S: LawSource> SphereKernel<S> {
     }
 
     /// Makes the lists fit the positions that were just loaded.
-    fn fit_lists(&mut self, world: &World) {
+    fn fit_lists(&mut self, pool: &mut WorkerPool, world: &World) {
         if self.liquid.is_some() || !self.neighbours.inner_covers(&self.bodies, &self.walls) {
-            self.refresh();
+            self.refresh(pool);
         }
         self.kinds.compute(self.source, world);
         let slack = self.neighbours.slack();
         self.motion.slack_squared = slack * slack;
     }
 
-    /// Gives the listed pairs the histories of the world's contacts; all others have none.
-    fn load_histories(&mut self, contacts: &[Contact]) {
-        let (mut of_grains, mut of_walls) = (Vec::new(), Vec::new());
-        for contact in contacts {
-            match contact.partner {
-                Partner::Grain(j) => {
-                    let pair = self.pair(contact, self.slots.slot_of(j));
-                    of_grains.push((pair, history(contact)));
-                }
-                Partner::Wall(w) => {
-                    of_walls.push((self.pair(contact, WallId(w)), history(contact)));
-                }
-            }
-        }
-        self.neighbours.load_histories(of_grains, of_walls);
-    }
-
     /// The contacts of the grains, sorted by grain and partner.
-    fn collect_contacts(&self, contacts: &mut Vec<Contact>) {
-        for i in 0..self.loads.len() as u32 {
-            let parts = self.neighbours.parts.of(self.slots.slot_of(i));
-            let contact = |part: &Part| self.neighbours.contact(*part, &self.slots);
-            contacts.extend(parts.iter().filter_map(contact));
+    fn collect_contacts(&self, pool: &mut WorkerPool, contacts: &mut Vec<Contact>) {
+        let ranges = pool.ranges(self.loads.len(), 1);
+        let found = pool.map(ranges, |range| {
+            let mut found = Vec::new();
+            for i in range {
+                let parts = self.neighbours.parts.of(self.slots.slot_of(i as u32));
+                let contact = |part: &Part| self.neighbours.contact(*part, &self.slots);
+                found.extend(parts.iter().filter_map(contact));
+            }
+            found
+        });
+        let count = found.iter().map(Vec::len).sum();
+        contacts.reserve(count);
+        for mut own in found {
+            contacts.append(&mut own);
         }
     }
 
     /// Brings the lists up to date with the positions; returns how often neighbours were searched
     /// for.
-    fn refresh(&mut self) -> u64 {
+    fn refresh(&mut self, pool: &mut WorkerPool) -> u64 {
         let before = self.neighbours.searches;
-        let kinds = &mut self.kinds;
-        self.neighbours
-            .refresh(&self.bodies, &self.walls, &self.slots, |grain, partner| {
-                kinds.of(grain, partner)
-            });
+        self.neighbours.refresh(
+            pool,
+            (&self.bodies, &self.walls),
+            &self.slots,
+            &mut self.kinds,
+        );
         let slack = self.neighbours.slack();
         self.motion.slack_squared = slack * slack;
         self.neighbours.searches - before
@@ -332,14 +336,6 @@ impl<S: LawSource> SphereKernel<S> {
         } else {
             None
         }
-    }
-}
-
-/// What a contact remembers, in rows.
-fn history(contact: &Contact) -> ContactMemory {
-    ContactMemory {
-        spring: row(contact.spring, contact.stiffness),
-        rolling: row(contact.rolling, f64::from(u8::from(contact.touching))),
     }
 }
 

@@ -23,15 +23,19 @@
 //! Not here: the search itself ([`super::super::grid`]), histories on their way from list to list
 //! ([`super::pair_list`]), sums ([`super::parts`]).
 
-use super::super::grid::for_each_near;
-use super::super::row::{Row, length_squared, sub, vector};
+use super::super::grid::NearSearch;
+use super::super::row::{Row, length_squared, row, sub, vector};
+use super::super::tangential::UNLOADED;
 use super::super::walls::Walls;
+use super::super::workers::WorkerPool;
 use super::bridges::BridgeEffect;
-use super::pair_list::{ContactMemory, PairOrder, SpherePairs, fill_group};
+use super::kinds::{KindFinder, Kinds};
+use super::pair_list::{PairOrder, SpherePairs, fill_group};
 use super::parts::{Part, Parts};
 use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
 use super::slots::Slots;
 use crate::world::{Contact, Partner, Surface};
+use std::ops::Range;
 
 /// Both lists.
 #[derive(Default)]
@@ -160,16 +164,41 @@ impl Neighbours {
         }
     }
 
-    /// Gives the listed pairs these histories of pairs of grains and of pairs with walls; all others
-    /// have none.
-    pub fn load_histories(
-        &mut self,
-        of_grains: Vec<(SpherePair, ContactMemory)>,
-        of_walls: Vec<(SpherePair<WallId>, ContactMemory)>,
-    ) {
-        let (forces, wall_forces) = self.forces.split_at_mut(self.grains.pairs.len());
-        self.grains.load_histories(of_grains, forces);
-        self.walls.load_histories(of_walls, wall_forces);
+    /// Gives the listed pairs the histories of these contacts; all others have none.
+    pub fn load_histories(&mut self, contacts: &[Contact], slots: &Slots) {
+        self.grains.springs.fill(UNLOADED);
+        self.walls.springs.fill(UNLOADED);
+        for force in &mut self.forces {
+            force.rolling = UNLOADED;
+        }
+        // Contacts come, as a rule, in the order of the parts.
+        let (mut grain, mut next) = (u32::MAX, 0);
+        for contact in contacts {
+            if contact.grain != grain {
+                (grain, next) = (contact.grain, 0);
+            }
+            let [_, own] = self.parts.by_side(slots.slot_of(grain).index());
+            let is_of = |place: &usize| self.partner(own[*place].pair(), slots) == contact.partner;
+            let Some(place) = (next..own.len()).chain(0..next).find(is_of) else {
+                continue;
+            };
+            let index = own[place].pair();
+            next = place + 1;
+            self.forces[index].rolling = row(contact.rolling, f64::from(contact.touching));
+            let spring = row(contact.spring, contact.stiffness);
+            match index.checked_sub(self.grains.pairs.len()) {
+                None => self.grains.springs[index] = spring,
+                Some(k) => self.walls.springs[k] = spring,
+            }
+        }
+    }
+
+    /// The second side of the listed pair of this index.
+    fn partner(&self, index: usize, slots: &Slots) -> Partner {
+        match index.checked_sub(self.grains.pairs.len()) {
+            None => Partner::Grain(slots.grain_in(self.grains.pairs[index].partner)),
+            Some(k) => Partner::Wall(self.walls.pairs[k].partner.0),
+        }
     }
 
     /// Takes over pairs with their bridges, sorted by their slots, whatever was listed
@@ -195,27 +224,28 @@ impl Neighbours {
             .clamp(INNER_SKIN.start() * radius, INNER_SKIN.end() * radius);
     }
 
-    /// Brings both lists up to date; histories follow their pairs. `kind(grain, partner)` says of
-    /// which kind a pair is, by the grains' indices in the world.
+    /// Brings both lists up to date; histories follow their pairs. `kinds` tells of which kind a pair
+    /// is, and takes note of kinds that were not met before.
     pub fn refresh(
         &mut self,
-        bodies: &[Sphere],
-        walls: &Walls,
+        pool: &mut WorkerPool,
+        (bodies, walls): (&[Sphere], &Walls),
         slots: &Slots,
-        mut kind: impl FnMut(u32, Partner) -> PairKind,
+        kinds: &mut Kinds,
     ) {
         if !self.covers(bodies, walls) {
-            self.search(bodies, walls, slots, &mut kind);
+            self.search(pool, (bodies, walls), slots, kinds);
         }
         let count = bodies.len() - 1;
         let padding = Slot(count as u32);
         let (of_grains, at_walls) = self
             .forces
             .split_at(self.grains.pairs.len().min(self.forces.len()));
-        let pairs = self.inner_pairs(bodies, padding);
-        let torques = self.grains.replace(pairs, of_grains, self.reach.is_some());
+        let pairs = self.inner_pairs(pool, bodies, padding);
+        let wet = self.reach.is_some();
+        let torques = self.grains.replace(pool, pairs, of_grains, wet);
         let pairs = self.inner_pairs_at_walls(bodies, walls, padding);
-        let wall_torques = self.walls.replace(pairs, at_walls, false);
+        let wall_torques = self.walls.replace(pool, pairs, at_walls, false);
 
         let listed = self.grains.pairs.len() + self.walls.pairs.len();
         self.forces.resize(listed, ContactForce::default());
@@ -229,7 +259,7 @@ impl Neighbours {
         let wet = self.grains.bridges.groups.len() * GROUP;
         self.bridge_effects.resize(wet, BridgeEffect::default());
         self.parts
-            .fill(&self.grains.pairs, &self.walls.pairs, slots);
+            .fill(pool, &self.grains.pairs, &self.walls.pairs, slots);
         self.surfaces.clear();
         self.surfaces.extend(walls.surfaces().cloned());
         self.reference.clear();
@@ -239,23 +269,33 @@ impl Neighbours {
 
     /// The pairs of grains on the outer list that belong on the inner one: near ones and those with
     /// a bridge.
-    fn inner_pairs(&self, bodies: &[Sphere], padding: Slot) -> Vec<SpherePair> {
+    fn inner_pairs(
+        &self,
+        pool: &mut WorkerPool,
+        bodies: &[Sphere],
+        padding: Slot,
+    ) -> Vec<SpherePair> {
         let skin = self.skins.inner;
-        let close = |pair: &&SpherePair| {
+        let close = |pair: &SpherePair| {
             let (a, b) = (&bodies[pair.grain.index()], &bodies[pair.partner.index()]);
             let reach = a.radius() + b.radius() + skin;
             length_squared(sub(b.position, a.position)) < reach * reach
         };
-        let mut bridged = self.grains.bridged().peekable();
-        let mut is_bridged = |pair: &SpherePair| {
-            while bridged.next_if(|known| *known < pair.key()).is_some() {}
-            bridged.next_if_eq(&pair.key()).is_some()
-        };
-        let outer = self.outer_grains.iter();
-        let mut pairs: Vec<SpherePair> = outer
-            .filter(|pair| is_bridged(pair) || close(pair))
-            .copied()
-            .collect();
+        let ranges = pool.ranges(self.outer_grains.len(), 1);
+        let found = pool.map(ranges, |range| {
+            let outer = &self.outer_grains[range];
+            let from = outer.first().map(PairOrder::key);
+            let mut bridged = from.map(|key| self.grains.bridged(key).peekable());
+            let mut is_bridged = |pair: &SpherePair| {
+                bridged.as_mut().is_some_and(|bridged| {
+                    while bridged.next_if(|known| *known < pair.key()).is_some() {}
+                    bridged.next_if_eq(&pair.key()).is_some()
+                })
+            };
+            let belongs = |pair: &&SpherePair| is_bridged(pair) || close(pair);
+            outer.iter().filter(belongs).copied().collect()
+        });
+        let mut pairs = joined(found);
         let padding = SpherePair {
             grain: padding,
             partner: padding,
@@ -293,48 +333,38 @@ impl Neighbours {
     /// Makes the outer lists anew.
     fn search(
         &mut self,
-        bodies: &[Sphere],
-        walls: &Walls,
+        pool: &mut WorkerPool,
+        (bodies, walls): (&[Sphere], &Walls),
         slots: &Slots,
-        kind: &mut impl FnMut(u32, Partner) -> PairKind,
+        kinds: &mut Kinds,
     ) {
         self.searches += 1;
         let bodies = &bodies[..bodies.len() - 1];
         self.set_skins(bodies);
         let outer = self.skins.outer;
-        let index = |slot: Slot| slots.grain_in(slot);
-        let spheres = bodies.iter().map(with_radius);
-        let pairs = &mut self.outer_grains;
-        pairs.clear();
-        for_each_near(spheres, outer, |slot, partners| {
-            let slot = Slot(slot);
-            pairs.extend(partners.iter().map(|&other| {
-                let other = Slot(other);
-                let (grain, partner) = if index(slot) < index(other) {
-                    (slot, other)
-                } else {
-                    (other, slot)
-                };
-                let kind = kind(index(grain), Partner::Grain(index(partner)));
-                SpherePair {
-                    grain,
-                    partner,
-                    kind,
-                }
-            }));
-        });
-        self.outer_walls.clear();
-        for (partner, wall) in (0..).map(WallId).zip(walls.iter()) {
-            for (grain, body) in (0..).map(Slot).zip(bodies) {
-                let distance = wall.surface.distance(vector(body.position)).0;
-                if distance < body.radius() + outer {
-                    self.outer_walls.push(SpherePair {
-                        grain,
-                        partner,
-                        kind: kind(index(grain), Partner::Wall(partner.0)),
-                    });
-                }
-            }
+        let near = NearSearch::new(bodies.iter().map(with_radius).collect(), outer);
+        let search = OuterSearch {
+            outer,
+            near: &near,
+            bodies,
+            walls,
+            slots,
+        };
+        let ranges = pool.ranges(bodies.len(), 1);
+        let finder = || kinds.finder();
+        let found = pool.map(ranges, |range| search.run(range, finder()));
+        let (of_grains, at_walls): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        self.outer_grains = joined(of_grains);
+        self.outer_walls = joined(at_walls);
+        // Of one wall they are in the order of the grains already.
+        self.outer_walls.sort_by_key(|pair| pair.partner);
+        for pair in unknown(&mut self.outer_grains) {
+            let [grain, partner] = [pair.grain, pair.partner].map(|slot| slots.grain_in(slot));
+            pair.kind = kinds.of(grain, Partner::Grain(partner));
+        }
+        for pair in unknown(&mut self.outer_walls) {
+            let wall = Partner::Wall(pair.partner.0);
+            pair.kind = kinds.of(slots.grain_in(pair.grain), wall);
         }
         self.outer_surfaces.clear();
         self.outer_surfaces.extend(walls.surfaces().cloned());
@@ -357,6 +387,76 @@ impl Neighbours {
             outer: smallest * OUTER_SKIN + self.reach.unwrap_or(0.0),
             radius: smallest,
         };
+    }
+}
+
+/// What the outer lists are made from.
+struct OuterSearch<'a> {
+    /// Width of the skin [m].
+    outer: f64,
+    near: &'a NearSearch,
+    bodies: &'a [Sphere],
+    walls: &'a Walls,
+    slots: &'a Slots,
+}
+
+/// Pairs of grains, and pairs of a grain and a wall.
+type BothKinds = (Vec<SpherePair>, Vec<SpherePair<WallId>>);
+
+impl OuterSearch<'_> {
+    /// The pairs whose lower slots are these, and those of these slots with walls.
+    fn run(&self, slots: Range<usize>, mut kinds: KindFinder<'_>) -> BothKinds {
+        let (mut of_grains, mut at_walls) = (Vec::new(), Vec::new());
+        let index = |slot: Slot| self.slots.grain_in(slot);
+        self.near.visit(slots.clone(), |slot, partners| {
+            let slot = Slot(slot);
+            of_grains.extend(partners.iter().map(|&other| {
+                let other = Slot(other);
+                let (grain, partner) = if index(slot) < index(other) {
+                    (slot, other)
+                } else {
+                    (other, slot)
+                };
+                let kind = kinds.find(index(grain), Partner::Grain(index(partner)));
+                SpherePair {
+                    grain,
+                    partner,
+                    kind: kind.unwrap_or(PairKind::UNKNOWN),
+                }
+            }));
+        });
+        for (partner, wall) in (0..).map(WallId).zip(self.walls.iter()) {
+            for (grain, body) in (slots.start as u32..)
+                .map(Slot)
+                .zip(&self.bodies[slots.clone()])
+            {
+                let distance = wall.surface.distance(vector(body.position)).0;
+                if distance < body.radius() + self.outer {
+                    let kind = kinds.find(index(grain), Partner::Wall(partner.0));
+                    at_walls.push(SpherePair {
+                        grain,
+                        partner,
+                        kind: kind.unwrap_or(PairKind::UNKNOWN),
+                    });
+                }
+            }
+        }
+        (of_grains, at_walls)
+    }
+}
+
+/// The pairs whose kind is not known yet.
+fn unknown<P>(pairs: &mut [SpherePair<P>]) -> impl Iterator<Item = &mut SpherePair<P>> {
+    let is_unknown = |pair: &&mut SpherePair<P>| pair.kind == PairKind::UNKNOWN;
+    pairs.iter_mut().filter(is_unknown)
+}
+
+/// What workers have found, one behind the other.
+fn joined<T: Copy>(mut found: Vec<Vec<T>>) -> Vec<T> {
+    if found.len() == 1 {
+        found.swap_remove(0)
+    } else {
+        found.concat()
     }
 }
 

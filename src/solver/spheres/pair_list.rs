@@ -5,19 +5,13 @@
 //! list. Both lists are sorted by one key, so that one pass over both finds what stands in both.
 //! Pairs come in whole groups ([`GROUP`]): the last ones may be padding.
 
+use super::super::ranges::split_once;
 use super::super::tangential::UNLOADED;
+use super::super::workers::WorkerPool;
 use super::bridges::Bridges;
 use super::rows::{ContactForce, GROUP, PairKind, Slot, SpherePair, WallId};
 use crate::lanes::Row;
-
-/// What a contact remembers from one step to the next, as it comes from a world.
-#[derive(Clone, Copy)]
-pub struct ContactMemory {
-    /// Tangential spring [m]; its stiffness when it was last updated [N/m].
-    pub spring: Row,
-    /// Torque of rolling friction on the grain [N m]; 1 where the two touched.
-    pub rolling: Row,
-}
+use std::ops::Range;
 
 /// Pairs of grains with partners `P`, and what they remember, in whole groups: the last ones may be
 /// padding.
@@ -35,7 +29,7 @@ pub struct SpherePairs<P = Slot> {
     pub bridges: Bridges,
 }
 
-impl<P> SpherePairs<P>
+impl<P: Sync> SpherePairs<P>
 where
     SpherePair<P>: PairOrder,
 {
@@ -44,50 +38,45 @@ where
     /// new pairs, out of the `forces` of the old ones.
     pub fn replace(
         &mut self,
+        pool: &mut WorkerPool,
         pairs: Vec<SpherePair<P>>,
         forces: &[ContactForce],
         wet: bool,
     ) -> Vec<Row> {
+        let ranges = pool.ranges(pairs.len(), GROUP);
+        let mut springs = vec![UNLOADED; pairs.len()];
+        let mut torques = vec![UNLOADED; pairs.len()];
         let mut bridges = Bridges::none(if wet { pairs.len() } else { 0 });
-        if wet {
-            for (old, new) in in_both(&self.pairs, &pairs) {
-                bridges.set(new, &self.bridges.get(old));
+        let groups = |range: &Range<usize>| {
+            let group = |end: usize| if wet { end.div_ceil(GROUP) } else { 0 };
+            group(range.start)..group(range.end)
+        };
+        let rows = split_once(&mut springs, ranges.iter().cloned())
+            .zip(split_once(&mut torques, ranges.iter().cloned()));
+        let columns = split_once(&mut bridges.groups, ranges.iter().map(groups));
+        let shares = ranges.iter().cloned().zip(rows).zip(columns).collect();
+        let (old, new) = (&*self, &pairs);
+        pool.map(shares, |((range, (springs, torques)), bridges)| {
+            for (from, to) in in_both(&old.pairs, &new[range]) {
+                springs[to] = old.springs[from];
+                torques[to] = forces.get(from).map_or(UNLOADED, |force| force.rolling);
+                if wet {
+                    bridges[to / GROUP].set(to % GROUP, &old.bridges.get(from));
+                }
             }
-        }
-        self.bridges = bridges;
-        self.springs = carried(&self.pairs, &pairs, |old| self.springs[old]);
-        let known = |old: usize| forces.get(old).map_or(UNLOADED, |force| force.rolling);
-        let torques = carried(&self.pairs, &pairs, known);
+        });
         let kind = pairs.first().map(|pair| pair.kind);
         self.kind = kind.filter(|kind| pairs.iter().all(|pair| pair.kind == *kind));
-        self.pairs = pairs;
+        (self.pairs, self.springs, self.bridges) = (pairs, springs, bridges);
         torques
-    }
-
-    /// Gives the listed pairs, and their contact `forces`, the histories of the `known` ones, in any
-    /// order; others have none.
-    pub fn load_histories(
-        &mut self,
-        mut known: Vec<(SpherePair<P>, ContactMemory)>,
-        forces: &mut [ContactForce],
-    ) {
-        known.sort_unstable_by_key(|(pair, _)| pair.key());
-        let (pairs, histories): (Vec<_>, Vec<_>) = known.into_iter().unzip();
-        self.springs.fill(UNLOADED);
-        for force in &mut *forces {
-            force.rolling = UNLOADED;
-        }
-        for (old, new) in in_both(&pairs, &self.pairs) {
-            self.springs[new] = histories[old].spring;
-            forces[new].rolling = histories[old].rolling;
-        }
     }
 }
 
 impl SpherePairs {
-    /// The keys of the pairs that have a bridge, in order.
-    pub fn bridged(&self) -> impl Iterator<Item = (Slot, Slot)> {
-        let pairs = self.pairs.iter().enumerate();
+    /// The keys of the pairs that have a bridge, in order, from the key `first` on.
+    pub fn bridged(&self, first: (Slot, Slot)) -> impl Iterator<Item = (Slot, Slot)> {
+        let begin = self.pairs.partition_point(|pair| pair.key() < first);
+        let pairs = self.pairs.iter().enumerate().skip(begin);
         pairs
             .filter(|(k, _)| self.bridges.get(*k).exists())
             .map(|(_, pair)| pair.key())
@@ -127,29 +116,15 @@ pub fn fill_group<P: Copy>(pairs: &mut Vec<SpherePair<P>>, padding: SpherePair<P
     pairs.resize(pairs.len().next_multiple_of(GROUP), padding);
 }
 
-/// What the pairs of the old list remember, for those of the new one; nothing where a pair is new.
-fn carried<P>(
-    old: &[SpherePair<P>],
-    new: &[SpherePair<P>],
-    remembered: impl Fn(usize) -> Row,
-) -> Vec<Row>
-where
-    SpherePair<P>: PairOrder,
-{
-    let mut rows = vec![UNLOADED; new.len()];
-    for (from, to) in in_both(old, new) {
-        rows[to] = remembered(from);
-    }
-    rows
-}
-
 /// Where the pairs that stand in both lists, each sorted by its key, stand in the old and in the
 /// new one.
 fn in_both<P>(old: &[SpherePair<P>], new: &[SpherePair<P>]) -> impl Iterator<Item = (usize, usize)>
 where
     SpherePair<P>: PairOrder,
 {
-    let mut known = old.iter().enumerate().peekable();
+    let first = new.first().map(PairOrder::key);
+    let begin = first.map_or(0, |first| old.partition_point(|pair| pair.key() < first));
+    let mut known = old.iter().enumerate().skip(begin).peekable();
     new.iter().enumerate().filter_map(move |(k, pair)| {
         while known.next_if(|(_, old)| old.key() < pair.key()).is_some() {}
         let (known, _) = known.next_if(|(_, old)| old.key() == pair.key())?;

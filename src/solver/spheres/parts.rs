@@ -6,8 +6,11 @@
 //! as neither slots nor the place of a pair in its list enter it: so a sum over a grain's parts has
 //! the same bits whatever the lists and the spatial sort are.
 
+use super::super::ranges::split_once;
+use super::super::workers::WorkerPool;
 use super::rows::{Slot, SpherePair, WallId};
 use super::slots::Slots;
+use std::ops::Range;
 
 /// A grain's part in a pair.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,7 +70,13 @@ impl Parts {
     }
 
     /// Sorts both sides of the pairs; slots behind those of the grains are padding's.
-    pub fn fill(&mut self, grains: &[SpherePair], walls: &[SpherePair<WallId>], slots: &Slots) {
+    pub fn fill(
+        &mut self,
+        pool: &mut WorkerPool,
+        grains: &[SpherePair],
+        walls: &[SpherePair<WallId>],
+        slots: &Slots,
+    ) {
         let count = slots.grains().len();
         let is_grain = |(slot, _): &(Slot, Part)| slot.index() < count;
         let seconds = || {
@@ -115,10 +124,19 @@ impl Parts {
             // Walls come last, in the order of the pairs, which is theirs.
             None => u32::MAX,
         };
-        for i in 0..count {
-            let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
-            self.list[first as usize..own as usize].sort_by_key(other);
-            self.list[own as usize..end as usize].sort_by_key(other);
-        }
+        let ranges = pool.ranges(count, 1);
+        let (first, own) = (&self.first, &self.own);
+        let places = |range: &Range<usize>| first[range.start] as usize..first[range.end] as usize;
+        let lists = split_once(&mut self.list, ranges.iter().map(places));
+        let shares = ranges.iter().cloned().zip(lists).collect();
+        pool.map(shares, |(range, list): (Range<usize>, &mut [Part])| {
+            let begin = first[range.start];
+            let place = |at: u32| (at - begin) as usize;
+            for i in range {
+                let (start, middle, end) = (place(first[i]), place(own[i]), place(first[i + 1]));
+                list[start..middle].sort_by_key(other);
+                list[middle..end].sort_by_key(other);
+            }
+        });
     }
 }

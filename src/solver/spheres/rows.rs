@@ -55,6 +55,9 @@ impl WallId {
 }
 
 impl PairKind {
+    /// Of a pair whose kind is not known yet.
+    pub const UNKNOWN: Self = Self(u32::MAX);
+
     /// As an index of constants.
     #[inline(always)]
     pub fn index(self) -> usize {

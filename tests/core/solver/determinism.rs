@@ -1,6 +1,7 @@
 //! The same bits for any number of threads, lanes, slices, lists and restores.
 
 use super::*;
+use glam::DVec3;
 use grainfall::scene::{SceneContainer, SceneGrains};
 use grainfall::solver::Processor;
 use grainfall::world::{Contact, StateHash};
@@ -104,6 +105,49 @@ fn any_number_of_threads_gives_the_same_bits() {
                 alone,
                 "{threads} threads"
             );
+        }
+    }
+}
+
+/// In beds of thousands of grains workers share what is done between batches: lists, histories, the
+/// way from the world and back.
+#[test]
+fn large_beds_have_the_same_bits_for_any_number_of_threads() {
+    let fallen = |text: &str| {
+        let mut world = world(text, STEP);
+        for velocity in world.grains.velocity.iter_mut() {
+            *velocity = DVec3::new(0.0, -1.5, 0.0);
+        }
+        Solver::new(2).advance(&mut world, 4000).unwrap();
+        world
+    };
+    let dry = DRUM
+        .replace("radius_mm: 20, width_mm: 12", "radius_mm: 40, width_mm: 40")
+        .replace("count: 300", "count: 5000");
+    let wet = dry.replace("container:", "liquid: (case: 4, volume_ml: 4), container:");
+    for text in [dry, wet] {
+        let start = fallen(&text);
+        let bridges = start
+            .contacts
+            .iter()
+            .filter(|contact| contact.bridge.is_some());
+        println!(
+            "{} contacts, {} bridges",
+            start.contacts.len(),
+            bridges.count()
+        );
+        assert!(start.contacts.len() > 4000, "grains lie on each other");
+        let after = |threads: usize| {
+            let (mut world, mut solver) = (start.clone(), Solver::new(threads));
+            for _ in 0..5 {
+                solver.advance(&mut world, 60).unwrap();
+            }
+            (world.hash(), solver.take_profile().rebuilds)
+        };
+        let alone = after(1);
+        assert!(alone.1 > 1, "neighbours are searched for: {alone:?}");
+        for threads in [2, 3, 8] {
+            assert_eq!(after(threads), alone, "{threads} threads");
         }
     }
 }
