@@ -517,7 +517,7 @@ mod tests {
                 assert_eq!(ranges.len(), if count < WORTH_SHARING { 1 } else { size });
                 let inner = &ranges[..ranges.len() - 1];
                 assert!(inner.iter().all(|range| range.end % together == 0));
-                let found = pool.map(ranges, |range| range.collect::<Vec<usize>>());
+                let found = pool.map(ranges, Iterator::collect::<Vec<usize>>);
                 assert_eq!(found.concat(), (0..count).collect::<Vec<usize>>());
             }
         }

@@ -115,7 +115,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 fn large_beds_have_the_same_bits_for_any_number_of_threads() {
     let fallen = |text: &str| {
         let mut world = world(text, STEP);
-        for velocity in world.grains.velocity.iter_mut() {
+        for velocity in &mut world.grains.velocity {
             *velocity = DVec3::new(0.0, -1.5, 0.0);
         }
         Solver::new(2).advance(&mut world, 4000).unwrap();
