@@ -17,6 +17,7 @@ use crate::run::{
     Session, Stored, Timeline, Value,
 };
 use crate::scene::Scene;
+use crate::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -33,6 +34,12 @@ pub enum Message {
 
 /// Wall-clock time over which a profile is gathered.
 const PROFILE_TIME: Duration = Duration::from_millis(500);
+
+/// Shortest wall-clock time between two pictures of a bed that settles.
+const SETTLING_TIME: Duration = Duration::from_millis(40);
+
+/// And least, relative to what it takes to copy it for the picture.
+const SETTLING_SHARE: u32 = 10;
 
 /// Wall-clock time a piece of work should take: commands wait for it.
 const PIECE_TIME: Duration = Duration::from_millis(10);
@@ -59,6 +66,8 @@ pub struct Engine {
     answered: u64,
     /// Whether it was said that work cannot be kept for the case that the program ends unasked.
     is_beyond_rescue: bool,
+    /// When a bed that settles is shown next; never where none is.
+    shows_settling: Option<Instant>,
     news: Update,
     profiled: Instant,
 }
@@ -115,6 +124,7 @@ impl Engine {
             open_change: None,
             answered: 0,
             is_beyond_rescue: false,
+            shows_settling: options.shows_settling.then(Instant::now),
             news: Update::default(),
             profiled: Instant::now(),
         }
@@ -167,6 +177,7 @@ impl Engine {
     pub fn take_update(&mut self) -> Update {
         let mut update = std::mem::take(&mut self.news);
         update.status = Some(self.status());
+        update.settling = self.settling();
         update.answered = Some(self.answered);
         if let LabStage::Recorded(playback) = &mut self.stage {
             update.warnings.extend(playback.take_notes());
@@ -182,6 +193,19 @@ impl Engine {
             update.answered = update.answered.filter(|_| update.runs.is_some());
         }
         update
+    }
+
+    /// A copy of the bed that settles, where it is time for one.
+    fn settling(&mut self) -> Option<Arc<World>> {
+        let LabStage::Preparing(preparation) = &self.stage else {
+            return None;
+        };
+        let (world, started) = (preparation.settling()?, Instant::now());
+        self.shows_settling.filter(|next| *next <= started)?;
+        let copy = Arc::new(world.without_contacts());
+        let pause = SETTLING_TIME.max(SETTLING_SHARE * started.elapsed());
+        self.shows_settling = Some(Instant::now() + pause);
+        Some(copy)
     }
 
     fn status(&self) -> Status {

@@ -16,6 +16,7 @@ use crate::recording::{Recording, RecordingFacts};
 use crate::run::{Changed, Command, CommandError, Parameter, Provenance, Session, Value, accept};
 use crate::scene::Scene;
 use crate::solver::{TimeStepAdvice, advise};
+use crate::world::World;
 use std::ops::Deref;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -44,6 +45,8 @@ pub struct Lab {
     sent: u64,
     answered: u64,
     status: Status,
+    /// The bed on its way to rest, while it settles.
+    settling: Option<Arc<World>>,
     rate: Rate,
     saved: Saved,
 }
@@ -148,6 +151,7 @@ impl Lab {
             sent: 0,
             answered: 0,
             status: Status::starting(),
+            settling: None,
             rate: Rate::default(),
             saved: Saved::default(),
         };
@@ -215,6 +219,12 @@ impl Lab {
     /// What it does now.
     pub fn status(&self) -> &Status {
         &self.status
+    }
+
+    /// The bed on its way to rest, as of lately and without its contacts: what there is to see before
+    /// there is a run.
+    pub fn settling(&self) -> Option<&Arc<World>> {
+        self.settling.as_ref()
     }
 
     /// Simulated seconds per wall-clock second that were asked for.
@@ -364,6 +374,9 @@ impl Lab {
         if let Some(news) = update.runs {
             self.take_runs(news);
         }
+        let is_preparing = matches!(self.status, Status::Preparing { .. });
+        let settling = update.settling.or(self.settling.take());
+        self.settling = settling.filter(|_| is_preparing);
         self.recording = update.recording.or(self.recording.take());
         self.runs[0].warn(update.warnings);
         let is_there = !matches!(self.status, Status::Seeking { .. });

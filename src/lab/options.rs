@@ -18,6 +18,8 @@ pub struct Options {
     pub speed: f64,
     /// Where settled beds are looked for and kept.
     pub beds: BedStore,
+    /// Whether a bed that has to settle is shown meanwhile.
+    pub shows_settling: bool,
     /// Commands carried out by themselves when their time comes.
     pub script: Vec<ScriptedCommand>,
     /// Memory for keyframes [bytes]; without any, an earlier moment is computed again from time
@@ -43,6 +45,7 @@ impl Options {
             autoplay: true,
             speed: 1.0,
             beds: BedStore::user(),
+            shows_settling: true,
             script: Vec::new(),
             memory: WINDOW_MEMORY,
         }
@@ -54,6 +57,7 @@ impl Options {
             driver: DriverKind::Inline,
             threads: available_threads(),
             speed: f64::INFINITY,
+            shows_settling: false,
             memory: 0,
             ..Self::window()
         }

@@ -25,6 +25,8 @@ pub struct Update {
     pub answered: Option<u64>,
     /// What the lab does.
     pub status: Option<Status>,
+    /// The bed on its way to rest, without its contacts, as of lately.
+    pub settling: Option<Arc<World>>,
     /// What people should know, in sentences.
     pub warnings: Vec<String>,
     /// Files that were to be written.
@@ -96,6 +98,7 @@ impl Update {
         self.recording = later.recording.or(self.recording.take());
         self.answered = later.answered.or(self.answered);
         self.status = later.status.or(self.status.take());
+        self.settling = later.settling.or(self.settling.take());
         self.warnings.extend(later.warnings);
         self.saved.extend(later.saved);
     }

@@ -6,6 +6,7 @@
 
 use super::machine::{free_disk, free_memory};
 use crate::measure::Measure;
+use crate::physics::Integrator;
 use crate::scene::SAMPLE_INTERVAL;
 use crate::scene::{Scene, SceneContainer, SceneGrains};
 use crate::solver::advise;
@@ -27,13 +28,13 @@ struct Cost {
 const SPHERE: Cost = Cost {
     memory: 2e3,
     file: 500.0,
-    time: 45e-9,
+    time: 60e-9,
 };
 /// Spheres with a liquid between them.
 const WET_SPHERE: Cost = Cost {
     memory: 3e3,
     file: 600.0,
-    time: 60e-9,
+    time: 80e-9,
 };
 /// Rounded Voronoi cells, and listed polyhedra.
 const POLYHEDRON: Cost = Cost {
@@ -41,6 +42,14 @@ const POLYHEDRON: Cost = Cost {
     file: 800.0,
     time: 2e-6,
 };
+/// The same with springs and dashpots of all of them taken implicitly.
+const IMPLICIT_POLYHEDRON: Cost = Cost {
+    time: 5e-6,
+    ..POLYHEDRON
+};
+/// Beds of so many spheres take twice as long a grain, the largest ones three times: what they are lies in memory, beyond
+/// all caches.
+const BEYOND_CACHES: f64 = 5e4;
 /// Memory that the points of a lattice take while its cells are cut, for each [bytes].
 const LATTICE_POINT: f64 = 500.0;
 /// Files that state a triangle of a mesh: records as text, checkpoints [bytes].
@@ -134,6 +143,9 @@ impl Estimate {
     /// What a run of `scene` takes.
     pub fn of(scene: &Scene) -> Self {
         let cost = match scene {
+            _ if scene.is_polyhedral() && scene.integrator == Integrator::Implicit => {
+                &IMPLICIT_POLYHEDRON
+            }
             _ if scene.is_polyhedral() => &POLYHEDRON,
             _ if scene.liquid.is_some() => &WET_SPHERE,
             _ => &SPHERE,
@@ -153,6 +165,12 @@ impl Estimate {
         let outputs = scene.duration / scene.output_interval + 1.0;
         let settling = settling_time(scene) / time_step;
         let grain = grains as f64;
+        let slower = if scene.is_polyhedral() {
+            1.0
+        } else {
+            1.0 + 2.0 * grain / (grain + BEYOND_CACHES)
+        };
+        let step = grain * slower * cost.time;
         let series = samples * columns;
         let frames = outputs * (grain * cost.file + 2e3);
         let (mesh, triangles) = match &scene.container {
@@ -174,8 +192,8 @@ impl Estimate {
                 + 1.5 * 8.0 * series,
             files: frames + checkpoints + series * TABLE_CELL + triangles * TRIANGLE,
             frames,
-            time: (steps + settling) * grain * cost.time,
-            settling: settling * grain * cost.time,
+            time: (steps + settling) * step,
+            settling: settling * step,
         }
     }
 
@@ -215,7 +233,7 @@ impl Estimate {
         if self.settling > LONGEST_UNASKED {
             let settling = duration(self.settling);
             said.push(format!(
-                "Its bed takes some {settling} of one thread to settle before anything moves; {SETTLES_SOONER}."
+                "Its bed takes some {settling} of one thread to settle before its run begins; {SETTLES_SOONER}."
             ));
         }
         (!said.is_empty()).then(|| said.join(" ") + " Open it all the same?")

@@ -88,6 +88,14 @@ impl Preparation {
         }
     }
 
+    /// The bed on its way to rest, while it settles.
+    pub fn settling(&self) -> Option<&World> {
+        match &self.stage {
+            PreparationStage::Settling { settling, .. } => Some(settling.world()),
+            PreparationStage::Placing | PreparationStage::Packing(_) => None,
+        }
+    }
+
     /// What people should know, in sentences.
     pub fn warnings(&self) -> &[String] {
         &self.warnings

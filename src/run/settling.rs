@@ -133,6 +133,11 @@ impl Settling {
         self.progress
     }
 
+    /// The world on its way to rest.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
     /// The settled world at time zero, the walls moving as the scene says.
     pub fn finish(self) -> World {
         start(self.world, &self.built)

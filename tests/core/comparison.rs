@@ -23,6 +23,7 @@ fn open(scene: Scene, beds: BedStore, driver: DriverKind) -> Lab {
         autoplay: false,
         speed: f64::INFINITY,
         beds,
+        shows_settling: false,
         script: Vec::new(),
         memory: 1 << 28,
     };

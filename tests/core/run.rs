@@ -428,6 +428,7 @@ fn opened(scene: Scene, driver: DriverKind) -> Lab {
         autoplay: true,
         speed: f64::INFINITY,
         beds: shared_beds(),
+        shows_settling: false,
         script: Vec::new(),
         memory: 0,
     };
@@ -573,6 +574,44 @@ fn closing_ends_a_thread_that_is_still_settling() {
 }
 
 #[test]
+fn a_bed_that_settles_can_be_watched() {
+    let mut scene = scene("small-drum");
+    scene.seed += 1;
+    let options = Options {
+        driver: DriverKind::Inline,
+        threads: 1,
+        beds: BedStore::none(),
+        ..Options::window()
+    };
+    let mut lab = Lab::open(scene.clone(), options.clone());
+    let mut heights = Vec::new();
+    while lab.world().is_none() {
+        lab.tick(TICK);
+        if let Some(world) = lab.settling() {
+            assert!(matches!(lab.status(), Status::Preparing { .. }));
+            assert!(world.contacts.is_empty());
+            let lowest = world.grains.position.iter().map(|x| x.y);
+            heights.push(lowest.sum::<f64>() / world.grains.len() as f64);
+        }
+    }
+    assert!(lab.settling().is_none(), "the run takes its place");
+    let fallen = heights.first().unwrap() - heights.last().unwrap();
+    assert!(fallen > 1e-4, "{heights:?}");
+
+    let blind = Options {
+        shows_settling: false,
+        ..options
+    };
+    let mut unseen = Lab::open(scene, blind);
+    while unseen.world().is_none() {
+        unseen.tick(TICK);
+        assert!(unseen.settling().is_none());
+    }
+    let hash = |lab: &Lab| lab.world().unwrap().hash();
+    assert_eq!(hash(&lab), hash(&unseen), "looking changes nothing");
+}
+
+#[test]
 fn a_minute_of_running_is_worth_a_question_even_without_a_change() {
     let mut simulation = Lab::open(
         scene("bouncing-grain"),
@@ -582,6 +621,7 @@ fn a_minute_of_running_is_worth_a_question_even_without_a_change() {
             autoplay: false,
             speed: 0.01,
             beds: BedStore::none(),
+            shows_settling: false,
             script: Vec::new(),
             memory: 0,
         },

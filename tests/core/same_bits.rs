@@ -176,6 +176,7 @@ impl Goal {
             autoplay: false,
             speed: f64::INFINITY,
             beds: self.lab.beds.clone(),
+            shows_settling: false,
             script: self.script(),
             memory: PLENTY,
         };

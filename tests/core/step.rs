@@ -261,6 +261,7 @@ fn two_runs_side_by_side_keep_one_step_and_one_time() {
         autoplay: false,
         speed: f64::INFINITY,
         beds: BedStore::none(),
+        shows_settling: false,
         script: Vec::new(),
         memory: PLENTY,
     };

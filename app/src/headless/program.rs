@@ -134,6 +134,7 @@ fn options(job: &Job) -> Options {
         autoplay: true,
         speed: f64::INFINITY,
         beds: job.beds.clone(),
+        shows_settling: false,
         script: job.script.clone(),
         memory: 0,
     }

@@ -122,12 +122,12 @@ pub(super) fn layers(half: Half) -> RenderLayers {
     RenderLayers::layer(half.index())
 }
 
-/// Shows the newest states of the simulation's runs. They are told apart by their addresses: while
+/// Shows the newest states of the simulation's runs, or its bed while that settles. They are told apart by their addresses: while
 /// a state is shown, no other is at its address.
 pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<ShownWorlds>) {
     let Some(simulation) = simulation else { return };
     let right = (simulation.comparison()).and_then(|comparison| comparison.right.world());
-    let newest = [simulation.world(), right];
+    let newest = [simulation.world().or(simulation.settling()), right];
     let is_shown = |half: Half| match (newest[half.index()], &shown.halves[half.index()]) {
         (Some(newest), Some(shown)) => Arc::ptr_eq(newest, shown),
         (None, None) => true,
@@ -141,5 +141,44 @@ pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut
         let right =
             (simulation.comparison()).and_then(|comparison| comparison.right.orientations());
         shown.turned = [simulation.orientations(), right].map(Option::<&Turned>::cloned);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainfall::lab::{DriverKind, Options, Status};
+    use grainfall::run::BedStore;
+    use grainfall::scene::Scene;
+    use std::time::Duration;
+
+    #[test]
+    fn a_bed_is_in_the_picture_while_it_settles() {
+        let mut scene = Scene::open("small-drum").unwrap();
+        scene.seed += 1;
+        let options = Options {
+            driver: DriverKind::Inline,
+            threads: 1,
+            beds: BedStore::none(),
+            ..Options::window()
+        };
+        let mut app = App::new();
+        app.insert_resource(Simulation::open(scene, options))
+            .init_resource::<ShownWorlds>()
+            .add_systems(Update, take_newest);
+        let mut seen = 0;
+        loop {
+            let mut simulation = app.world_mut().resource_mut::<Simulation>();
+            simulation.tick(Duration::from_millis(16));
+            let is_preparing = matches!(simulation.status(), Status::Preparing { .. });
+            app.update();
+            let grains = app.world().resource::<ShownWorlds>().world();
+            let grains = grains.map_or(0, |world| world.grains.len());
+            if !is_preparing {
+                assert!(seen > 1 && grains > 0, "{seen}");
+                return;
+            }
+            seen += usize::from(grains > 0);
+        }
     }
 }
