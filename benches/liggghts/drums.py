@@ -123,10 +123,16 @@ QUANTITIES = {
 }
 
 
+def results(folder: Path) -> list[dict] | None:
+    """The results of a run; none where it has not ended."""
+    summary = folder / "summary.json"
+    found = json.loads(summary.read_text())["results"] if summary.exists() else None
+    return found and found["entries"]
+
+
 def value(folder: Path, quantity: str) -> float:
     """A result of a run; NaN where it has none."""
-    entries = json.loads((folder / "summary.json").read_text())["results"]["entries"]
-    found = [entry["value"] for entry in entries if entry["name"] == quantity]
+    found = [entry["value"] for entry in results(folder) or [] if entry["name"] == quantity]
     return math.nan if not found or found[0] is None else found[0]
 
 
@@ -140,7 +146,7 @@ def mean_and_error(values: list[float]) -> tuple[float, float]:
 def compare(folders: dict[int, list[tuple[Path, Path]]]) -> None:
     """Prints both programs' means over the beds, and their differences."""
     for liquid, pairs in folders.items():
-        both = [pair for pair in pairs if all((folder / "summary.json").exists() for folder in pair)]
+        both = [pair for pair in pairs if all(results(folder) for folder in pair)]
         if len(both) < 2:
             continue
         print(f"\nliquid {liquid}, {len(both)} beds\n\n| | LIGGGHTS | ours | difference |\n|---|---|---|---|")
