@@ -80,8 +80,9 @@ def turn_back(dump: Path, step: float) -> None:
 
 def run(grainfall: str, folder: Path, case: list[str]) -> None:
     """Exports, runs, turns back and imports one drum."""
-    if (folder / "summary.json").exists():
+    if results(folder):
         return
+    shutil.rmtree(folder, ignore_errors=True)
     work = folder.with_name(folder.name + ".work")
     shutil.rmtree(work, ignore_errors=True)
     export = [grainfall, "export", "wet", "--to", "liggghts", "--set", "bridge-law=as-coded", *case, "--out", str(work)]

@@ -38,7 +38,7 @@ const PROFILE_TIME: Duration = Duration::from_millis(500);
 /// Shortest wall-clock time between two pictures of a bed that settles.
 const SETTLING_TIME: Duration = Duration::from_millis(40);
 
-/// And least, relative to what it takes to copy it for the picture.
+/// Least wall-clock time between two such pictures, in times that copying the bed for one takes.
 const SETTLING_SHARE: u32 = 10;
 
 /// Wall-clock time a piece of work should take: commands wait for it.

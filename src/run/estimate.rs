@@ -47,8 +47,8 @@ const IMPLICIT_POLYHEDRON: Cost = Cost {
     time: 5e-6,
     ..POLYHEDRON
 };
-/// Beds of so many spheres take twice as long a grain, the largest ones three times: what they are lies in memory, beyond
-/// all caches.
+/// Beds of so many spheres take twice as long a grain, the largest ones three times: what a step reads
+/// and writes of them is more than caches hold.
 const BEYOND_CACHES: f64 = 5e4;
 /// Memory that the points of a lattice take while its cells are cut, for each [bytes].
 const LATTICE_POINT: f64 = 500.0;

@@ -122,8 +122,8 @@ pub(super) fn layers(half: Half) -> RenderLayers {
     RenderLayers::layer(half.index())
 }
 
-/// Shows the newest states of the simulation's runs, or its bed while that settles. They are told apart by their addresses: while
-/// a state is shown, no other is at its address.
+/// Shows the newest states of the simulation's runs, or its bed while that settles. They are told
+/// apart by their addresses: while a state is shown, no other is at its address.
 pub(super) fn take_newest(simulation: Option<Res<Simulation>>, mut shown: ResMut<ShownWorlds>) {
     let Some(simulation) = simulation else { return };
     let right = (simulation.comparison()).and_then(|comparison| comparison.right.world());
