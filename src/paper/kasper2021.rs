@@ -20,6 +20,7 @@ pub static KASPER2021: Paper = Paper {
     settings: &["duration=50s"],
     keys: &["bridge-law", "radius", "liquid"],
     readings: &[],
+    beside: &[],
     batches: &[
         Batch::new("r3", R3, &["0", "1", "3", "5", "7"], (1, 2)),
         Batch::new("r3", R3, &["2", "4", "6"], (1, 2)),

@@ -24,6 +24,8 @@ pub struct Paper {
     pub keys: &'static [&'static str],
     /// What the values of the key `reading` stand for, where it is one of the keys.
     pub readings: &'static [Reading],
+    /// What is set beside values of other keys, unless the paper is made small.
+    pub beside: &'static [Beside],
     /// The cases, in the order in which they are run.
     pub batches: &'static [Batch],
     /// What is set beside that where the paper is made small.
@@ -41,6 +43,16 @@ pub struct Reading {
     /// What it reads otherwise, in words.
     pub text: &'static str,
     /// What is set for it, as `--set` has it.
+    pub settings: &'static [&'static str],
+}
+
+/// What is set where a key has one of some values: shorter steps of higher columns.
+pub struct Beside {
+    /// The key.
+    pub key: &'static str,
+    /// The values.
+    pub values: &'static [&'static str],
+    /// What is set, as `--set` has it.
     pub settings: &'static [&'static str],
 }
 
@@ -170,8 +182,26 @@ impl Paper {
         names
     }
 
+    /// What each of the `values` of a `key` sets, where that is more than the value itself; else
+    /// nothing.
+    fn settings_of(&self, key: &str, values: &[String], is_small: bool) -> Vec<Vec<String>> {
+        if key == READING {
+            return values.iter().map(|value| self.reading(value)).collect();
+        }
+        let beside = || self.beside.iter().filter(|own| own.key == key);
+        if is_small || beside().next().is_none() {
+            return Vec::new();
+        }
+        let set = |value: &String| {
+            let own = beside().filter(|own| own.values.contains(&value.as_str()));
+            let more = own.flat_map(|own| own.settings).map(|&own| own.to_owned());
+            [format!("{key}={value}")].into_iter().chain(more).collect()
+        };
+        values.iter().map(set).collect()
+    }
+
     /// What is set where the reading is the one called `name`.
-    fn settings_of(&self, name: &str) -> Vec<String> {
+    fn reading(&self, name: &str) -> Vec<String> {
         let reading = self.readings.iter().find(|own| own.name == name);
         let settings = reading.map_or(&[][..], |own| own.settings);
         settings.iter().map(|&own| own.to_owned()).collect()
@@ -202,15 +232,10 @@ impl Paper {
         let keys = self.keys.iter().copied().chain([SEED]);
         let variations = keys.enumerate().map(|(index, key)| {
             let values: Vec<String> = rows.iter().map(|row| row.values[index].clone()).collect();
-            let settings = if key == READING {
-                values.iter().map(|value| self.settings_of(value)).collect()
-            } else {
-                Vec::new()
-            };
             Variation {
                 key: key.to_owned(),
+                settings: self.settings_of(key, &values, is_small),
                 values,
-                settings,
                 is_tied: index > 0,
             }
         });
@@ -267,6 +292,7 @@ fn with_seeds(rows: &mut Vec<Row>, seeds: u64) {
 mod tests {
     use super::super::registry::{PAPERS, paper};
     use super::*;
+    use crate::scene::TimeStep;
     use std::collections::HashSet;
 
     fn rows(selection: &Selection) -> Vec<Row> {
@@ -293,6 +319,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn higher_columns_take_shorter_steps_and_small_papers_their_own() {
+        let paper = paper("man2023").unwrap();
+        let steps = |is_small: bool, only: &str| -> Vec<TimeStep> {
+            let selection = Selection {
+                is_small,
+                only: Some(only.to_owned()),
+                ..Selection::default()
+            };
+            let rows = paper.rows(&selection).unwrap();
+            let sweep = paper.sweep(&rows, is_small, "nowhere".into(), 1).unwrap();
+            let cases = crate::sweep::cases(&sweep).unwrap();
+            cases.iter().map(|case| case.scene.time_step).collect()
+        };
+        let given = |step| TimeStep::Given(step);
+        assert!(
+            steps(false, "height=50mm")
+                .iter()
+                .all(|own| *own == given(20e-6))
+        );
+        assert_eq!(steps(false, "height=200mm"), [given(15e-6)]);
+        assert_eq!(steps(false, "height=350mm"), [given(11e-6)]);
+        assert!(
+            steps(true, "height=10mm")
+                .iter()
+                .all(|own| *own == TimeStep::Automatic)
+        );
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub static KASPER2021_READINGS: Paper = Paper {
     settings: &["duration=50s"],
     keys: &[READING, "radius", "liquid"],
     readings: READINGS,
+    beside: &[],
     batches: &BATCHES,
     small_settings: &[
         "duration=1s",

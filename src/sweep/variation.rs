@@ -19,8 +19,8 @@ pub struct Variation {
     pub key: String,
     /// Its values as text.
     pub values: Vec<String>,
-    /// The settings, as `--set` has them, that each value is a name for; none where `key` is a key
-    /// of `--set` itself.
+    /// All that each value sets, as `--set` has it: those that it is a name for, or itself and what
+    /// goes with it. None where it sets itself alone.
     pub settings: Vec<Vec<String>>,
     /// Whether it goes value by value with the one before it, instead of being combined with that.
     pub is_tied: bool,
