@@ -346,7 +346,7 @@ mod tests {
         assert!(
             steps(true, "height=10mm")
                 .iter()
-                .all(|own| *own == TimeStep::Automatic)
+                .all(|own| *own == TimeStep::Following)
         );
     }
 
