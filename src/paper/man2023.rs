@@ -1,6 +1,6 @@
 //! Man et al. 2023: the column of angular grains of two frictions. Its cases and its tables.
 //!
-//! Order of the cases: low columns first, which cost least. H 35 cm, 68 722 grains, takes a night.
+//! Order of the cases: low columns first, which cost least. H 35 cm, 68 722 grains, is estimated at half a day.
 
 use super::markdown::{head, line};
 use super::plan::{Batch, Beside, Paper, PaperTable};
