@@ -37,10 +37,14 @@ const STEPS: [(&str, f64); 2] = [("Explicit", 2e-6), ("Implicit", 2e-5)];
 
 #[test]
 fn collapse_has_the_same_bits_for_any_threads_lanes_and_slices() {
-    for (rule, (integrator, dt)) in ["Full", "Shared"]
-        .into_iter()
-        .flat_map(|r| STEPS.map(|s| (r, s)))
-    {
+    let rules = ["Full", "Shared"].into_iter();
+    for (rule, (integrator, dt)) in rules.flat_map(|rule| STEPS.map(|step| (rule, step))) {
+        // Workers meet thirty times in an implicit step: eight of them take long on two cores.
+        let slices = match integrator {
+            "Explicit" => [1, 499, 200, 500],
+            _ => [1, 199, 50, 150],
+        };
+        let all = [slices.iter().sum()];
         let fallen = |mut solver: Solver, slices: &[u64]| -> StateHash {
             let mut world = column(rule, integrator, dt);
             for &steps in slices {
@@ -48,16 +52,16 @@ fn collapse_has_the_same_bits_for_any_threads_lanes_and_slices() {
             }
             world.hash()
         };
-        let whole = fallen(Solver::new(1), &[1200]);
+        let whole = fallen(Solver::new(1), &all);
         for threads in [2, 3, 8] {
-            let found = fallen(Solver::new(threads), &[1200]);
+            let found = fallen(Solver::new(threads), &all);
             assert_eq!(found, whole, "{integrator}, {rule}, {threads} threads");
         }
         for processor in Processor::all() {
-            let found = fallen(Solver::on(processor, 1), &[1200]);
+            let found = fallen(Solver::on(processor, 1), &all);
             assert_eq!(found, whole, "{integrator}, {rule}, {processor}");
         }
-        let found = fallen(Solver::new(1), &[1, 499, 200, 500]);
+        let found = fallen(Solver::new(1), &slices);
         assert_eq!(found, whole, "{integrator}, {rule}, in slices");
     }
 }
