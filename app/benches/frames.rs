@@ -14,16 +14,10 @@
 
 #[path = "../../tests/common/allocator.rs"]
 mod allocator;
+#[path = "common/laboratory.rs"]
+mod laboratory;
 
-use bevy::camera::ClearColorConfig;
-use bevy::camera::visibility::RenderLayers;
-use bevy::math::UVec2;
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
-use bevy::render::settings::WgpuSettings;
-use bevy::window::ExitCondition;
-use bevy::winit::WinitPlugin;
-use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DQuat, DVec3};
 use grainfall::lab::{Options, Status};
@@ -32,11 +26,9 @@ use grainfall::run::{BedStore, Command};
 use grainfall::scene::Scene;
 use grainfall::sweep::{BackgroundSweep, Sweep, Variation};
 use grainfall::world::{Polyhedra, Polyhedron, World, build};
-use grainfall_app::simulation::{Simulation, SimulationPlugin};
-use grainfall_app::ui::{Dock, UiPlugin};
-use grainfall_app::view::{ColourBy, GrainBuffer, Meshing, ShownWorlds, ViewPlugin, ViewSettings};
-use grainfall_app::window::canvas::CanvasPlugin;
-use grainfall_app::window::one_by_one::OneByOnePlugin;
+use grainfall_app::simulation::Simulation;
+use grainfall_app::ui::Dock;
+use grainfall_app::view::{ColourBy, Meshing, ShownWorlds, ViewPlugin, ViewSettings};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -100,34 +92,9 @@ fn column() -> World {
     world
 }
 
-/// An app without a window and without a graphics device.
-fn app() -> App {
-    let mut app = App::new();
-    app.add_plugins(
-        DefaultPlugins
-            .build()
-            .disable::<WinitPlugin>()
-            .disable::<bevy::log::LogPlugin>()
-            .set(WindowPlugin {
-                primary_window: None,
-                exit_condition: ExitCondition::DontExit,
-                ..default()
-            })
-            .set(RenderPlugin {
-                render_creation: WgpuSettings {
-                    backends: None,
-                    ..default()
-                }
-                .into(),
-                ..default()
-            }),
-    );
-    app
-}
-
 /// The view alone.
 fn view() -> App {
-    let mut app = app();
+    let mut app = laboratory::app(false);
     app.add_plugins(ViewPlugin);
     app.finish();
     app.cleanup();
@@ -137,58 +104,21 @@ fn view() -> App {
 
 /// The whole window with `scene`, every panel open and a grain under the microscope.
 fn window(scene: Scene) -> App {
-    let mut app = app();
     let options = Options {
         threads: 1,
         autoplay: false,
-        beds: BedStore::user(),
         memory: 0,
         ..Options::window()
     };
-    app.add_plugins(EguiPlugin::default())
-        .insert_resource(EguiGlobalSettings {
-            auto_create_primary_context: false,
-            ..default()
-        })
-        .add_plugins((
-            CanvasPlugin(UVec2::new(1440, 860)),
-            SimulationPlugin,
-            ViewPlugin,
-            UiPlugin {
-                options: options.clone(),
-            },
-            OneByOnePlugin,
-        ))
-        .insert_resource(Simulation::open(scene, options));
-    app.world_mut().spawn((
-        PrimaryEguiContext,
-        Camera2d,
-        RenderLayers::none(),
-        Camera {
-            order: 2,
-            clear_color: ClearColorConfig::Custom(Color::NONE),
-            ..default()
-        },
-    ));
-    app.finish();
-    app.cleanup();
+    let mut app = laboratory::app(false);
+    laboratory::add(&mut app, scene, options);
     let mut view = app.world_mut().resource_mut::<ViewSettings>();
     (view.selected, view.traced) = (Some(0), vec![0, 1, 2]);
     (view.colour_by, view.show_forces) = (ColourBy::Quantity(GrainQuantity::Speed), true);
     (view.show_flow, view.show_temperature) = (true, true);
     // With ghosts round them.
     view.grain_size = 0.4;
-    let is_ready = |app: &App| {
-        let standing = *app.world().resource::<Simulation>().status() == Status::Paused;
-        let (meshing, grains) = (
-            app.world().resource::<Meshing>(),
-            app.world().resource::<GrainBuffer>(),
-        );
-        standing && meshing.is_whole() && grains.is_whole()
-    };
-    while !is_ready(&app) {
-        app.update();
-    }
+    laboratory::prepare(&mut app);
     app.world_mut().resource_mut::<Dock>().show_all_panels();
     for _ in 0..10 {
         app.update();

@@ -175,7 +175,7 @@ impl PaperJob {
         });
         let lines = lines.collect::<Result<_, String>>();
         let lines = lines.map_err(RunnerError::Input)?;
-        kept_file::put(path, lines, &self.paper.case_names(), replace)
+        kept_file::put(path, lines, replace)
     }
 
     /// The sweep as it reads what is there: nothing is to be computed anew.

@@ -2,15 +2,14 @@
 //!
 //! In: the path of a file, which need not be there, and lines to put into it. Out: its lines, or
 //! the number of the one that is wrong and what to do; the file with the new lines, written whole,
-//! in the order of the paper's cases, so that a line more is a line more to whoever compares
-//! versions. Lines are put in under a lock and read anew then: several programs may keep results in
-//! one file.
+//! by the names of their cases, so that a line more is a line more to whoever compares versions.
+//! Lines are put in under a lock and read anew then: several programs, and several papers with runs
+//! in common, may keep results in one file.
 
 use super::kept_line::{Identity, KeptLine};
 use crate::files::{FolderLock, LockError, make_folder, read_whole, write_whole};
 use crate::output::OutputError;
 use crate::runner::RunnerError;
-use std::collections::HashMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -81,7 +80,7 @@ impl KeptFile {
     /// The line of this `identity`, with its number.
     pub fn find(&self, identity: &Identity) -> Option<&(usize, KeptLine)> {
         let mut lines = self.lines.iter();
-        lines.find(|(_, line)| line.identity == *identity)
+        lines.find(|(_, line)| line.identity.is_same_run(identity))
     }
 
     /// Why lines of the case that `identity` names are not used, if there are any and none is its
@@ -117,7 +116,7 @@ impl KeptFile {
     /// stays as it is unless `replace`.
     fn put(&mut self, line: KeptLine, replace: bool) -> Result<(), RunnerError> {
         let own = self.lines.iter_mut();
-        let mut own = own.filter(|(_, known)| known.identity == line.identity);
+        let mut own = own.filter(|(_, known)| known.identity.is_same_run(&line.identity));
         match own.next() {
             Some((_, known)) if replace => *known = line,
             Some((number, known)) if known.state != line.state => {
@@ -139,35 +138,23 @@ impl KeptFile {
         Ok(())
     }
 
-    /// The text of the file, its lines in this `order` of cases; cases that are not in it follow by
-    /// name.
-    fn text(&mut self, order: &[String]) -> String {
-        let places: HashMap<&str, usize> = (order.iter().map(String::as_str)).zip(0..).collect();
+    /// The text of the file, its lines by the names of their cases.
+    fn text(&mut self) -> String {
         self.lines.sort_by_cached_key(|(_, line)| {
-            let Identity {
-                case,
-                scene,
-                method,
-            } = line.identity.clone();
-            let place = places.get(case.as_str()).copied();
-            (place.unwrap_or(usize::MAX), case, scene, method)
+            let own = line.identity.clone();
+            (own.case, own.scene, own.method)
         });
         let lines = self.lines.iter();
         lines.map(|(_, line)| line.text.clone() + "\n").collect()
     }
 }
 
-/// Puts these `lines` into the file at `path`, whose cases have this `order`; of a case that is in
-/// it already the line stays as it is unless `replace`.
+/// Puts these `lines` into the file at `path`; of a run that is in it already the line stays as it
+/// is unless `replace`.
 ///
 /// # Errors
 /// When the file is damaged, cannot be read or written, or states another last state of a case.
-pub fn put(
-    path: &Path,
-    lines: Vec<KeptLine>,
-    order: &[String],
-    replace: bool,
-) -> Result<(), RunnerError> {
+pub fn put(path: &Path, lines: Vec<KeptLine>, replace: bool) -> Result<(), RunnerError> {
     if lines.is_empty() {
         return Ok(());
     }
@@ -178,7 +165,7 @@ pub fn put(
     for line in lines {
         file.put(line, replace)?;
     }
-    let text = file.text(order);
+    let text = file.text();
     if text.lines().eq(before.iter().map(String::as_str)) {
         return Ok(());
     }

@@ -2,8 +2,8 @@
 //! what it came to.
 //!
 //! In: what a case came to. Out: a line of JSON, some 3 kB; and from it results that are equal to
-//! the last bit, or what is wrong with it. A case is known by its name and by a fingerprint of all
-//! that its run depends on.
+//! the last bit, or what is wrong with it. A case is known by a fingerprint of all that its run
+//! depends on; its name is for people.
 
 use crate::measure::{CompactSummary, Summary};
 use crate::run::{VERSION, fingerprint, method};
@@ -17,10 +17,10 @@ const WITHOUT_EFFECT: [&str; 4] = ["title", "look_for", "source", "output_interv
 /// How the cases that are kept have ended.
 const DONE: &str = "done";
 
-/// What a line is known by; of each there is one.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What a line is known by: of each scene and method there is one, whatever the case is called.
+#[derive(Clone, Debug)]
 pub struct Identity {
-    /// Name of the case.
+    /// Name of the case, for people.
     pub case: String,
     /// Fingerprint of its scene, script, time step and duration.
     pub scene: String,
@@ -80,6 +80,11 @@ impl Identity {
             scene: fingerprint(&all),
             method: method(&case.scene).to_owned(),
         })
+    }
+
+    /// Whether both compute the same.
+    pub fn is_same_run(&self, other: &Self) -> bool {
+        self.scene == other.scene && self.method == other.method
     }
 }
 

@@ -168,20 +168,6 @@ impl Paper {
         Ok(rows)
     }
 
-    /// The names of all its cases, those of the small paper last, in the order in which they are
-    /// run.
-    pub(super) fn case_names(&self) -> Vec<String> {
-        let batches = self.batches.iter().chain(self.small_batches);
-        let mut names: Vec<String> = Vec::new();
-        for row in batches.flat_map(rows_of) {
-            let name = self.case_name(&row);
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
-    }
-
     /// What each of the `values` of a `key` sets, where that is more than the value itself; else
     /// nothing.
     fn settings_of(&self, key: &str, values: &[String], is_small: bool) -> Vec<Vec<String>> {

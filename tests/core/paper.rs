@@ -30,7 +30,7 @@ fn text<'a>(papered: &'a Papered, name: &str) -> &'a str {
 fn every_paper_made_small_ends_with_its_tables_and_figures_and_kept_results_make_them_again() {
     for paper in PAPERS {
         let kept = KeptPaper::of(paper.name);
-        // What comes last is done first: the file has the paper's order all the same.
+        // What comes last is done first: the file goes by names all the same.
         run(&kept.job(&[paper.small_batches[1].part]));
         let papered = run(&kept.job(&[]));
         assert_eq!(papered.ending, SweepEnding::Done);

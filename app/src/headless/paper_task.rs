@@ -25,7 +25,7 @@ pub struct PaperTask {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub threads: Option<u16>,
     /// A file that keeps the results beside the folder, a line for each case, such as
-    /// docs/results/PAPER.jsonl: what it holds is done, what gets done is put into it
+    /// docs/results/kasper2021.jsonl: what it holds is done, what gets done is put into it
     #[arg(long, value_name = "FILE.jsonl")]
     kept: Option<PathBuf>,
     /// Run every case anew, in the place of those that the folder and --kept hold
