@@ -5,18 +5,16 @@
 
 use grainfall::engines::MpiEngine;
 use grainfall::lab::Kept;
-#[cfg(feature = "desktop")]
-use grainfall::lab::Options;
 use grainfall::lesson::Lesson;
 use grainfall::parameters::Settings;
 #[cfg(feature = "desktop")]
 use grainfall::recording::Recording;
 #[cfg(feature = "desktop")]
 use grainfall::run::opening;
-use grainfall::run::{Estimate, ScriptedCommand};
+use grainfall::run::{Estimate, ScriptedCommand, available_threads};
 #[cfg(feature = "desktop")]
 use grainfall::runner::compared_value;
-use grainfall::runner::{Job, RunnerError, apply_settings, available_threads, exit, read_commands};
+use grainfall::runner::{Job, RunnerError, apply_settings, exit, read_commands};
 use grainfall::scene::{Scene, built_in};
 #[cfg(feature = "desktop")]
 use grainfall_app::headless::command_line::PictureArguments;
@@ -62,15 +60,13 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         && !Kept::is_at(&name)
         && let Some(session) = opening(&name)
     {
-        let options = window_options(&what, Vec::new());
         let shipped = Opened::Shipped(session.into());
-        return open_window(name, shipped, options, arguments.picture);
+        return open_window(name, shipped, what.threads, Vec::new(), arguments.picture);
     }
     #[cfg(feature = "desktop")]
     if Kept::is_at(&name) && !arguments.no_render {
         let opened = unchanged(&name, &what)?;
-        let options = window_options(&what, Vec::new());
-        return open_window(name, opened, options, arguments.picture);
+        return open_window(name, opened, what.threads, Vec::new(), arguments.picture);
     }
     let report = arguments.said.report();
     #[cfg(feature = "desktop")]
@@ -100,12 +96,7 @@ fn carry_out(arguments: Arguments) -> Result<u8, RunnerError> {
         #[cfg(feature = "desktop")]
         allowed.memory(&Estimate::of_start(&scene))?;
         #[cfg(feature = "desktop")]
-        return open_window(
-            name,
-            scene.into(),
-            window_options(&what, script),
-            arguments.picture,
-        );
+        return open_window(name, scene.into(), what.threads, script, arguments.picture);
         #[cfg(not(feature = "desktop"))]
         return Err(RunnerError::Input(NO_WINDOW.into()));
     }
@@ -207,7 +198,7 @@ fn open_lesson(
     let (lesson, scene) = lesson.map_err(|error| RunnerError::Input(error.to_string()))?;
     allowed.memory(&Estimate::of_start(&scene))?;
     let opened = Opened::Lesson(Box::new(lesson), Box::new(scene));
-    open_window(name, opened, window_options(what, Vec::new()), picture)
+    open_window(name, opened, what.threads, Vec::new(), picture)
 }
 
 /// Whether options ask for other values than what is opened has.
@@ -291,22 +282,13 @@ fn unchanged(name: &str, what: &What) -> Result<Opened, RunnerError> {
     Kept::read(Path::new(name)).map_or_else(refuse, |kept| Ok(kept.into()))
 }
 
-#[cfg(feature = "desktop")]
-fn window_options(what: &What, script: Vec<ScriptedCommand>) -> Options {
-    let options = Options::window();
-    Options {
-        threads: what.threads.map_or(options.threads, usize::from),
-        script,
-        ..options
-    }
-}
-
 /// Opens the laboratory; what went wrong is said here. Returns the exit code.
 #[cfg(feature = "desktop")]
 fn open_window(
     name: String,
     opened: Opened,
-    options: Options,
+    threads: Option<u16>,
+    script: Vec<ScriptedCommand>,
     picture: PictureArguments,
 ) -> Result<u8, RunnerError> {
     use grainfall_app::ui::PictureOf;
@@ -326,7 +308,8 @@ fn open_window(
     let job = WindowJob {
         name,
         opened,
-        options,
+        threads: threads.map(usize::from),
+        script,
         compared,
         picture,
     };

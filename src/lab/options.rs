@@ -1,6 +1,6 @@
 //! How a lab is opened: who computes, on how many threads, how fast, with how much memory.
 
-use crate::run::{BedStore, ScriptedCommand};
+use crate::run::{BedStore, ScriptedCommand, available_threads};
 
 /// Memory for keyframes in a window [bytes].
 const WINDOW_MEMORY: usize = 1 << 30;
@@ -37,11 +37,11 @@ pub enum DriverKind {
 }
 
 impl Options {
-    /// For a window: a thread of its own that leaves one core to the picture, in real time.
+    /// For a window whose picture software may draw: a thread of its own, in real time.
     pub fn window() -> Self {
         Self {
             driver: DriverKind::Thread,
-            threads: available_threads().saturating_sub(1).max(1),
+            threads: window_threads(true),
             autoplay: true,
             speed: 1.0,
             beds: BedStore::user(),
@@ -70,6 +70,30 @@ impl Default for Options {
     }
 }
 
-fn available_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+/// Threads of the solver beside a window. One core is left to the picture; of two both serve the
+/// solver, unless software draws: a second thread gains more than a picture takes that a graphics
+/// device draws.
+pub fn window_threads(software: bool) -> usize {
+    beside_picture(available_threads(), software)
+}
+
+fn beside_picture(cores: usize, software: bool) -> usize {
+    match cores {
+        2 if !software => 2,
+        cores => cores.saturating_sub(1).max(1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_has_a_core_but_where_the_solver_would_be_left_one_and_a_graphics_device_draws() {
+        let threads = |cores| [false, true].map(|software| beside_picture(cores, software));
+        assert_eq!(threads(1), [1, 1]);
+        assert_eq!(threads(2), [2, 1]);
+        assert_eq!(threads(3), [2, 2]);
+        assert_eq!(threads(8), [7, 7]);
+    }
 }

@@ -1,9 +1,15 @@
-//! What the machine has left: memory, and room on a disk; and work that gives way to other work.
+//! What the machine has: cores, memory and room on a disk that are left; and work that gives way to
+//! other work.
 //!
 //! In: nothing, or a path. Out: bytes, or none where the system does not say.
 
 use crate::files::read_whole;
 use std::path::Path;
+
+/// Threads that the machine runs at once.
+pub fn available_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
 
 /// Memory that a program can have now [bytes].
 pub fn free_memory() -> Option<f64> {

@@ -94,7 +94,7 @@ pub use events::{Event, EventKind, Happening, Pair, events};
 pub use history::{History, Moment};
 pub use kept_memory::KeptMemory;
 pub(crate) use machine::give_way;
-pub use machine::resident_memory;
+pub use machine::{available_threads, resident_memory};
 pub use measured::{Measured, Stored};
 pub use meetings::{MOST_MEETINGS, Meeting, MeetingKind};
 pub use method::method;

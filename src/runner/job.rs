@@ -2,7 +2,7 @@
 
 use super::RunnerError;
 use crate::parameters::live_parameters;
-use crate::run::{BedStore, Script, ScriptedCommand, accept};
+use crate::run::{BedStore, Script, ScriptedCommand, accept, available_threads};
 use crate::scene::{Scene, SceneGrains};
 use crate::solver::advise;
 use crate::world::{SpeciesId, build, build_packed};
@@ -81,11 +81,6 @@ fn check_script(scene: &Scene, script: &[ScriptedCommand]) -> Result<(), String>
     let parameters = live_parameters(scene, &world);
     let accepted = script.accepted(|command| accept(&parameters, &world, command));
     accepted.map(drop).map_err(|error| error.to_string())
-}
-
-/// Threads that the machine has.
-pub fn available_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// Threads that the machine has beside the one that draws a window, one at least.

@@ -38,7 +38,7 @@ pub use advance::{Advance, At, DirectRun, Halt};
 pub use commands_file::read_commands;
 pub use drive::{Finished, Runner, Standing, look, run, standing};
 pub use error::RunnerError;
-pub use job::{Job, available_threads, spare_threads};
+pub use job::{Job, spare_threads};
 pub use setting::{apply_settings, compared_value, live_command};
 pub use verify::{Verdict, VouchedFiles, check_digests};
 pub use watch::{Part, Watch, spoken};

@@ -23,7 +23,7 @@ use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
-use grainfall::lab::Options;
+use grainfall::lab::{Options, window_threads};
 use grainfall::run::Rescue;
 use grainfall::scene::Scene as GranularScene;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -53,17 +53,29 @@ pub fn run(job: WindowJob) -> Result<(), WindowError> {
     exit.is_success().then_some(()).ok_or(WindowError::Ended)
 }
 
-/// The app, not yet running.
-fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
-    let mut app = App::new();
-    // A person begins by looking; a picture is taken of a run that goes to its moment as fast as it
-    // can, of two from their common start on.
+/// How what is opened is run, where `software` draws or not. A person begins by looking; a picture is
+/// taken of a run that goes to its moment as fast as it can, of two from their common start on.
+fn options(job: &WindowJob, software: bool) -> Options {
     let is_played = job.picture.is_some();
-    job.options.autoplay = is_played && job.compared.is_none();
-    job.options.speed = match job.picture {
-        Some(_) => f64::INFINITY,
-        None => first_speed(job.opened.scene().duration),
+    let speed = if is_played {
+        f64::INFINITY
+    } else {
+        first_speed(job.opened.scene().duration)
     };
+    Options {
+        threads: job.threads.unwrap_or_else(|| window_threads(software)),
+        autoplay: is_played && job.compared.is_none(),
+        speed,
+        script: job.script.clone(),
+        ..Options::window()
+    }
+}
+
+/// The app, not yet running.
+fn build(job: WindowJob, software: bool, failure: Failure) -> App {
+    let mut app = App::new();
+    let is_played = job.picture.is_some();
+    let options = options(&job, software);
     let title = window_title(&job.opened.scene().title);
     match &job.picture {
         Some(picture) if picture.offscreen => app.add_plugins((
@@ -76,7 +88,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
     // Several samples a pixel are the processor's work where there is no graphics card.
     let smooth_edges = !software || job.picture.is_some();
     app.add_plugins(ScreenshotPlugin);
-    add_laboratory(&mut app, false, smooth_edges, job.options.clone());
+    add_laboratory(&mut app, false, smooth_edges, options.clone());
     app.add_systems(Update, follow_title);
     let mut dock = app.world_mut().resource_mut::<Dock>();
     if job.picture.is_none() {
@@ -105,7 +117,7 @@ fn build(mut job: WindowJob, software: bool, failure: Failure) -> App {
             &mut app.world_mut().resource_mut::<ViewSettings>(),
         );
     }
-    app.insert_resource(job.opened.run(job.options))
+    app.insert_resource(job.opened.run(options))
         .insert_resource(OpeningComparison {
             wanted: job.compared,
             is_played,

@@ -11,7 +11,7 @@ use grainfall::lab::{Kept, Options};
 use grainfall::lesson::Lesson;
 use grainfall::parameters::{Parameter, Value};
 use grainfall::recording::Recording;
-use grainfall::run::Session;
+use grainfall::run::{ScriptedCommand, Session};
 use grainfall::scene::Scene;
 use std::path::PathBuf;
 
@@ -21,8 +21,10 @@ pub struct WindowJob {
     pub name: String,
     /// The scene, the session or the recording.
     pub opened: Opened,
-    /// How it is run.
-    pub options: Options,
+    /// Threads of the solver; without any, what suits who draws.
+    pub threads: Option<usize>,
+    /// Commands carried out by themselves when their time comes.
+    pub script: Vec<ScriptedCommand>,
     /// A live parameter and its value [SI unit] in a second run beside the first.
     pub compared: Option<(Parameter, Value)>,
     /// A picture to take before the program ends by itself; without one a person ends it.

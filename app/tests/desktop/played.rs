@@ -6,7 +6,7 @@ use crate::window_of_panels::standing;
 use crate::windowless::{ask, simulation, until, update_until, without_scene};
 use bevy::math::UVec2;
 use bevy::prelude::*;
-use grainfall::lab::{Options, Status};
+use grainfall::lab::Status;
 use grainfall::recording::Recording;
 use grainfall::run::{Command, Parameter};
 use grainfall::runner;
@@ -127,7 +127,8 @@ fn the_last_state_of_a_recording_is_drawn() {
     let job = WindowJob {
         name: out.display().to_string(),
         opened: Recording::open(&out).unwrap().into(),
-        options: Options::window(),
+        threads: None,
+        script: Vec::new(),
         compared: None,
         picture: Some(PictureJob {
             path: path.clone(),

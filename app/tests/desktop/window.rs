@@ -21,7 +21,8 @@ fn job(path: &Path) -> WindowJob {
     WindowJob {
         name: "bouncing-grain".to_owned(),
         opened: Scene::open("bouncing-grain").unwrap().into(),
-        options: Options::window(),
+        threads: None,
+        script: Vec::new(),
         compared: None,
         picture: Some(PictureJob {
             path: path.to_owned(),

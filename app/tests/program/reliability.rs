@@ -510,7 +510,7 @@ fn titles_break_neither_files_nor_terminals() {
 #[test]
 fn more_threads_than_cores_are_told_once_and_quiet_and_json_say_what_they_promise() {
     let place = Place::new();
-    let many = 1 + grainfall::runner::available_threads();
+    let many = 1 + grainfall::run::available_threads();
     let output = place.run(&[&RUN[..], &["--threads", &many.to_string()]].concat());
     let told = text(&output.stderr);
     let note = format!("{many} threads share");
