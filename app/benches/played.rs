@@ -2,9 +2,10 @@
 //! its front is known to have come to rest, how fast a drum turns, and what frames take meanwhile. The
 //! panels that a window opens with, sixty frames a second, as fast as the solver's threads can.
 //!
-//! `cargo bench -p grainfall --bench played` draws on the graphics device that it finds, each frame
-//! until the device has drawn it; with `-- --without-device` a frame is what it costs the processor.
-//! `-- --threads=2` gives the solver as many.
+//! `cargo bench -p grainfall --bench played` draws on the graphics device that it finds; with
+//! `-- --without-device` on none. A frame is what it costs the processor; with `-- --drawn` it lasts
+//! until the device has drawn it. `-- --threads=2` gives the solver as many, `-- --only=dry-r3` plays
+//! that scene alone.
 
 #[path = "common/laboratory.rs"]
 mod laboratory;
@@ -38,33 +39,51 @@ const SCENES: [(&str, &[(&str, &str)]); 4] = [
     ),
 ];
 
+/// How it is played.
+struct Playing {
+    /// Threads of the solver.
+    threads: usize,
+    /// Whether a graphics device draws.
+    draws: bool,
+    /// Whether a frame lasts until it has drawn.
+    until_drawn: bool,
+}
+
 fn main() {
-    let draws = !std::env::args().any(|argument| argument == "--without-device");
-    let threads = std::env::args().find_map(|own| own.strip_prefix("--threads=")?.parse().ok());
-    for (name, settings) in SCENES {
+    let has = |name: &str| std::env::args().any(|own| own == name);
+    let value =
+        |name: &str| std::env::args().find_map(|own| Some(own.strip_prefix(name)?.to_owned()));
+    let threads = value("--threads=").and_then(|text| text.parse().ok());
+    let only = value("--only=");
+    let playing = Playing {
+        threads: threads.unwrap_or(Options::window().threads),
+        draws: !has("--without-device"),
+        until_drawn: has("--drawn"),
+    };
+    let wanted = |name: &str| only.as_ref().is_none_or(|only| only == name);
+    for (name, settings) in SCENES.into_iter().filter(|(name, _)| wanted(name)) {
         let mut scene = Scene::open(name).expect("a built-in scene");
         for (key, value) in settings {
             scene.set(key, value).expect("a setting of the scene");
         }
-        println!("{name}: {}", play(scene, threads, draws));
+        println!("{name}: {}", play(scene, &playing));
     }
 }
 
 /// Plays `scene`, and says what it came to.
-fn play(scene: Scene, threads: Option<usize>, draws: bool) -> String {
-    let usual = Options::window();
-    let threads = threads.unwrap_or(usual.threads);
+fn play(scene: Scene, playing: &Playing) -> String {
+    let threads = playing.threads;
     let options = Options {
         autoplay: false,
         speed: f64::INFINITY,
         threads,
-        ..usual
+        ..Options::window()
     };
-    let mut app = laboratory::app(draws);
+    let mut app = laboratory::app(playing.draws);
     laboratory::add(&mut app, scene, options);
     laboratory::prepare(&mut app);
     for _ in 0..10 {
-        frame(&mut app);
+        frame(&mut app, false);
     }
     let grains = simulation(&app)
         .world()
@@ -76,7 +95,7 @@ fn play(scene: Scene, threads: Option<usize>, draws: bool) -> String {
     let mut frames = Vec::new();
     while !is_over(&app, began.elapsed()) {
         let next = Instant::now() + FRAME;
-        frames.push(frame(&mut app));
+        frames.push(frame(&mut app, playing.until_drawn));
         std::thread::sleep(next.saturating_duration_since(Instant::now()));
     }
     let passed = began.elapsed().as_secs_f64();
@@ -122,11 +141,12 @@ fn simulation(app: &App) -> &Simulation {
     app.world().resource::<Simulation>()
 }
 
-/// Draws a frame, and says how long it took until it was drawn.
-fn frame(app: &mut App) -> Duration {
+/// Has a frame drawn, and says how long that took: the processor, or `until_drawn`.
+fn frame(app: &mut App, until_drawn: bool) -> Duration {
     let began = Instant::now();
     app.update();
-    if let Some(device) = app.world().get_resource::<RenderDevice>() {
+    let device = app.world().get_resource::<RenderDevice>();
+    if let Some(device) = device.filter(|_| until_drawn) {
         let _ = device.poll(PollType::wait_indefinitely());
     }
     began.elapsed()

@@ -40,7 +40,7 @@ pub use half::Half;
 pub use kept::Kept;
 pub use lab::{Comparison, Lab};
 pub use lab_command::LabCommand;
-pub use options::{DriverKind, Options, window_threads};
+pub use options::{DriverKind, Options};
 pub use run_view::{RunView, SMALLEST_DROP};
 pub use status::Status;
 pub use update::{RecordedFlow, SavedFile};

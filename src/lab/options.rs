@@ -37,11 +37,12 @@ pub enum DriverKind {
 }
 
 impl Options {
-    /// For a window whose picture software may draw: a thread of its own, in real time.
+    /// For a window: a thread of its own that leaves one core to the picture, in real time. (Of two
+    /// cores the second gains nothing where a driver draws on it, see `benches/README.md`.)
     pub fn window() -> Self {
         Self {
             driver: DriverKind::Thread,
-            threads: window_threads(true),
+            threads: available_threads().saturating_sub(1).max(1),
             autoplay: true,
             speed: 1.0,
             beds: BedStore::user(),
@@ -67,33 +68,5 @@ impl Options {
 impl Default for Options {
     fn default() -> Self {
         Self::window()
-    }
-}
-
-/// Threads of the solver beside a window. One core is left to the picture; of two both serve the
-/// solver, unless software draws: a second thread gains more than a picture takes that a graphics
-/// device draws.
-pub fn window_threads(software: bool) -> usize {
-    beside_picture(available_threads(), software)
-}
-
-fn beside_picture(cores: usize, software: bool) -> usize {
-    match cores {
-        2 if !software => 2,
-        cores => cores.saturating_sub(1).max(1),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_picture_has_a_core_but_where_the_solver_would_be_left_one_and_a_graphics_device_draws() {
-        let threads = |cores| [false, true].map(|software| beside_picture(cores, software));
-        assert_eq!(threads(1), [1, 1]);
-        assert_eq!(threads(2), [2, 1]);
-        assert_eq!(threads(3), [2, 2]);
-        assert_eq!(threads(8), [7, 7]);
     }
 }

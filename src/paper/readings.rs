@@ -56,60 +56,82 @@ type Liquids = [&'static [&'static str]; 2];
 /// The values of `reading` and `radius`, and the liquids that are run with them.
 type Runs = (&'static [&'static str], Liquids);
 
+/// Whether a reading moves what one drum of a liquid shows beyond the scatter of those as printed.
+#[derive(Clone, Copy)]
+enum Weight {
+    Tells,
+    Slight,
+}
+use Weight::{Slight, Tells};
+
+/// The `liquids` of a reading of this `weight` in a round of one of `wanted` weight.
+const fn only(wanted: Weight, weight: Weight, liquids: Liquids) -> Liquids {
+    match (wanted, weight) {
+        (Tells, Tells) | (Slight, Slight) => liquids,
+        _ => [&[], &[]],
+    }
+}
+
 /// Makes the list of readings, and what is run of each at either radius.
 macro_rules! readings {
-    ($(($name:expr, $liquids:ident, $text:literal, [$($setting:literal),*]),)+) => {
+    ($(($name:expr, $liquids:ident, $weight:ident, $text:literal, [$($setting:literal),*]),)+) => {
         static READINGS: &[Reading] = &[$(Reading {
             name: $name,
             text: $text,
             settings: &[$($setting),*],
         }),+];
         const R3: [Runs; READINGS_COUNT] = [$((&[$name, "3mm"], $liquids)),+];
-        const R2: [Runs; READINGS_COUNT] = [$((&[$name, "2mm"], $liquids)),+];
+        const R3_TELL: [Runs; READINGS_COUNT] = [$((&[$name, "3mm"], only(Tells, $weight, $liquids))),+];
+        const R3_SLIGHT: [Runs; READINGS_COUNT] = [$((&[$name, "3mm"], only(Slight, $weight, $liquids))),+];
+        const R2_TELL: [Runs; READINGS_COUNT] = [$((&[$name, "2mm"], only(Tells, $weight, $liquids))),+];
+        const R2_SLIGHT: [Runs; READINGS_COUNT] = [$((&[$name, "2mm"], only(Slight, $weight, $liquids))),+];
         const READINGS_COUNT: usize = [$($name),+].len();
     };
 }
 
 readings! {
-    (AS_PRINTED, ALL, "as printed, with the choices of all other tables", []),
-    ("as-coded", WET, "bridges as LIGGGHTS 3.8 computes them: all four of the next", ["bridge-law=as-coded"]),
-    ("shaded-caps", WET, "bridges hold 6.7 % of both films instead of 5 %", ["bridge-volume=shaded-cap"]),
-    ("half-product-angle", WET, "two grains' contact angle is half the product: 40° act as 14°", ["pair-angle=half-product"]),
-    ("weak-viscosity", WET, "viscous forces grow down to 1.01 r* only, not to 0.01 (r_i + r_j)", ["viscous-gap=coded"]),
-    ("open-capillary-gap", WET, "the capillary force of grains in contact is that at no gap", ["capillary-gap=open"]),
-    ("rupture-at-d0", WET, "bridges break at d0, forces beyond 0.1 (r_i + r_j) being those there", ["rupture=at-d0"]),
-    ("coulomb-total", WET, "friction is bounded by the normal force of contact and bridge together", ["coulomb=total"]),
+    (AS_PRINTED, ALL, Tells, "as printed, with the choices of all other tables", []),
+    ("as-coded", WET, Tells, "bridges as LIGGGHTS 3.8 computes them: all four of the next", ["bridge-law=as-coded"]),
+    ("shaded-caps", WET, Slight, "bridges hold 6.7 % of both films instead of 5 %", ["bridge-volume=shaded-cap"]),
+    ("half-product-angle", WET, Slight, "two grains' contact angle is half the product: 40° act as 14°", ["pair-angle=half-product"]),
+    ("weak-viscosity", WET, Tells, "viscous forces grow down to 1.01 r* only, not to 0.01 (r_i + r_j)", ["viscous-gap=coded"]),
+    ("open-capillary-gap", WET, Slight, "the capillary force of grains in contact is that at no gap", ["capillary-gap=open"]),
+    ("rupture-at-d0", WET, Slight, "bridges break at d0, forces beyond 0.1 (r_i + r_j) being those there", ["rupture=at-d0"]),
+    ("coulomb-total", WET, Slight, "friction is bounded by the normal force of contact and bridge together", ["coulomb=total"]),
     (
-        "wet-friction-as-dry", WET, "wet grains have the dry ones' friction, 0.40 (0.30 at walls)",
+        "wet-friction-as-dry", WET, Tells, "wet grains have the dry ones' friction, 0.40 (0.30 at walls)",
         ["wet-friction.glass.glass=0.4", "wet-friction.glass.drum=0.3"]
     ),
     (
-        "dry-friction-as-wet", DRY, "dry grains have the wet ones' friction, 0.10 (0.15 at walls)",
+        "dry-friction-as-wet", DRY, Tells, "dry grains have the wet ones' friction, 0.10 (0.15 at walls)",
         ["friction.glass.glass=0.1", "friction.glass.drum=0.15"]
     ),
     (
-        "walls-as-grains", ALL, "walls have the grains' friction, 0.10 wet and 0.40 dry",
+        "walls-as-grains", ALL, Tells, "walls have the grains' friction, 0.10 wet and 0.40 dry",
         ["wet-friction.glass.drum=0.1", "friction.glass.drum=0.4"]
     ),
-    ("solid-fill", ALL, "grains, not their bed, fill 35 % of the drum", ["count=783"]),
+    ("solid-fill", ALL, Tells, "grains, not their bed, fill 35 % of the drum", ["count=783"]),
     (
-        "no-rolling-friction", ALL, "no rolling friction",
+        "no-rolling-friction", ALL, Tells, "no rolling friction",
         ["rolling-friction.glass.glass=0", "rolling-friction.glass.drum=0"]
     ),
-    ("no-rolling-friction-at-walls", ALL, "no rolling friction at walls", ["rolling-friction.glass.drum=0"]),
-    ("quarter-step", ALL, "a quarter of the time step", ["time-step=reference"]),
+    ("no-rolling-friction-at-walls", ALL, Slight, "no rolling friction at walls", ["rolling-friction.glass.drum=0"]),
+    ("quarter-step", ALL, Slight, "a quarter of the time step", ["time-step=reference"]),
 }
 
 /// The rounds: part, what is run, which of its liquids, the first and the last seed.
 type Round = (&'static str, &'static [Runs], usize, (u64, u64));
-const ROUNDS: [Round; 7] = [
+const ROUNDS: [Round; 10] = [
     ("r3", &R3, 0, (1, 1)),
-    ("r3", &R3, 0, (2, 2)),
-    ("r3", &R3, 1, (1, 2)),
-    ("r3", &R3, 0, (3, 4)),
-    ("r3", &R3, 1, (3, 4)),
-    ("r2", &R2, 0, (1, 2)),
-    ("r2", &R2, 1, (1, 2)),
+    ("r3", &R3_TELL, 0, (2, 2)),
+    ("r3", &R3_TELL, 0, (3, 4)),
+    ("r3", &R3_TELL, 1, (1, 4)),
+    ("r2", &R2_TELL, 0, (1, 2)),
+    ("r2", &R2_TELL, 1, (1, 2)),
+    ("r3-rest", &R3_SLIGHT, 0, (2, 4)),
+    ("r3-rest", &R3_SLIGHT, 1, (1, 4)),
+    ("r2-rest", &R2_SLIGHT, 0, (1, 2)),
+    ("r2-rest", &R2_SLIGHT, 1, (1, 2)),
 ];
 
 static BATCHES: [Batch; ROUNDS.len() * READINGS_COUNT] = {

@@ -138,8 +138,7 @@ pub struct What {
     /// Change a value: friction.glass.glass=0.3, drum-speed=1rpm, count=200 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Threads the solver works on [default: all cores, with a window one less where there are more
-    /// than two or software draws]
+    /// Threads the solver works on [default: all cores, one less with a window]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub threads: Option<u16>,
     /// Commands to carry out when their time comes: a list in RON or JSON, a run's summary.json, or

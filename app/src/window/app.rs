@@ -23,7 +23,7 @@ use bevy::math::UVec2;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
-use grainfall::lab::{Options, window_threads};
+use grainfall::lab::Options;
 use grainfall::run::Rescue;
 use grainfall::scene::Scene as GranularScene;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -53,9 +53,10 @@ pub fn run(job: WindowJob) -> Result<(), WindowError> {
     exit.is_success().then_some(()).ok_or(WindowError::Ended)
 }
 
-/// How what is opened is run, where `software` draws or not. A person begins by looking; a picture is
-/// taken of a run that goes to its moment as fast as it can, of two from their common start on.
-fn options(job: &WindowJob, software: bool) -> Options {
+/// How what is opened is run. A person begins by looking; a picture is taken of a run that goes to its
+/// moment as fast as it can, of two from their common start on.
+fn options(job: &WindowJob) -> Options {
+    let usual = Options::window();
     let is_played = job.picture.is_some();
     let speed = if is_played {
         f64::INFINITY
@@ -63,11 +64,11 @@ fn options(job: &WindowJob, software: bool) -> Options {
         first_speed(job.opened.scene().duration)
     };
     Options {
-        threads: job.threads.unwrap_or_else(|| window_threads(software)),
+        threads: job.threads.unwrap_or(usual.threads),
         autoplay: is_played && job.compared.is_none(),
         speed,
         script: job.script.clone(),
-        ..Options::window()
+        ..usual
     }
 }
 
@@ -75,7 +76,7 @@ fn options(job: &WindowJob, software: bool) -> Options {
 fn build(job: WindowJob, software: bool, failure: Failure) -> App {
     let mut app = App::new();
     let is_played = job.picture.is_some();
-    let options = options(&job, software);
+    let options = options(&job);
     let title = window_title(&job.opened.scene().title);
     match &job.picture {
         Some(picture) if picture.offscreen => app.add_plugins((

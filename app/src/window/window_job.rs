@@ -21,7 +21,7 @@ pub struct WindowJob {
     pub name: String,
     /// The scene, the session or the recording.
     pub opened: Opened,
-    /// Threads of the solver; without any, what suits who draws.
+    /// Threads of the solver; without any, as many as a window leaves.
     pub threads: Option<usize>,
     /// Commands carried out by themselves when their time comes.
     pub script: Vec<ScriptedCommand>,

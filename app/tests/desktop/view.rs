@@ -38,7 +38,7 @@ use grainfall_app::window::environment::adapters;
 use grainfall_app::window::pipelines::Pipelines;
 use std::io::Write;
 use std::panic::Location;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 pub const SIZE: UVec2 = UVec2::new(640, 360);
 
@@ -49,6 +49,7 @@ static STUDIO: Mutex<()> = Mutex::new(());
 #[track_caller]
 pub fn studio() -> Option<MutexGuard<'static, ()>> {
     let guard = STUDIO.lock().unwrap_or_else(PoisonError::into_inner);
+    keep_drivers();
     if !adapters().is_empty() {
         return Some(guard);
     }
@@ -63,6 +64,15 @@ pub fn studio() -> Option<MutexGuard<'static, ()>> {
         "the test at {test} did not run: no Vulkan driver"
     );
     None
+}
+
+/// Keeps the drivers loaded from test to test: some cannot be loaded any number of times by one
+/// process.
+fn keep_drivers() {
+    static KEPT: OnceLock<wgpu::Instance> = OnceLock::new();
+    KEPT.get_or_init(
+        || wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle()),
+    );
 }
 
 /// A picture and the camera it was taken with.
