@@ -56,19 +56,22 @@ type Liquids = [&'static [&'static str]; 2];
 /// The values of `reading` and `radius`, and the liquids that are run with them.
 type Runs = (&'static [&'static str], Liquids);
 
-/// Whether a reading moves what one drum of a liquid shows beyond the scatter of those as printed.
+/// How much a reading is worth running: it moves nothing beyond the scatter of the drums as printed,
+/// it does, or it is what all others are set beside.
 #[derive(Clone, Copy)]
 enum Weight {
-    Tells,
     Slight,
+    Tells,
+    Printed,
 }
-use Weight::{Slight, Tells};
+use Weight::{Printed, Slight, Tells};
 
-/// The `liquids` of a reading of this `weight` in a round of one of `wanted` weight.
+/// The `liquids` of a reading of this `weight` in a round of those of the `wanted` one.
 const fn only(wanted: Weight, weight: Weight, liquids: Liquids) -> Liquids {
-    match (wanted, weight) {
-        (Tells, Tells) | (Slight, Slight) => liquids,
-        _ => [&[], &[]],
+    if wanted as u8 == weight as u8 {
+        liquids
+    } else {
+        [&[], &[]]
     }
 }
 
@@ -80,17 +83,19 @@ macro_rules! readings {
             text: $text,
             settings: &[$($setting),*],
         }),+];
-        const R3: [Runs; READINGS_COUNT] = [$((&[$name, "3mm"], $liquids)),+];
-        const R3_TELL: [Runs; READINGS_COUNT] = [$((&[$name, "3mm"], only(Tells, $weight, $liquids))),+];
-        const R3_SLIGHT: [Runs; READINGS_COUNT] = [$((&[$name, "3mm"], only(Slight, $weight, $liquids))),+];
-        const R2_TELL: [Runs; READINGS_COUNT] = [$((&[$name, "2mm"], only(Tells, $weight, $liquids))),+];
-        const R2_SLIGHT: [Runs; READINGS_COUNT] = [$((&[$name, "2mm"], only(Slight, $weight, $liquids))),+];
+        const R3: Round = [$((&[$name, "3mm"], $liquids)),+];
+        const R3_TELL: Round = [$((&[$name, "3mm"], only(Tells, $weight, $liquids))),+];
+        const R3_PRINTED: Round = [$((&[$name, "3mm"], only(Printed, $weight, $liquids))),+];
+        const R3_SLIGHT: Round = [$((&[$name, "3mm"], only(Slight, $weight, $liquids))),+];
+        const R2_TELL: Round = [$((&[$name, "2mm"], only(Tells, $weight, $liquids))),+];
+        const R2_PRINTED: Round = [$((&[$name, "2mm"], only(Printed, $weight, $liquids))),+];
+        const R2_SLIGHT: Round = [$((&[$name, "2mm"], only(Slight, $weight, $liquids))),+];
         const READINGS_COUNT: usize = [$($name),+].len();
     };
 }
 
 readings! {
-    (AS_PRINTED, ALL, Tells, "as printed, with the choices of all other tables", []),
+    (AS_PRINTED, ALL, Printed, "as printed, with the choices of all other tables", []),
     ("as-coded", WET, Tells, "bridges as LIGGGHTS 3.8 computes them: all four of the next", ["bridge-law=as-coded"]),
     ("shaded-caps", WET, Slight, "bridges hold 6.7 % of both films instead of 5 %", ["bridge-volume=shaded-cap"]),
     ("half-product-angle", WET, Slight, "two grains' contact angle is half the product: 40° act as 14°", ["pair-angle=half-product"]),
@@ -119,13 +124,20 @@ readings! {
     ("quarter-step", ALL, Slight, "a quarter of the time step", ["time-step=reference"]),
 }
 
-/// The rounds: part, what is run, which of its liquids, the first and the last seed.
-type Round = (&'static str, &'static [Runs], usize, (u64, u64));
-const ROUNDS: [Round; 10] = [
+/// What is run of each reading in a round.
+type Round = [Runs; READINGS_COUNT];
+/// The rounds: part, what is run, which of its liquids, the first and the last seed. Of the drums as
+/// printed there are as many seeds as the other tables have.
+type Seeded = (&'static str, &'static Round, usize, (u64, u64));
+const ROUNDS: [Seeded; 14] = [
     ("r3", &R3, 0, (1, 1)),
+    ("r3", &R3_PRINTED, 0, (2, 8)),
+    ("r3", &R3_PRINTED, 1, (1, 8)),
     ("r3", &R3_TELL, 0, (2, 2)),
     ("r3", &R3_TELL, 0, (3, 4)),
     ("r3", &R3_TELL, 1, (1, 4)),
+    ("r2", &R2_PRINTED, 0, (1, 4)),
+    ("r2", &R2_PRINTED, 1, (1, 4)),
     ("r2", &R2_TELL, 0, (1, 2)),
     ("r2", &R2_TELL, 1, (1, 2)),
     ("r3-rest", &R3_SLIGHT, 0, (2, 4)),
@@ -177,12 +189,13 @@ impl<'a> Measured<'a> {
     /// The readings of which there are drums of their own, and other measures of the drums as
     /// printed.
     fn all(ensembles: &'a [Ensemble<'a>]) -> Vec<Self> {
+        let ensembles = compared(ensembles);
         let runs = READINGS.iter().filter_map(|reading| {
-            let drums = drums_of(reading.name, ensembles)?;
+            let drums = drums_of(reading.name, &ensembles)?;
             Some((reading.name.to_owned(), reading.text.to_owned(), drums))
         });
         let measures = OTHER_MEASURES.iter().filter_map(|(name, text, measure)| {
-            let mut drums = drums_of(AS_PRINTED, ensembles)?;
+            let mut drums = drums_of(AS_PRINTED, &ensembles)?;
             drums
                 .0
                 .iter_mut()
@@ -245,9 +258,9 @@ const OTHER_MEASURES: [(&str, &str, MeasuredBy); 4] = [
 
 /// The drums of the reading called `name`: those run under it, and of the liquids with which it is
 /// not run those as printed; none where none of its own is there.
-fn drums_of<'a>(name: &str, ensembles: &'a [Ensemble<'a>]) -> Option<Drums<'a>> {
+fn drums_of<'a>(name: &str, ensembles: &[&'a Ensemble<'a>]) -> Option<Drums<'a>> {
     let reading_of = |own: &Ensemble| own.values.first().cloned();
-    let is_own = |own: &&Ensemble| reading_of(own).as_deref() == Some(name);
+    let is_own = |own: &&&Ensemble| reading_of(own).as_deref() == Some(name);
     ensembles.iter().find(is_own)?;
     let is_run = |own: &Ensemble| {
         let liquid = own.values.last().cloned().unwrap_or_default();
@@ -258,12 +271,27 @@ fn drums_of<'a>(name: &str, ensembles: &'a [Ensemble<'a>]) -> Option<Drums<'a>> 
             .any(|value| *value == liquid)
     };
     let is_unchanged =
-        |own: &&Ensemble| reading_of(own).as_deref() == Some(AS_PRINTED) && !is_run(own);
+        |own: &&&Ensemble| reading_of(own).as_deref() == Some(AS_PRINTED) && !is_run(own);
     Some(Drums::of(
         ensembles
             .iter()
-            .filter(|own| is_own(own) || is_unchanged(own)),
+            .copied()
+            .filter(|own| is_own(&own) || is_unchanged(&own)),
     ))
+}
+
+/// The drums of the radii at which every reading was run that was run at all: what is judged by
+/// coarse grains alone is set beside coarse grains.
+fn compared<'a>(ensembles: &'a [Ensemble<'a>]) -> Vec<&'a Ensemble<'a>> {
+    let has = |reading: &str, radius: &str| {
+        let mut all = ensembles.iter();
+        all.any(|own| own.values[0] == reading && own.values[1] == radius)
+    };
+    let is_of_all = |own: &&Ensemble| {
+        let mut all = ensembles.iter();
+        all.all(|other| has(&other.values[0], &own.values[1]))
+    };
+    ensembles.iter().filter(is_of_all).collect()
 }
 
 fn readings_table(measured: &[Measured]) -> String {
@@ -551,6 +579,35 @@ mod tests {
         assert!(text("numbers").contains(row), "{}", text("numbers"));
         let row = "| The wet bed stands higher than the dry one | ✗ | ✓ | ✓ |";
         assert!(text("verdicts").contains(row), "{}", text("verdicts"));
+    }
+
+    #[test]
+    fn readings_are_compared_at_the_radii_at_which_all_of_them_were_run() {
+        let both = Selection {
+            parts: vec!["r3".to_owned(), "r2".to_owned()],
+            seeds: Some(1),
+            ..Selection::default()
+        };
+        let job = PaperJob::new(&KASPER2021_READINGS, &both, "nowhere".into(), 1).unwrap();
+        let cases = crate::sweep::cases(job.sweep()).unwrap();
+        let rows = |fine: &[&str]| {
+            let is_there = |case: &&Case| {
+                let [reading, radius, ..] = &case.values[..] else {
+                    return false;
+                };
+                let is_read = [AS_PRINTED, "as-coded"].contains(&reading.as_str());
+                is_read && (radius == "3mm" || fine.contains(&reading.as_str()))
+            };
+            let there = cases.iter().filter(is_there).cloned();
+            let outcomes: Vec<CaseResult> = there.map(|case| outcome(case, 30.0)).collect();
+            let ensembles = ensembles(job.sweep(), &outcomes);
+            let measured = Measured::all(&ensembles);
+            measured.iter().map(Measured::radii).collect::<Vec<_>>()
+        };
+        let coarse = vec![vec![3.0]; 2 + OTHER_MEASURES.len()];
+        assert_eq!(rows(&[AS_PRINTED]), coarse);
+        let all = vec![vec![3.0, 2.0]; 2 + OTHER_MEASURES.len()];
+        assert_eq!(rows(&[AS_PRINTED, "as-coded"]), all);
     }
 
     #[test]
