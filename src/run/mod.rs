@@ -23,6 +23,7 @@
 //! | `snapshot` | where a run stood, in memory or in a file |
 //! | `orientations` | how far spheres have turned, for pictures |
 //! | `method` | which solver and measures computed a run |
+//! | `step_costs` | what shorter and longer steps changed in whole beds |
 //! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left; work that gives way |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `measured` | what was measured, and how much of it stands in files |
@@ -69,6 +70,7 @@ mod settling;
 mod shared;
 mod snapshot;
 mod soundness;
+mod step_costs;
 mod steps;
 mod tables;
 mod timeline;
@@ -110,6 +112,7 @@ pub use sampling::Sampling;
 pub use script::{Script, ScriptError, ScriptedCommand};
 pub use session::{SESSION_EXTENSION, Session, SessionError};
 pub use snapshot::{Checkpoint, CheckpointParts, Snapshot};
+pub use step_costs::{MeasuredBed, MeasuredResult, MeasuredStep};
 pub use steps::StepTimes;
 pub use tables::{Cells, Column, TABLES_METADATA, Table, write_metadata};
 pub use timeline::Timeline;

@@ -17,7 +17,9 @@
 //! | store | rows become columns again, clock, walls and angle follow | exchange |
 //!
 //! where forces and motion alternate in batches of steps, between which only the lists are touched.
-//! The motion of the last step is one kick, without a drift. Velocity Verlet's second half kick of
+//! Polyhedra do one after the other and meet between; spheres do both in one pass
+//! ([`super::spheres`]), from one copy of their grains into another. The motion of the last step is
+//! one kick, without a drift. Velocity Verlet's second half kick of
 //! one step and the first of the next are one pass over the grains.
 //!
 //! Faults are looked for where they are cheap: every grain's speed after every step, as a number
@@ -67,8 +69,8 @@ pub trait Kernel {
     /// A share for each of the batch's workers.
     fn lend<'a>(&'a mut self, batch: &'a Batch) -> Vec<Self::Share<'a>>;
 
-    /// Takes note of what a batch came to.
-    fn note(&mut self, tally: &Tally);
+    /// Takes note of what a batch of so many steps came to.
+    fn note(&mut self, tally: &Tally, steps: u64);
 
     /// Puts all but clock and walls back into `world`.
     fn store(&self, pool: &mut WorkerPool, world: &mut World);
@@ -88,6 +90,12 @@ pub trait Kernel {
 
 /// What one worker works on during a batch of steps.
 pub trait Share: Send {
+    /// Goes through the batch.
+    fn follow(self, course: &Course, phase: InPhase<'_, ForcePhase>) -> BatchReport;
+}
+
+/// A share whose steps are two phases: all meet after the forces and after the motion.
+pub trait PhasedShare: Send {
     /// Computes the forces of the worker's pairs. `walls` are the walls at the time of the
     /// positions.
     fn compute_forces(
@@ -99,16 +107,13 @@ pub trait Share: Send {
 
     /// Whether there is another sweep, in which bodies respond to their pairs and pairs resist their
     /// bodies: none where all forces are explicit. All workers say the same.
-    fn has_sweep(&self) -> bool {
-        false
-    }
+    fn has_sweep(&self) -> bool;
 
     /// Makes known how the worker's grains move after the forces and the sweeps so far.
-    fn respond(&mut self, _processor: Processor, _sweep: usize, _phase: &InPhase<'_, MotionPhase>) {
-    }
+    fn respond(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, MotionPhase>);
 
     /// Solves what the worker's pairs do implicitly.
-    fn resist(&mut self, _processor: Processor, _sweep: usize, _phase: &InPhase<'_, ForcePhase>) {}
+    fn resist(&mut self, processor: Processor, sweep: usize, phase: &InPhase<'_, ForcePhase>);
 
     /// Sums the forces on the worker's grains and moves them; at the `last` step of a call they
     /// stay where they are and their velocities become those of that time.
@@ -120,6 +125,40 @@ pub trait Share: Send {
     ) -> Outcome;
 }
 
+/// A share whose steps are one pass each, from one copy of the grains into another and from that
+/// back: all meet once a step.
+pub trait PassingShare: Send {
+    /// Takes a step from the first copy into the second.
+    fn pass_forth(&mut self, moment: &Moment<'_>, phase: &InPhase<'_, ForcePhase>) -> PassReport;
+
+    /// Takes the next one, back into the first.
+    fn pass_back(&mut self, moment: &Moment<'_>, phase: &InPhase<'_, MotionPhase>) -> PassReport;
+}
+
+/// A step of a batch.
+pub struct Moment<'a> {
+    /// What the processor can.
+    pub processor: Processor,
+    /// The walls at the time of the positions.
+    pub walls: &'a Walls,
+    /// Whether it is the last step of a call: grains stay where they are and their velocities
+    /// become those of that time.
+    pub last: bool,
+    /// Whether the clock is to be read.
+    pub timed: bool,
+}
+
+/// What a pass came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PassReport {
+    /// What came of computing forces.
+    pub tally: Tally,
+    /// What the grains ask for.
+    pub outcome: Outcome,
+    /// Time spent on forces and on motion, where it was clocked.
+    pub times: [Duration; 2],
+}
+
 /// What a worker's grains ask for after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
@@ -127,6 +166,14 @@ pub struct Outcome {
     pub refresh: bool,
     /// Some grain's state is absurd.
     pub fault: bool,
+}
+
+impl Outcome {
+    /// Adds what other grains ask for.
+    pub fn add(&mut self, other: Self) {
+        self.refresh |= other.refresh;
+        self.fault |= other.fault;
+    }
 }
 
 /// What came of computing forces.
@@ -142,7 +189,7 @@ pub struct Tally {
 
 impl Tally {
     /// Adds what another worker, or another step, came to.
-    fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: &Self) {
         self.ruptures += other.ruptures;
         self.relisted += other.relisted;
         self.fault |= other.fault;
@@ -207,7 +254,7 @@ impl Resources<'_> {
             }
             let batch = self.take_batch(kernel, steps - done);
             batch.book(self.profile);
-            kernel.note(&batch.tally);
+            kernel.note(&batch.tally, batch.steps);
             done += batch.steps;
             if batch.fault {
                 return Err(done);
@@ -232,13 +279,13 @@ impl Resources<'_> {
             limit: remaining.min(kernel.steps_within_slack()),
             dt,
             walls: kernel.walls().clone(),
-            requests: OwnLine::default(),
+            requests: Default::default(),
         };
         let batch = Batch::new(self.pool.size());
         let shares = kernel.lend(&batch);
         let reports = self
             .pool
-            .run(&batch, shares, |share, phase| course.follow(share, phase));
+            .run(&batch, shares, |share, phase| share.follow(&course, phase));
         let mut whole = BatchReport::default();
         for (worker, report) in reports.iter().enumerate() {
             if worker == 0 {
@@ -246,7 +293,10 @@ impl Resources<'_> {
             }
             whole.tally.add(&report.tally);
         }
-        whole.fault = course.requests.0.fault.into_inner();
+        whole.fault = course
+            .requests
+            .iter()
+            .any(|asked| asked.0.fault.load(Ordering::Relaxed));
         // At the last step of a call nothing moves any more.
         let moves = whole.steps - u64::from(whole.steps == remaining);
         (0..moves).for_each(|_| kernel.walls().advance(dt));
@@ -256,7 +306,7 @@ impl Resources<'_> {
 
 /// What a batch of steps came to, for one worker or for all.
 #[derive(Default)]
-struct BatchReport {
+pub struct BatchReport {
     steps: u64,
     fault: bool,
     tally: Tally,
@@ -265,6 +315,11 @@ struct BatchReport {
 }
 
 impl BatchReport {
+    /// Whether the worker of this number reads the clock in the next step.
+    fn is_timed(&self, worker: usize) -> bool {
+        worker == 0 && self.steps.is_multiple_of(STEPS_PER_TIMING)
+    }
+
     /// Books the times, scaled up to all steps, and what was counted.
     fn book(&self, profile: &mut Profile) {
         let scale = STEPS_PER_TIMING.min(self.steps.max(1)) as u32;
@@ -275,7 +330,7 @@ impl BatchReport {
 }
 
 /// What all workers of a batch go by.
-struct Course {
+pub struct Course {
     processor: Processor,
     /// Steps to the end of the call.
     remaining: u64,
@@ -283,12 +338,13 @@ struct Course {
     limit: u64,
     dt: f64,
     walls: Walls,
-    /// What some worker asks for: on a line of its own, as all read it in every step.
-    requests: OwnLine<BatchRequests>,
+    /// What some worker asks for, in even and in odd steps: those of a step are read at the beginning
+    /// of the next, while a worker that is ahead may write those of that one already. Each on lines of its
+    /// own, as all read them.
+    requests: [OwnLine<BatchRequests>; 2],
 }
 
-/// What workers ask for: the batch ends after the step. It is read at the beginning of a step only,
-/// and written between the two meetings of one.
+/// What workers ask for: the batch ends after the step.
 #[derive(Default)]
 struct BatchRequests {
     /// The lists are to be brought up to date.
@@ -298,19 +354,17 @@ struct BatchRequests {
 }
 
 impl Course {
-    /// One worker's way through the batch.
-    fn follow<'a>(
+    /// One worker's way through the batch, in two phases a step.
+    pub fn in_phases<'a>(
         &self,
-        mut share: impl Share,
+        mut share: impl PhasedShare,
         mut forces: InPhase<'a, ForcePhase>,
     ) -> BatchReport {
         let mut report = BatchReport::default();
         // A copy of its own, which moves as all others do.
         let mut walls = self.walls.clone();
-        while report.steps < self.limit && !self.is_over() {
-            let timed = forces.worker() == 0 && report.steps.is_multiple_of(STEPS_PER_TIMING);
-            let begin = timed.then(Instant::now);
-
+        while self.goes_on(&report) {
+            let begin = report.is_timed(forces.worker()).then(Instant::now);
             let tally = share.compute_forces(self.processor, &walls, &forces);
             let mut sweep = 0;
             while share.has_sweep() {
@@ -322,30 +376,86 @@ impl Course {
             }
             let motion: InPhase<'a, MotionPhase> = forces.meet();
             let middle = begin.map(|_| Instant::now());
-
-            report.steps += 1;
-            let last = report.steps == self.remaining;
-            let outcome = share.move_grains(self.processor, last, &motion);
-            raise(&self.requests.0.refresh, outcome.refresh);
-            raise(&self.requests.0.fault, outcome.fault || tally.fault);
-            if !last {
-                walls.advance(self.dt);
-            }
+            let outcome = share.move_grains(self.processor, self.is_last(&report), &motion);
+            let mut pass = PassReport {
+                tally,
+                outcome,
+                ..PassReport::default()
+            };
+            self.ask(&report, &pass);
             forces = motion.meet();
-
-            report.tally.add(&tally);
             if let (Some(begin), Some(middle)) = (begin, middle) {
-                report.times[0] += middle - begin;
-                report.times[1] += middle.elapsed();
+                pass.times = [middle - begin, middle.elapsed()];
             }
+            self.finish(&mut report, &mut walls, &pass);
         }
         report
     }
 
-    /// Whether some worker has asked for the batch to end.
-    fn is_over(&self) -> bool {
-        let BatchRequests { refresh, fault } = &self.requests.0;
-        refresh.load(Ordering::Relaxed) || fault.load(Ordering::Relaxed)
+    /// One worker's way through the batch, in one pass a step.
+    pub fn in_passes<'a>(
+        &self,
+        mut share: impl PassingShare,
+        mut forth: InPhase<'a, ForcePhase>,
+    ) -> BatchReport {
+        let mut report = BatchReport::default();
+        let mut walls = self.walls.clone();
+        while self.goes_on(&report) {
+            let moment = self.moment(&report, &walls, forth.worker());
+            let pass = share.pass_forth(&moment, &forth);
+            self.ask(&report, &pass);
+            let back: InPhase<'a, MotionPhase> = forth.meet();
+            self.finish(&mut report, &mut walls, &pass);
+            if !self.goes_on(&report) {
+                break;
+            }
+            let moment = self.moment(&report, &walls, back.worker());
+            let pass = share.pass_back(&moment, &back);
+            self.ask(&report, &pass);
+            forth = back.meet();
+            self.finish(&mut report, &mut walls, &pass);
+        }
+        report
+    }
+
+    fn moment<'w>(&self, report: &BatchReport, walls: &'w Walls, worker: usize) -> Moment<'w> {
+        Moment {
+            processor: self.processor,
+            walls,
+            last: self.is_last(report),
+            timed: report.is_timed(worker),
+        }
+    }
+
+    /// Whether the next step is the last of the call.
+    fn is_last(&self, report: &BatchReport) -> bool {
+        report.steps + 1 == self.remaining
+    }
+
+    /// Whether there is a next step, by what was asked for in the last one.
+    fn goes_on(&self, report: &BatchReport) -> bool {
+        let BatchRequests { refresh, fault } = &self.requests[(report.steps + 1) as usize % 2].0;
+        let asked = refresh.load(Ordering::Relaxed) || fault.load(Ordering::Relaxed);
+        report.steps < self.limit && !asked
+    }
+
+    /// Makes known what the step asks for, before all meet.
+    fn ask(&self, report: &BatchReport, pass: &PassReport) {
+        let requests = &self.requests[report.steps as usize % 2].0;
+        raise(&requests.refresh, pass.outcome.refresh);
+        raise(&requests.fault, pass.outcome.fault || pass.tally.fault);
+    }
+
+    /// Goes on to the next step.
+    fn finish(&self, report: &mut BatchReport, walls: &mut Walls, pass: &PassReport) {
+        if !self.is_last(report) {
+            walls.advance(self.dt);
+        }
+        report.steps += 1;
+        report.tally.add(&pass.tally);
+        for (sum, time) in report.times.iter_mut().zip(pass.times) {
+            *sum += time;
+        }
     }
 }
 

@@ -7,14 +7,17 @@
 //!
 //! # Threading model
 //!
-//! A step has two phases, each a few microseconds long for a small bed: too short for a task queue.
+//! Phases alternate, each a few microseconds long for a small bed: too short for a task queue.
 //! Every worker runs a whole [`Batch`] of steps, on ranges of its own, and all meet at a spinning
-//! barrier after each phase.
+//! barrier after each phase. Of polyhedra a step has two phases:
 //!
 //! | phase | every worker reads all of | each worker writes its own ranges of |
 //! |---|---|---|
-//! | [`ForcePhase`] | bodies, films, vertices and planes of faces | what pairs do to their sides |
-//! | [`MotionPhase`] | what pairs do to their sides | bodies, films, vertices and planes of faces |
+//! | [`ForcePhase`] | bodies, vertices and planes of faces | what pairs do to their sides |
+//! | [`MotionPhase`] | what pairs do to their sides | bodies, vertices and planes of faces |
+//!
+//! Of spheres each phase is a step: in one every worker reads the first copy of bodies and films and
+//! writes its own of the second, in the other it goes back.
 //!
 //! Between batches the caller goes on alone, but for what of a large bed is worth sharing: lists that
 //! are made anew, the way from a world's columns to rows and back. [`WorkerPool::map`] gives each
@@ -422,7 +425,7 @@ unsafe impl<T: Send + Sync, P> Send for Column<'_, T, P> {}
 
 #[expect(
     unsafe_code,
-    reason = "two barriers a step are all that a phase can afford; locks and atomics per row are not"
+    reason = "a barrier is all that a phase can afford; locks and atomics per row are not"
 )]
 impl<T, P: Phase> Column<'_, T, P> {
     /// The worker's own ranges, one after the other.

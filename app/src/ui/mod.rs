@@ -106,7 +106,6 @@ pub use panels::parameter_sweep::ParameterSweep;
 pub use panels::parameters::{Parameters, parameter_ui};
 pub use panels::picture_settings::PictureSettings;
 pub use panels::results::Results;
-pub use panels::solver_profile::{SolverProfile, advice_ui, profile_ui};
 pub(crate) use playback::first_speed;
 pub use plot_export::Export;
 pub use plots::run_curves::Curves;

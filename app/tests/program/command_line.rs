@@ -78,8 +78,19 @@ fn steps_are_listed_with_what_they_cost_and_one_that_is_given_beside_them() {
         end(1) - end(0)
     };
     assert!(choices[..3].iter().map(spread).is_sorted(), "{choices:?}");
+    let measured = listed["measured"]["steps"].as_array().unwrap();
+    let angle = &measured[0]["results"][0];
+    assert_eq!(angle["result"], "surface angle");
+    assert!((angle["mean"].as_f64().unwrap().to_degrees() - 33.0).abs() < 0.1);
+    let said = text(&place.run(&["time-steps", "dry-r3"]).stdout);
+    let longer = said.lines().find(|line| line.contains("30.00 µs"));
+    assert!(
+        longer.is_some_and(|line| line.ends_with("Tg by (4.2 ± 1.4)·10⁻⁶ m²/s²")),
+        "{said}"
+    );
     let said = text(&place.run(&["time-steps", "column"]).stdout);
     assert!(said.contains("dashpots of a polyhedron"), "{said}");
+    assert!(said.contains("20.00 µs implicit  4"), "{said}");
     assert!(
         said.contains("reference") && said.contains("0.25"),
         "{said}"

@@ -150,7 +150,7 @@ impl Kernel for PolyhedronKernel {
     }
 
     /// Nothing of a batch outlasts it but what the profile counts.
-    fn note(&mut self, _tally: &Tally) {}
+    fn note(&mut self, _tally: &Tally, _steps: u64) {}
 
     /// The histories of the features that touch, and the contact force of each pair that does.
     fn store(&self, _pool: &mut WorkerPool, world: &mut World) {

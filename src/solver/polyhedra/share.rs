@@ -21,7 +21,7 @@
 
 use super::super::ranges::{range_of, split_once};
 use super::super::row::Row;
-use super::super::step::{Outcome, Share, Tally};
+use super::super::step::{BatchReport, Course, Outcome, PhasedShare, Share, Tally};
 use super::super::walls::Walls;
 use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
 use super::PolyhedronKernel;
@@ -266,6 +266,12 @@ impl<'a> PolyhedraShare<'a> {
 }
 
 impl Share for PolyhedraShare<'_> {
+    fn follow(self, course: &Course, phase: InPhase<'_, ForcePhase>) -> BatchReport {
+        course.in_phases(self, phase)
+    }
+}
+
+impl PhasedShare for PolyhedraShare<'_> {
     fn compute_forces(
         &mut self,
         processor: Processor,

@@ -26,14 +26,16 @@
 
 use super::super::tangential::{Slip, turned, update};
 use super::super::walls::WallBody;
-use super::bridges::{BridgeColumns, BridgeEffect, BridgeGroup, Encounter, LiquidForce, Wetting};
+use super::bridges::{BridgeColumns, BridgeGroup, Encounter, LiquidForce, Wetting};
 use super::partners::{GrainAndWall, PairGeometry, Partners, TwoGrains};
+use super::rings::Target;
 use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
-use crate::lanes::{Lanes, Quad, Row, Work, cross, dot, minus, plus, side_by_side, times};
+use crate::lanes::{Lanes, Quad, Row, cross, dot, minus, plus, side_by_side, times};
 use crate::physics::CoulombBound;
 use crate::physics::law::{
     FilmConstants, Law, NormalContact, PairConstants, normal_contact, rolling_gain,
 };
+use std::ops::Range;
 
 /// Constants of pairs side by side: the law's, then friction, rolling arm and both radii.
 pub type Constants<N> = ([N; 4], [N; 4]);
@@ -225,7 +227,7 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     all: &PairSurroundings<'_, L>,
     partners: P,
     constants: &Constants<N>,
-    springs: &mut [Row],
+    (springs, held): (&mut [Row], &mut [Row]),
     contacts: &mut [ContactForce],
     liquid: Option<(BridgeGroup<'_>, Constants<N>)>,
 ) -> u32 {
@@ -267,24 +269,30 @@ fn interact<N: Lanes, L: Law, P: Partners<N>>(
     let force = minus(tangential, times(normal, repulsion));
     let moment = cross(normal, tangential);
 
-    let before = N::gather(processor, side_by_side::<N, _>(|k| &contacts[k].rolling));
+    let before = N::gather(processor, side_by_side::<N, _>(|k| &held[k]));
     let rolling = state.rolling(processor, rolling_arm * elastic, before, rolling_spin);
     let in_rolling = dt * dot(rolling, minus(partner_spin, spin));
     let by_wall = dt * partners.wall_power(processor, force, rolling);
     let ([arm, partner_arm], count) = (state.arms, N::choose(touching, one, zero));
     let exchanged = [in_dashpots, updated.lost, in_rolling, by_wall];
     let companions = [arm, partner_arm, count];
-    write(contacts, [force, moment, rolling], companions, exchanged);
+    write(
+        (contacts, held),
+        [force, moment, rolling],
+        companions,
+        exchanged,
+    );
     for (spring, updated) in springs.iter_mut().zip(&updated.rows) {
         *spring = updated.row();
     }
     ruptures
 }
 
-/// Writes contact forces: force, moment and rolling torque, each with its companion, and energies.
+/// Writes contact forces: force, moment and rolling torque, each with its companion, and energies;
+/// and the rolling torque where it is remembered.
 #[inline(always)]
 fn write<N: Lanes>(
-    contacts: &mut [ContactForce],
+    (contacts, held): (&mut [ContactForce], &mut [Row]),
     [force, moment, rolling]: [[N; 3]; 3],
     [arm, partner_arm, count]: [N; 3],
     exchanged: [N; 4],
@@ -293,15 +301,16 @@ fn write<N: Lanes>(
     let moments = N::rows([moment[0], moment[1], moment[2], partner_arm]);
     let rollings = N::rows([rolling[0], rolling[1], rolling[2], count]);
     let exchanged = N::rows(exchanged);
-    for (k, contact) in contacts.iter_mut().enumerate() {
+    for (k, (contact, held)) in contacts.iter_mut().zip(held).enumerate() {
         contact.force = forces[k].row();
         contact.moment = moments[k].row();
         contact.rolling = rollings[k].row();
+        *held = rollings[k].row();
         contact.exchanged = exchanged[k].row();
     }
 }
 
-/// A range of pairs with the rows they write.
+/// A range of pairs with what they remember.
 pub struct PairRows<'a, P = Slot> {
     /// The pairs.
     pub pairs: &'a [SpherePair<P>],
@@ -309,12 +318,29 @@ pub struct PairRows<'a, P = Slot> {
     pub kind: Option<PairKind>,
     /// Their tangential springs.
     pub springs: &'a mut [Row],
-    /// Their contact forces.
-    pub forces: &'a mut [ContactForce],
+    /// Their torques of rolling friction.
+    pub rolling: &'a mut [Row],
     /// Their bridges, by groups; empty where nothing is wet.
     pub bridges: &'a mut [BridgeColumns],
-    /// What the bridges do.
-    pub bridge_effects: &'a mut [BridgeEffect],
+}
+
+impl<P> PairRows<'_, P> {
+    /// Those in this range, whole groups.
+    #[inline(always)]
+    pub fn range(&mut self, range: Range<usize>) -> PairRows<'_, P> {
+        let groups = if self.bridges.is_empty() {
+            0..0
+        } else {
+            range.start / GROUP..range.end / GROUP
+        };
+        PairRows {
+            pairs: &self.pairs[range.clone()],
+            kind: self.kind,
+            springs: &mut self.springs[range.clone()],
+            rolling: &mut self.rolling[range],
+            bridges: &mut self.bridges[groups],
+        }
+    }
 }
 
 /// What every pair's force depends on.
@@ -331,16 +357,6 @@ pub struct PairSurroundings<'a, L> {
     pub constants: &'a [PairConstants],
     /// What bridges depend on, where there is liquid.
     pub wetting: Option<Wetting<'a>>,
-}
-
-/// The forces of a range of pairs of grains and of ranges of pairs with walls.
-pub struct PairLoop<'a, L, W> {
-    /// What they depend on.
-    pub surroundings: PairSurroundings<'a, L>,
-    /// Pairs of grains.
-    pub of_grains: PairRows<'a>,
-    /// Pairs of a grain and a wall, range by range.
-    pub of_walls: W,
 }
 
 /// What bridges of pairs that are all of one kind depend on.
@@ -369,13 +385,14 @@ fn own_film_constants<N: Lanes>(
     )
 }
 
-/// Pairs of grains, as many at a time as there are lanes; with bridges where `WET`. Returns how
-/// many of those broke.
+/// Pairs of grains, as many at a time as there are lanes; with bridges where `WET`. They write where
+/// `target` says. Returns how many bridges broke.
 #[inline(always)]
-fn between_grains<N: Lanes, L: Law, const WET: bool>(
+pub fn between_grains<N: Lanes, L: Law, const WET: bool>(
     processor: N::Processor,
     all: &PairSurroundings<'_, L>,
     rows: PairRows<'_>,
+    target: Target<'_>,
 ) -> u64 {
     // As a rule all grains are of one class, and the constants are the same throughout.
     let common = rows.kind.map(PairKind::index);
@@ -394,8 +411,12 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             first: side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]),
             second: side_by_side::<N, _>(|k| &all.bodies[pairs[k].partner.index()]),
         };
-        let springs = &mut rows.springs[group.clone()];
-        let forces = &mut rows.forces[group.clone()];
+        let history = (
+            &mut rows.springs[group.clone()],
+            &mut rows.rolling[group.clone()],
+        );
+        let place = (target.first + first) & target.mask;
+        let place = place..place + N::COUNT;
         let liquid = match all.wetting {
             Some(wetting) if WET => Some((
                 BridgeGroup {
@@ -403,7 +424,7 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
                     pairs,
                     columns: &mut rows.bridges[first / GROUP],
                     first: first % GROUP,
-                    effects: &mut rows.bridge_effects[group],
+                    effects: &mut target.bridge_effects[place.clone()],
                 },
                 match &common_film {
                     Some(film) => *film,
@@ -416,51 +437,31 @@ fn between_grains<N: Lanes, L: Law, const WET: bool>(
             Some(common) => *common,
             None => own_constants::<N, _>(processor, all.constants, pairs),
         };
+        let forces = &mut target.forces[place];
         ruptures += u64::from(interact(
-            processor, all, partners, &constants, springs, forces, liquid,
+            processor, all, partners, &constants, history, forces, liquid,
         ));
     }
     ruptures
 }
 
-/// Pairs with walls, as many at a time as there are lanes; each such group meets one wall.
+/// As many pairs with one wall as there are lanes.
 #[inline(always)]
-fn at_walls<N: Lanes, L: Law>(
+pub fn at_wall<N: Lanes, L: Law>(
     processor: N::Processor,
     all: &PairSurroundings<'_, L>,
     rows: PairRows<'_, WallId>,
+    forces: &mut [ContactForce],
 ) {
-    let outputs = rows
-        .springs
-        .chunks_exact_mut(N::COUNT)
-        .zip(rows.forces.chunks_exact_mut(N::COUNT));
-    for (pairs, (springs, forces)) in rows.pairs.chunks_exact(N::COUNT).zip(outputs) {
-        let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]);
-        let partners = GrainAndWall::<N>::new(
-            processor,
-            grain,
-            &all.walls[pairs[0].partner.index()],
-            half_step::<N, L>(processor, all.dt),
-        );
-        let own = own_constants::<N, _>(processor, all.constants, pairs);
-        interact(processor, all, partners, &own, springs, forces, None);
-    }
-}
-
-impl<'a, L: Law, W: Iterator<Item = PairRows<'a, WallId>>> Work for PairLoop<'a, L, W> {
-    type Output = u64;
-
-    /// Returns how many bridges broke.
-    #[inline(always)]
-    fn run<N: Lanes>(self, processor: N::Processor) -> u64 {
-        let ruptures = if self.surroundings.wetting.is_some() {
-            between_grains::<N, L, true>(processor, &self.surroundings, self.of_grains)
-        } else {
-            between_grains::<N, L, false>(processor, &self.surroundings, self.of_grains)
-        };
-        for rows in self.of_walls {
-            at_walls::<N, L>(processor, &self.surroundings, rows);
-        }
-        ruptures
-    }
+    let pairs = rows.pairs;
+    let grain = side_by_side::<N, _>(|k| &all.bodies[pairs[k].grain.index()]);
+    let partners = GrainAndWall::<N>::new(
+        processor,
+        grain,
+        &all.walls[pairs[0].partner.index()],
+        half_step::<N, L>(processor, all.dt),
+    );
+    let own = own_constants::<N, _>(processor, all.constants, pairs);
+    let history = (rows.springs, rows.rolling);
+    interact(processor, all, partners, &own, history, forces, None);
 }

@@ -1,8 +1,8 @@
 //! Velocity Verlet: sums the forces on each grain, finishes the step and starts the next one.
 //!
-//! In: forces per pair, the bodies half a step behind in velocity. Out: the bodies half a step
-//! ahead, at their next positions; or, at the last step of a call, with velocities at the time of
-//! the positions.
+//! In: forces per pair, a body half a step behind in velocity. Out: the body half a step
+//! ahead, at its next position; or, at the last step of a call, with its velocity at the time of
+//! the position.
 //!
 //! ```text
 //! kick    v ← v + ½ Δt (F/m + g)      ω ← ω + ½ Δt (T + q)/I
@@ -22,9 +22,11 @@ use super::super::row::row;
 use super::super::step::Outcome;
 use super::bridges::BridgeEffect;
 use super::parts::Parts;
+use super::rings::Rings;
 use super::rows::{ContactForce, Sphere};
 use crate::lanes::{Lanes, Quad, Row, Work};
 use crate::world::Grains;
+use std::ops::Range;
 
 /// A grain that moves by more than this share of its radius in one step is lost.
 const LARGEST_MOVE: f64 = 0.1;
@@ -109,15 +111,21 @@ impl<Q: Quad> Total<Q> {
     }
 }
 
-/// What only the integration reads or writes of a grain.
+/// What acts on a grain at the end of a call.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SphereLoad {
-    /// Contact forces at the last evaluation [N].
+    /// Contact forces [N].
     pub force: Row,
     /// Their torque [N m].
     pub torque: Row,
     /// Torque of rolling friction [N m]; number of touching partners.
     pub rolling: Row,
+}
+
+/// What only the integration reads or writes of a grain in every step: a cache line.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct SphereAccount {
     /// Energy exchanged since the start [J].
     pub exchanged: Row,
     /// Time step over moment of inertia [1/(N m s)].
@@ -127,22 +135,30 @@ pub struct SphereLoad {
 }
 
 impl SphereLoad {
-    /// What acts on grain `i` of the world, in steps of `dt` [s].
-    pub fn of(grains: &Grains, i: usize, dt: f64) -> Self {
-        let speed_limit = LARGEST_MOVE * grains.radius[i] / dt;
+    /// What acts on grain `i` of the world.
+    pub fn of(grains: &Grains, i: usize) -> Self {
         Self {
             force: row(grains.force[i], 0.0),
             torque: row(grains.torque[i], 0.0),
             rolling: row(grains.rolling_torque[i], f64::from(grains.contact_count[i])),
-            exchanged: grains.exchanged[i],
-            compliance: dt / grains.inertia[i],
-            speed_limit_squared: speed_limit * speed_limit,
         }
     }
 
     /// Number of touching partners.
     pub fn contact_count(&self) -> f64 {
         self.rolling[3]
+    }
+}
+
+impl SphereAccount {
+    /// That of grain `i` of the world, in steps of `dt` [s].
+    pub fn of(grains: &Grains, i: usize, dt: f64) -> Self {
+        let speed_limit = LARGEST_MOVE * grains.radius[i] / dt;
+        Self {
+            exchanged: grains.exchanged[i],
+            compliance: dt / grains.inertia[i],
+            speed_limit_squared: speed_limit * speed_limit,
+        }
     }
 }
 
@@ -161,94 +177,102 @@ pub struct StepConstants {
     pub slack_squared: f64,
 }
 
-/// Where to find what the pairs of a grain do.
-#[derive(Clone, Copy)]
-pub struct PairEffects<'a> {
-    /// What every pair does.
-    pub forces: &'a [ContactForce],
-    /// What every bridge does; empty where nothing is wet.
-    pub bridge_effects: &'a [BridgeEffect],
-    /// Each grain's parts in them.
-    pub parts: &'a Parts,
-}
-
-impl PairEffects<'_> {
-    /// Sum over the pairs of grain `i`, in the pairs' order.
-    #[inline(always)]
-    fn total<Q: Quad, const WET: bool>(&self, processor: Q::Processor, i: usize) -> Total<Q> {
-        let mut total = Total::zero(processor);
-        let [as_second, as_first] = self.parts.by_side(i);
-        for part in as_second {
-            total.add_second(processor, &self.forces[part.pair()]);
-            if WET {
-                total.add_bridge(processor, &self.bridge_effects[part.pair()], 1);
-            }
+/// Sum over the pairs of the grain in the `i`-th slot, in the pairs' order.
+#[inline(always)]
+fn total<Q: Quad, const WET: bool>(
+    processor: Q::Processor,
+    parts: &Parts,
+    rings: &Rings,
+    i: usize,
+) -> Total<Q> {
+    let mut total = Total::zero(processor);
+    let [as_second, as_first] = parts.places(i);
+    for place in as_second {
+        let number = place.number();
+        total.add_second(processor, rings.force(number));
+        if WET {
+            total.add_bridge(processor, rings.bridge_effect(number), 1);
         }
-        for part in as_first {
-            total.add_first(processor, &self.forces[part.pair()]);
-            if WET && let Some(effect) = self.bridge_effects.get(part.pair()) {
-                total.add_bridge(processor, effect, 0);
-            }
-        }
-        total
     }
+    for place in as_first {
+        total.add_first(processor, rings.force_at(*place));
+        if WET {
+            total.add_bridge(processor, rings.bridge_effect_at(*place), 0);
+        }
+    }
+    total
 }
 
-/// Half a step of velocity and spin: `v ← v + ½ Δt (F/m + g)`, `ω ← ω + ½ Δt T/I`.
-#[inline(always)]
-pub fn kick<Q: Quad>(
-    processor: Q::Processor,
-    body: &mut Sphere,
-    total: &Total<Q>,
-    motion: &StepConstants,
-) {
-    let half = 0.5 * motion.dt;
-    // The fourth number of a row is no velocity: it gets nothing added.
-    let half = Q::load(processor, &[half, half, half, 0.0]);
-    let (inverse_mass, inverse_inertia) = (body.inverse_mass(), body.inverse_inertia());
-    let gravity = Q::load(processor, &motion.gravity);
-    let acceleration = total.force * Q::repeat(processor, inverse_mass) + gravity;
-    let turning = (total.torque + total.rolling) * Q::repeat(processor, inverse_inertia);
-    body.velocity = (Q::load(processor, &body.velocity) + acceleration * half).row();
-    body.spin = (Q::load(processor, &body.spin) + turning * half).row();
+/// A grain on its way through a step, in registers: what is written of a row is the whole row, once.
+pub struct Moving<Q> {
+    position: Q,
+    velocity: Q,
+    spin: Q,
+    inverse_mass: f64,
+    inverse_inertia: f64,
 }
 
-/// A full step of position, `x ← x + Δt v`, and the spin that rolling friction works against. True
-/// when the slack of the inner list is used up.
-#[inline(always)]
-fn drift<Q: Quad>(
-    processor: Q::Processor,
-    body: &mut Sphere,
-    load: &SphereLoad,
-    total: &Total<Q>,
-    reference: &Row,
-    motion: &StepConstants,
-) -> bool {
-    let dt = motion.dt;
-    let step = Q::load(processor, &[dt, dt, dt, 0.0]);
-    let position = Q::load(processor, &body.position) + Q::load(processor, &body.velocity) * step;
-    set_free_spin(processor, body, load, total, dt);
-    body.position = position.row();
-    (position - Q::load(processor, reference)).length_squared() > motion.slack_squared
-}
+impl<Q: Quad> Moving<Q> {
+    /// The grain as its row has it.
+    #[inline(always)]
+    pub fn of(processor: Q::Processor, body: &Sphere) -> Self {
+        Self {
+            position: Q::load(processor, &body.position),
+            velocity: Q::load(processor, &body.velocity),
+            spin: Q::load(processor, &body.spin),
+            inverse_mass: body.inverse_mass(),
+            inverse_inertia: body.inverse_inertia(),
+        }
+    }
 
-/// Sets the spin that the grain would have after a step of `dt` [s] if all torques stayed,
-/// and how much of it a unit of torque stops: rolling friction works against the one and stops at
-/// the other, shared by all partners.
-#[inline(always)]
-pub fn set_free_spin<Q: Quad>(
-    processor: Q::Processor,
-    body: &mut Sphere,
-    load: &SphereLoad,
-    total: &Total<Q>,
-    dt: f64,
-) {
-    let partners = total.partners();
-    let partners = if partners > 1.0 { partners } else { 1.0 };
-    let free = Q::load(processor, &body.spin)
-        + (total.torque + total.rolling) * Q::repeat(processor, dt * body.inverse_inertia());
-    let free = free.row();
-    body.free_spin = [free[0], free[1], free[2], load.compliance * partners];
+    /// Half a step of velocity and spin: `v ← v + ½ Δt (F/m + g)`, `ω ← ω + ½ Δt T/I`.
+    #[inline(always)]
+    pub fn kick(&mut self, processor: Q::Processor, total: &Total<Q>, motion: &StepConstants) {
+        let half = 0.5 * motion.dt;
+        // The fourth number of a row is no velocity: it gets nothing added.
+        let half = Q::load(processor, &[half, half, half, 0.0]);
+        let gravity = Q::load(processor, &motion.gravity);
+        let acceleration = total.force * Q::repeat(processor, self.inverse_mass) + gravity;
+        let turning = (total.torque + total.rolling) * Q::repeat(processor, self.inverse_inertia);
+        self.velocity = self.velocity + acceleration * half;
+        self.spin = self.spin + turning * half;
+    }
+
+    /// A full step of position, `x ← x + Δt v`. True when the slack of the inner list is used up.
+    #[inline(always)]
+    fn drift(&mut self, processor: Q::Processor, reference: &Row, motion: &StepConstants) -> bool {
+        let dt = motion.dt;
+        let step = Q::load(processor, &[dt, dt, dt, 0.0]);
+        self.position = self.position + self.velocity * step;
+        (self.position - Q::load(processor, reference)).length_squared() > motion.slack_squared
+    }
+
+    /// The spin that the grain would have after a step of `dt` [s] if all torques stayed, and how
+    /// much of it a unit of torque stops: rolling friction works against the one and stops at the
+    /// other, shared by all partners.
+    #[inline(always)]
+    pub fn free_spin(
+        &self,
+        processor: Q::Processor,
+        compliance: f64,
+        total: &Total<Q>,
+        dt: f64,
+    ) -> Row {
+        let partners = total.partners();
+        let partners = if partners > 1.0 { partners } else { 1.0 };
+        let free = self.spin
+            + (total.torque + total.rolling) * Q::repeat(processor, dt * self.inverse_inertia);
+        let free = free.row();
+        [free[0], free[1], free[2], compliance * partners]
+    }
+
+    /// Puts it, but for its free spin, back into a row.
+    #[inline(always)]
+    pub fn put(&self, body: &mut Sphere) {
+        body.position = self.position.row();
+        body.velocity = self.velocity.row();
+        body.spin = self.spin.row();
+    }
 }
 
 /// Starts the first step of a call from the forces that the loads hold.
@@ -259,6 +283,8 @@ pub struct StartStep<'a> {
     pub bodies: &'a mut [Sphere],
     /// What acts on it.
     pub loads: &'a [SphereLoad],
+    /// What is booked of it.
+    pub accounts: &'a [SphereAccount],
     /// What their bridges have done; empty where nothing is wet.
     pub bridge_loads: &'a [BridgeLoad],
     /// Where it was when the inner list was filtered.
@@ -274,34 +300,44 @@ impl Work for StartStep<'_> {
             motion,
             bodies,
             loads,
+            accounts,
             bridge_loads,
             references,
         } = self;
         let mut outcome = Outcome::default();
-        let rows = bodies.iter_mut().zip(loads).zip(references);
-        for (i, ((body, load), reference)) in rows.enumerate() {
+        let rows = bodies.iter_mut().zip(loads.iter().zip(accounts));
+        for (i, ((body, (load, account)), reference)) in rows.zip(references).enumerate() {
             let open_bridges = bridge_loads.get(i).map_or(0.0, |load| load[2]);
             let total = Total::<N::Quad>::load(processor, load, open_bridges);
-            kick(processor, body, &total, motion);
-            outcome.refresh |= drift(processor, body, load, &total, reference, motion);
+            let mut moving = Moving::of(processor, body);
+            moving.kick(processor, &total, motion);
+            body.free_spin = moving.free_spin(processor, account.compliance, &total, motion.dt);
+            outcome.refresh |= moving.drift(processor, reference, motion);
+            moving.put(body);
         }
         outcome
     }
 }
 
-/// Finishes a step for a range of grains and, unless it is the last of a call, starts the next.
-pub struct FinishStep<'a, const WET: bool> {
+/// A range of grains at the end of a step.
+pub struct GrainRows<'a> {
     /// Constants.
     pub motion: &'a StepConstants,
-    /// Where to find the grains' pairs.
-    pub pairs: PairEffects<'a>,
-    /// Index of the first grain of the range.
+    /// Which pairs are whose.
+    pub parts: &'a Parts,
+    /// Slot of the first grain of the range.
     pub begin: usize,
-    /// The range.
+    /// Every grain as it was.
+    pub before: &'a [Sphere],
+    /// The range as it becomes.
     pub bodies: &'a mut [Sphere],
-    /// What acts on it; written at the last step.
+    /// What acts on it, written at the last step.
     pub loads: &'a mut [SphereLoad],
-    /// Volume of the film on each; empty where nothing is wet [m³].
+    /// What is booked of it.
+    pub accounts: &'a mut [SphereAccount],
+    /// Volume of the film on every grain as it was; empty where nothing is wet [m³].
+    pub films_before: &'a [f64],
+    /// Of the range as it becomes.
     pub films: &'a mut [f64],
     /// What the bridges of each have done; empty where nothing is wet.
     pub bridge_loads: &'a mut [BridgeLoad],
@@ -311,49 +347,55 @@ pub struct FinishStep<'a, const WET: bool> {
     pub last: bool,
 }
 
-impl<const WET: bool> Work for FinishStep<'_, WET> {
-    type Output = Outcome;
-
+impl GrainRows<'_> {
+    /// Finishes the step of the grains in these slots from what their pairs do and, unless it is
+    /// the last of a call, starts the next.
     #[inline(always)]
-    fn run<N: Lanes>(self, processor: N::Processor) -> Outcome {
-        let Self {
-            motion,
-            pairs,
-            begin,
-            bodies,
-            loads,
-            films,
-            bridge_loads,
-            references,
-            last,
-        } = self;
+    pub fn finish<N: Lanes, const WET: bool>(
+        &mut self,
+        processor: N::Processor,
+        rings: &Rings,
+        slots: Range<usize>,
+    ) -> Outcome {
         let mut outcome = Outcome::default();
-        for (k, ((body, load), reference)) in
-            bodies.iter_mut().zip(loads).zip(references).enumerate()
-        {
-            let total = pairs.total::<N::Quad, WET>(processor, begin + k);
-            load.exchanged = (N::Quad::load(processor, &load.exchanged) + total.exchanged).row();
+        let motion = self.motion;
+        for i in slots {
+            let k = i - self.begin;
+            let total = total::<N::Quad, WET>(processor, self.parts, rings, i);
+            let account = &mut self.accounts[k];
+            account.exchanged =
+                (N::Quad::load(processor, &account.exchanged) + total.exchanged).row();
             if WET {
                 let [viscous, capillary, open, gained] = total.liquid.row();
-                let [viscous_before, capillary_before, ..] = bridge_loads[k];
-                bridge_loads[k] = [viscous_before + viscous, capillary_before + capillary, open];
-                films[k] += gained;
+                let [viscous_before, capillary_before, ..] = self.bridge_loads[k];
+                self.bridge_loads[k] =
+                    [viscous_before + viscous, capillary_before + capillary, open];
+                self.films[k] = self.films_before[i] + gained;
             }
-            kick(processor, body, &total, motion);
-            let speed_squared = N::Quad::load(processor, &body.velocity).length_squared();
-            let spin_squared = N::Quad::load(processor, &body.spin).length_squared();
+            let before = &self.before[i];
+            let mut moving = Moving::of(processor, before);
+            moving.kick(processor, &total, motion);
+            let speed_squared = moving.velocity.length_squared();
+            let spin_squared = moving.spin.length_squared();
             // Written so that a NaN is not sane.
-            let sane = speed_squared <= load.speed_limit_squared && spin_squared < f64::INFINITY;
+            let sane = speed_squared <= account.speed_limit_squared && spin_squared < f64::INFINITY;
             outcome.fault |= !sane;
-            if last {
-                load.force = total.force.row();
-                load.torque = total.torque.row();
-                load.rolling = total.rolling.row();
+            let mut free_spin = before.free_spin;
+            if self.last {
+                self.loads[k] = SphereLoad {
+                    force: total.force.row(),
+                    torque: total.torque.row(),
+                    rolling: total.rolling.row(),
+                };
             } else if sane {
                 // A grain in fault stays where it is, for the diagnosis.
-                kick(processor, body, &total, motion);
-                outcome.refresh |= drift(processor, body, load, &total, reference, motion);
+                moving.kick(processor, &total, motion);
+                free_spin = moving.free_spin(processor, account.compliance, &total, motion.dt);
+                outcome.refresh |= moving.drift(processor, &self.references[k], motion);
             }
+            let body = &mut self.bodies[k];
+            moving.put(body);
+            body.free_spin = free_spin;
         }
         outcome
     }

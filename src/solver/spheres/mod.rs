@@ -19,11 +19,15 @@
 //! | `terms` | a contact's force, term by term |
 //! | `normal_law` | a contact's normal force over the gap |
 //! | `working_copy` | what is kept between loading a world and storing it |
-//! | `share` | what one worker works on in the two phases of a step |
+//! | `plan` | what one worker does in a step, and in which order |
+//! | `rings`, `places` | what pairs do, until their grains have moved; where each writes it |
+//! | `pass` | a worker's step: pairs, and grains right behind them |
+//! | `share` | what one worker works on during a batch |
 //!
 //! What a step reads of a grain stands in one place ([`rows::Sphere`], two cache lines), what only
-//! its integration reads in another ([`integrate::SphereLoad`]): the pair loop, which takes three
-//! quarters of a step, reads no more than it needs. Numbers of three kinds name things here, each
+//! its integration reads in another ([`integrate::SphereAccount`]), what only the end of a call asks
+//! for in a third ([`integrate::SphereLoad`]). A step goes through the bed once, and what its pairs do
+//! never leaves the cache: of a grain it reads and writes about a kilobyte. Numbers of three kinds name things here, each
 //! with a type of its own: slots of rows, walls of the container, kinds of pairs; a bare number is
 //! a grain's in the world. Histories of contacts (springs, bridges) stand beside the pairs of the
 //! inner list and move with them; whatever is left of a call is in the world.
@@ -40,6 +44,10 @@ mod normal_law;
 mod pair_list;
 mod partners;
 mod parts;
+mod pass;
+mod places;
+mod plan;
+mod rings;
 mod rows;
 mod share;
 mod slots;
@@ -58,10 +66,12 @@ use crate::physics::Liquid;
 use crate::physics::law::{BridgeKinds, LawSource, contributions, rupture_gap};
 use crate::world::{Contact, Partner, World};
 use bridges::{BridgeRow, Bridges};
-use integrate::{SphereLoad, StartStep, StepConstants};
+use integrate::{SphereAccount, SphereLoad, StartStep, StepConstants};
 pub use normal_law::NormalLaw;
 use pair_list::{PairOrder, SpherePairs};
 use parts::Part;
+use plan::Plan;
+use rings::Rings;
 use rows::{PairKind, Sphere, SpherePair};
 use share::SphereShare;
 pub use terms::force_terms;
@@ -104,6 +114,7 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
             motion: &self.motion,
             bodies: &mut self.bodies[..count],
             loads: &self.loads,
+            accounts: &self.accounts,
             bridge_loads: &self.bridge_loads,
             references: &self.neighbours.reference,
         };
@@ -131,15 +142,20 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
     }
 
     /// Bridges that broke are booked when the world is put back.
-    fn note(&mut self, tally: &Tally) {
+    fn note(&mut self, tally: &Tally, steps: u64) {
         self.ruptures += tally.ruptures;
+        if steps % 2 == 1 {
+            std::mem::swap(&mut self.bodies, &mut self.next_bodies);
+            std::mem::swap(&mut self.films, &mut self.next_films);
+        }
     }
 
     /// Columns are written in the order of the grains' indices, contacts too: slots do not show.
     fn store(&self, pool: &mut WorkerPool, world: &mut World) {
         let grains = &mut world.grains;
         let indices = self.slots.grains().iter().map(|grain| *grain as usize);
-        for (i, (body, load)) in indices.clone().zip(self.bodies.iter().zip(&self.loads)) {
+        let rows = self.loads.iter().zip(&self.accounts);
+        for (i, (body, (load, account))) in indices.clone().zip(self.bodies.iter().zip(rows)) {
             grains.position[i] = vector(body.position);
             grains.velocity[i] = vector(body.velocity);
             grains.spin[i] = vector(body.spin);
@@ -147,7 +163,7 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
             grains.torque[i] = vector(load.torque);
             grains.rolling_torque[i] = vector(load.rolling);
             grains.contact_count[i] = load.contact_count() as u32;
-            grains.exchanged[i] = load.exchanged;
+            grains.exchanged[i] = account.exchanged;
         }
         let wet = self.bridge_loads.iter().zip(&self.films);
         for (i, ([viscous, capillary, open], film)) in indices.zip(wet) {
@@ -162,10 +178,10 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
 
     /// Of several grains the one of lowest index, so that the message does not depend on slots.
     fn find_fault(&self) -> (usize, FaultKind) {
-        let rows = self.bodies.iter().zip(&self.loads);
+        let rows = self.bodies.iter().zip(&self.accounts);
         let found = self.slots.grains().iter().zip(rows);
         let (grain, kind) = found
-            .filter_map(|(grain, (body, load))| Some((*grain, self.judge(body, load)?)))
+            .filter_map(|(grain, (body, account))| Some((*grain, self.judge(body, account)?)))
             .min_by_key(|(grain, _)| *grain)
             .unwrap_or((0, FaultKind::NotFinite("state")));
         (grain as usize, kind)
@@ -190,19 +206,25 @@ impl<S: LawSource> SphereKernel<S> {
     fn load_grains(&mut self, pool: &mut WorkerPool, world: &World) {
         let (grains, dt) = (&world.grains, world.clock.time_step);
         let count = grains.len();
-        self.bodies.resize(count + 1, Sphere::default());
-        self.bodies[count] = Sphere::default();
+        for bodies in [&mut self.bodies, &mut self.next_bodies] {
+            bodies.resize(count + 1, Sphere::default());
+            bodies[count] = Sphere::default();
+        }
         self.loads.resize(count, SphereLoad::default());
+        self.accounts.resize(count, SphereAccount::default());
         let ranges = pool.ranges(count, 1);
-        let rows = split_once(&mut self.bodies, ranges.iter().cloned())
-            .zip(split_once(&mut self.loads, ranges.iter().cloned()));
+        let rows = split_once(&mut self.loads, ranges.iter().cloned())
+            .zip(split_once(&mut self.accounts, ranges.iter().cloned()));
+        let rows = split_once(&mut self.bodies, ranges.iter().cloned()).zip(rows);
         let shares = ranges.iter().cloned().zip(rows).collect();
         let indices = self.slots.grains();
-        pool.map(shares, |(range, (bodies, loads))| {
-            for ((body, load), grain) in bodies.iter_mut().zip(loads).zip(&indices[range]) {
+        pool.map(shares, |(range, (bodies, (loads, accounts)))| {
+            let rows = bodies.iter_mut().zip(loads.iter_mut().zip(accounts));
+            for ((body, (load, account)), grain) in rows.zip(&indices[range]) {
                 let i = *grain as usize;
                 *body = Sphere::of(grains, i);
-                *load = SphereLoad::of(grains, i, dt);
+                *load = SphereLoad::of(grains, i);
+                *account = SphereAccount::of(grains, i, dt);
             }
         });
     }
@@ -211,6 +233,7 @@ impl<S: LawSource> SphereKernel<S> {
     fn load_liquid(&mut self, world: &World) {
         self.liquid = world.wetting().copied();
         self.films.clear();
+        self.next_films.clear();
         self.bridge_loads.clear();
         self.ruptures = 0;
         let Some(liquid) = self.liquid else {
@@ -225,6 +248,7 @@ impl<S: LawSource> SphereKernel<S> {
             self.films.push(grains.film[i]);
         }
         self.films.push(0.0);
+        self.next_films.clone_from(&self.films);
         self.neighbours
             .set_reach(Some(largest_reach(world, &liquid)));
         self.adopt_bridges(world, &liquid);
@@ -251,6 +275,7 @@ impl<S: LawSource> SphereKernel<S> {
         rows.sort_unstable_by_key(|(pair, ..)| pair.key());
         let mut list = SpherePairs {
             springs: vec![UNLOADED; rows.len()],
+            rolling: vec![UNLOADED; rows.len()],
             bridges: Bridges::none(rows.len()),
             ..SpherePairs::default()
         };
@@ -314,8 +339,18 @@ impl<S: LawSource> SphereKernel<S> {
         self.neighbours.searches - before
     }
 
+    /// Makes the plans of `size` workers fit the lists.
+    fn make_plans(&mut self, size: usize) {
+        let generation = self.neighbours.generation;
+        if self.planned != generation || self.plans.len() != size {
+            self.plans = Plan::all(&self.neighbours, size);
+            self.planned = generation;
+        }
+        self.rings.resize_with(size, Rings::default);
+    }
+
     /// What is wrong with a grain, if anything is.
-    fn judge(&self, body: &Sphere, load: &SphereLoad) -> Option<FaultKind> {
+    fn judge(&self, body: &Sphere, account: &SphereAccount) -> Option<FaultKind> {
         let position = vector(body.position);
         let behind = self
             .walls
@@ -331,7 +366,7 @@ impl<S: LawSource> SphereKernel<S> {
             Some(FaultKind::NotFinite("velocity"))
         } else if !length_squared(body.spin).is_finite() {
             Some(FaultKind::NotFinite("spin"))
-        } else if speed_squared > load.speed_limit_squared {
+        } else if speed_squared > account.speed_limit_squared {
             Some(FaultKind::TooFast(speed_squared.sqrt()))
         } else {
             None

@@ -25,14 +25,12 @@
 
 use super::super::grid::NearSearch;
 use super::super::row::{Row, length_squared, row, sub, vector};
-use super::super::tangential::UNLOADED;
 use super::super::walls::Walls;
 use super::super::workers::WorkerPool;
-use super::bridges::BridgeEffect;
 use super::kinds::{KindFinder, Kinds};
 use super::pair_list::{PairOrder, SpherePairs, fill_group};
 use super::parts::{Part, Parts};
-use super::rows::{ContactForce, GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
+use super::rows::{PairKind, Slot, Sphere, SpherePair, WallId};
 use super::slots::Slots;
 use crate::world::{Contact, Partner, Surface};
 use std::ops::Range;
@@ -44,10 +42,6 @@ pub struct Neighbours {
     pub grains: SpherePairs,
     /// Listed pairs of a grain and a wall, sorted by wall and grain; a group meets one wall.
     pub walls: SpherePairs<WallId>,
-    /// What each listed pair does: first those of grains, then those with walls.
-    pub forces: Vec<ContactForce>,
-    /// What each listed bridge does; empty where nothing is wet.
-    pub bridge_effects: Vec<BridgeEffect>,
     /// The grains' parts in the listed pairs.
     pub parts: Parts,
     /// Pairs of grains on the outer list, sorted by their slots.
@@ -68,6 +62,8 @@ pub struct Neighbours {
     surfaces: Vec<Surface>,
     /// Outer lists built since the start.
     pub searches: u64,
+    /// Inner lists filtered since the start.
+    pub generation: u64,
 }
 
 /// Widths of the skins [m].
@@ -128,28 +124,29 @@ impl Neighbours {
     /// The pair of which a grain has this part as a contact, if it touches or has a bridge and the
     /// grain is its first partner.
     pub fn contact(&self, part: Part, slots: &Slots) -> Option<Contact> {
-        let (index, force) = (part.pair(), &self.forces[part.pair()]);
-        let touching = force.touches();
+        let index = part.pair();
         let bridge = self.grains.bridges.get(index).bridge();
-        let (grain, partner, spring) = match index.checked_sub(self.grains.pairs.len()) {
+        let (grain, partner, history) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
                 let partner = Partner::Grain(slots.grain_in(pair.partner));
-                (pair.grain, partner, self.grains.springs[index])
+                (pair.grain, partner, self.grains.history(index))
             }
             Some(k) => {
                 let pair = self.walls.pairs[k];
                 let partner = Partner::Wall(pair.partner.0);
-                (pair.grain, partner, self.walls.springs[k])
+                (pair.grain, partner, self.walls.history(k))
             }
         };
+        let [spring, rolling, force] = history;
+        let touching = rolling[3] > 0.0;
         ((touching || bridge.is_some()) && part.side() == 0).then(|| Contact {
             grain: slots.grain_in(grain),
             partner,
             spring: vector(spring),
             stiffness: spring[3],
-            rolling: vector(force.rolling),
-            force: vector(force.force),
+            rolling: vector(rolling),
+            force: vector(force),
             touching,
             bridge,
         })
@@ -166,29 +163,26 @@ impl Neighbours {
 
     /// Gives the listed pairs the histories of these contacts; all others have none.
     pub fn load_histories(&mut self, contacts: &[Contact], slots: &Slots) {
-        self.grains.springs.fill(UNLOADED);
-        self.walls.springs.fill(UNLOADED);
-        for force in &mut self.forces {
-            force.rolling = UNLOADED;
-        }
+        self.grains.forget();
+        self.walls.forget();
         // Contacts come, as a rule, in the order of the parts.
         let (mut grain, mut next) = (u32::MAX, 0);
         for contact in contacts {
             if contact.grain != grain {
                 (grain, next) = (contact.grain, 0);
             }
-            let [_, own] = self.parts.by_side(slots.slot_of(grain).index());
+            let own = self.parts.as_first(slots.slot_of(grain).index());
             let is_of = |place: &usize| self.partner(own[*place].pair(), slots) == contact.partner;
             let Some(place) = (next..own.len()).chain(0..next).find(is_of) else {
                 continue;
             };
             let index = own[place].pair();
             next = place + 1;
-            self.forces[index].rolling = row(contact.rolling, f64::from(contact.touching));
             let spring = row(contact.spring, contact.stiffness);
+            let rolling = row(contact.rolling, f64::from(contact.touching));
             match index.checked_sub(self.grains.pairs.len()) {
-                None => self.grains.springs[index] = spring,
-                Some(k) => self.walls.springs[k] = spring,
+                None => self.grains.remember(index, spring, rolling),
+                Some(k) => self.walls.remember(k, spring, rolling),
             }
         }
     }
@@ -236,28 +230,13 @@ impl Neighbours {
         if !self.covers(bodies, walls) {
             self.search(pool, (bodies, walls), slots, kinds);
         }
+        self.generation += 1;
         let count = bodies.len() - 1;
         let padding = Slot(count as u32);
-        let (of_grains, at_walls) = self
-            .forces
-            .split_at(self.grains.pairs.len().min(self.forces.len()));
         let pairs = self.inner_pairs(pool, bodies, padding);
-        let wet = self.reach.is_some();
-        let torques = self.grains.replace(pool, pairs, of_grains, wet);
+        self.grains.replace(pool, pairs, self.reach.is_some());
         let pairs = self.inner_pairs_at_walls(bodies, walls, padding);
-        let wall_torques = self.walls.replace(pool, pairs, at_walls, false);
-
-        let listed = self.grains.pairs.len() + self.walls.pairs.len();
-        self.forces.resize(listed, ContactForce::default());
-        for (force, torque) in self
-            .forces
-            .iter_mut()
-            .zip(torques.iter().chain(&wall_torques))
-        {
-            force.rolling = *torque;
-        }
-        let wet = self.grains.bridges.groups.len() * GROUP;
-        self.bridge_effects.resize(wet, BridgeEffect::default());
+        self.walls.replace(pool, pairs, false);
         self.parts
             .fill(pool, &self.grains.pairs, &self.walls.pairs, slots);
         self.surfaces.clear();

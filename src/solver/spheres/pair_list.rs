@@ -9,7 +9,7 @@ use super::super::ranges::split_once;
 use super::super::tangential::UNLOADED;
 use super::super::workers::WorkerPool;
 use super::bridges::Bridges;
-use super::rows::{ContactForce, GROUP, PairKind, Slot, SpherePair, WallId};
+use super::rows::{GROUP, PairKind, Slot, SpherePair, WallId};
 use crate::lanes::Row;
 use std::ops::Range;
 
@@ -22,9 +22,12 @@ pub struct SpherePairs<P = Slot> {
     /// The kind of all of them, if it is one.
     pub kind: Option<PairKind>,
     /// Tangential spring of each [m], and its stiffness when it was last updated [N/m]; all zero
-    /// where the two do not touch. The torque of rolling friction is remembered by the contact
-    /// force ([`ContactForce::rolling`]).
+    /// where the two do not touch.
     pub springs: Vec<Row>,
+    /// Torque of rolling friction on the grain of each [N m]; 1 where the two touch, else 0.
+    pub rolling: Vec<Row>,
+    /// Force on the grain of each at the last step of a call [N].
+    pub forces: Vec<Row>,
     /// Bridge of each; empty where nothing is wet.
     pub bridges: Bridges,
 }
@@ -34,32 +37,25 @@ where
     SpherePair<P>: PairOrder,
 {
     /// Takes over `pairs`, sorted by their key; those that were listed before keep their springs,
-    /// and their bridges where the list is `wet`. Returns the torques of rolling friction of the
-    /// new pairs, out of the `forces` of the old ones.
-    pub fn replace(
-        &mut self,
-        pool: &mut WorkerPool,
-        pairs: Vec<SpherePair<P>>,
-        forces: &[ContactForce],
-        wet: bool,
-    ) -> Vec<Row> {
+    /// their rolling friction, and their bridges where the list is `wet`.
+    pub fn replace(&mut self, pool: &mut WorkerPool, pairs: Vec<SpherePair<P>>, wet: bool) {
         let ranges = pool.ranges(pairs.len(), GROUP);
         let mut springs = vec![UNLOADED; pairs.len()];
-        let mut torques = vec![UNLOADED; pairs.len()];
+        let mut rolling = vec![UNLOADED; pairs.len()];
         let mut bridges = Bridges::none(if wet { pairs.len() } else { 0 });
         let groups = |range: &Range<usize>| {
             let group = |end: usize| if wet { end.div_ceil(GROUP) } else { 0 };
             group(range.start)..group(range.end)
         };
         let rows = split_once(&mut springs, ranges.iter().cloned())
-            .zip(split_once(&mut torques, ranges.iter().cloned()));
+            .zip(split_once(&mut rolling, ranges.iter().cloned()));
         let columns = split_once(&mut bridges.groups, ranges.iter().map(groups));
         let shares = ranges.iter().cloned().zip(rows).zip(columns).collect();
         let (old, new) = (&*self, &pairs);
-        pool.map(shares, |((range, (springs, torques)), bridges)| {
+        pool.map(shares, |((range, (springs, rolling)), bridges)| {
             for (from, to) in in_both(&old.pairs, &new[range]) {
                 springs[to] = old.springs[from];
-                torques[to] = forces.get(from).map_or(UNLOADED, |force| force.rolling);
+                rolling[to] = old.rolling[from];
                 if wet {
                     bridges[to / GROUP].set(to % GROUP, &old.bridges.get(from));
                 }
@@ -67,8 +63,27 @@ where
         });
         let kind = pairs.first().map(|pair| pair.kind);
         self.kind = kind.filter(|kind| pairs.iter().all(|pair| pair.kind == *kind));
-        (self.pairs, self.springs, self.bridges) = (pairs, springs, bridges);
-        torques
+        self.forces.resize(pairs.len(), UNLOADED);
+        (self.springs, self.rolling) = (springs, rolling);
+        (self.pairs, self.bridges) = (pairs, bridges);
+    }
+}
+
+impl<P> SpherePairs<P> {
+    /// Spring, torque of rolling friction and force of the pair of this number.
+    pub fn history(&self, k: usize) -> [Row; 3] {
+        [self.springs[k], self.rolling[k], self.forces[k]]
+    }
+
+    /// Sets the first two.
+    pub fn remember(&mut self, k: usize, spring: Row, rolling: Row) {
+        (self.springs[k], self.rolling[k]) = (spring, rolling);
+    }
+
+    /// Nobody touches any more.
+    pub fn forget(&mut self) {
+        self.springs.fill(UNLOADED);
+        self.rolling.fill(UNLOADED);
     }
 }
 

@@ -8,6 +8,7 @@
 
 use super::super::ranges::split_once;
 use super::super::workers::WorkerPool;
+use super::places::Place;
 use super::rows::{Slot, SpherePair, WallId};
 use super::slots::Slots;
 use std::ops::Range;
@@ -45,6 +46,8 @@ pub struct Parts {
     own: Vec<u32>,
     /// The parts, grain by grain.
     list: Vec<Part>,
+    /// Where to find what their pairs do.
+    places: Vec<Place>,
 }
 
 impl Parts {
@@ -59,14 +62,20 @@ impl Parts {
         self.first[i] as usize
     }
 
-    /// The parts of the grain in the `i`-th slot as the second partner, then those as the first.
+    /// Where to find what the pairs of the grain in the `i`-th slot do: those of which it is the
+    /// second partner, two grains each, then those of which it is the first.
     #[inline(always)]
-    pub fn by_side(&self, i: usize) -> [&[Part]; 2] {
+    pub fn places(&self, i: usize) -> [&[Place]; 2] {
         let (first, own, end) = (self.first[i], self.own[i], self.first[i + 1]);
         [
-            &self.list[first as usize..own as usize],
-            &self.list[own as usize..end as usize],
+            &self.places[first as usize..own as usize],
+            &self.places[own as usize..end as usize],
         ]
+    }
+
+    /// Those as the first partner, of grains and at walls.
+    pub fn as_first(&self, i: usize) -> &[Part] {
+        &self.list[self.own[i] as usize..self.first[i + 1] as usize]
     }
 
     /// Sorts both sides of the pairs; slots behind those of the grains are padding's.
@@ -138,5 +147,11 @@ impl Parts {
                 list[middle..end].sort_by_key(other);
             }
         });
+        self.places.clear();
+        let place = |part: &Part| match part.pair().checked_sub(grains.len()) {
+            None => Place::of(part.pair()),
+            Some(k) => Place::at_wall(walls[k].partner, k),
+        };
+        self.places.extend(self.list.iter().map(place));
     }
 }

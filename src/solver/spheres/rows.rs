@@ -142,10 +142,4 @@ impl ContactForce {
     pub fn partner_arm(&self) -> f64 {
         self.moment[3]
     }
-
-    /// Whether the two touch.
-    #[inline(always)]
-    pub fn touches(&self) -> bool {
-        self.rolling[3] > 0.0
-    }
 }

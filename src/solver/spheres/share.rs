@@ -1,53 +1,80 @@
-//! What one worker works on during a batch of steps: its ranges of grains, pairs and pairs with
-//! walls.
+//! What one worker works on during a batch of steps: its grains and pairs, and what it copies of
+//! other workers' pairs.
 //!
-//! In: the working copy and its lists. Out: shares such that workers have about as much to do and
-//! few pairs have grains of two workers, as only what crosses has to travel between cores; and the
-//! two phases of a step on a share.
+//! In: the working copy, its lists and plans ([`super::plan`]). Out: shares that take about equally
+//! long, and a step of a share ([`super::pass`]).
 //!
-//! Pairs are dealt out in equal numbers, whole groups each, as a pair takes as long whether it
-//! touches or not. Grains are dealt out by their number of partners, which is what summing takes,
-//! plus what moving takes ([`COST_OF_GRAIN`]). As slots are sorted in space and pairs by their
-//! slots, a worker's pairs are about those of its grains: what the other workers wrote is read
-//! along the cuts alone. A pair with a wall goes to whom its grain belongs.
-//!
-//! Rows that cross from one phase to the other are whole cache lines ([`super::rows`]), so that two
-//! workers never write the same one but where their ranges meet.
+//! Grains and films stand in two copies. A step reads all of one and writes the worker's own range
+//! of the other; the next goes back. All else that a step writes only its worker touches: so workers
+//! meet once a step, and share no cache line but those of the grains along the cuts between them.
 
-use super::super::ranges::{range_of, split, split_once};
+use super::super::ranges::{split, split_once};
 use super::super::row::Row;
-use super::super::step::{Outcome, Share, Tally};
-use super::super::walls::Walls;
+use super::super::step::{BatchReport, Course, Moment, PassReport, PassingShare, Share};
+use super::super::tangential::UNLOADED;
 use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
 use super::SphereKernel;
-use super::bridges::{BridgeColumns, BridgeEffect, Wetting};
-use super::contacts::{PairLoop, PairRows, PairSurroundings};
-use super::integrate::{BridgeLoad, FinishStep, PairEffects, SphereLoad, StepConstants};
+use super::bridges::{BridgeColumns, Bridges, Wetting};
+use super::contacts::{PairRows, PairSurroundings};
+use super::integrate::{BridgeLoad, GrainRows, SphereAccount, SphereLoad, StepConstants};
 use super::neighbours::Neighbours;
+use super::pair_list::{SpherePairs, fill_group};
 use super::parts::Parts;
-use super::rows::{ContactForce, GROUP, PairKind, Sphere, SpherePair, WallId};
-use crate::lanes::Processor;
+use super::pass::{AtWall, Pass};
+use super::plan::Plan;
+use super::rings::Rings;
+use super::rows::{GROUP, PairKind, Slot, Sphere, SpherePair, WallId};
 use crate::physics::law::{FilmConstants, Law, LawSource, LawUser, PairConstants};
 use crate::physics::{ContactLaw, Liquid};
-use std::ops::Range;
 
 /// A worker's share of a world of spheres.
 pub struct SphereShare<'a, S> {
-    ranges: WorkerRanges,
+    plan: &'a Plan,
     common: SphereInputs<'a, S>,
-    /// Read by all in the force phase, as are films.
-    bodies: Column<'a, Sphere, MotionPhase>,
-    films: Column<'a, f64, MotionPhase>,
-    /// Read by all in the motion phase, as are the bridges' effects.
-    forces: Column<'a, ContactForce, ForcePhase>,
-    bridge_effects: Column<'a, BridgeEffect, ForcePhase>,
-    /// What only this worker touches: loads and bridge loads of its grains, springs and bridges of
-    /// its pairs.
+    /// The first copy of grains and films, and the second.
+    first: Copies<'a, MotionPhase>,
+    second: Copies<'a, ForcePhase>,
+    own: OwnRows<'a>,
+}
+
+/// A copy of grains and films, which phase `P` writes and the other reads.
+struct Copies<'a, P> {
+    bodies: Column<'a, Sphere, P>,
+    films: Column<'a, f64, P>,
+}
+
+/// What only one worker touches.
+struct OwnRows<'a> {
+    /// Of its grains.
     loads: &'a mut [SphereLoad],
+    accounts: &'a mut [SphereAccount],
     bridge_loads: &'a mut [BridgeLoad],
-    grain_springs: &'a mut [Row],
-    wall_springs: Vec<&'a mut [Row]>,
+    /// Of its pairs.
+    springs: &'a mut [Row],
+    rolling: &'a mut [Row],
+    forces: &'a mut [Row],
     bridges: &'a mut [BridgeColumns],
+    at_walls: Vec<WallRows<'a>>,
+    /// What other workers' pairs remember.
+    foreign: SpherePairs,
+    foreign_at_walls: Vec<WallGroup>,
+    rings: &'a mut Rings,
+}
+
+/// A range of a worker's pairs with one wall.
+struct WallRows<'a> {
+    first: usize,
+    pairs: &'a [SpherePair<WallId>],
+    springs: &'a mut [Row],
+    rolling: &'a mut [Row],
+    forces: &'a mut [Row],
+}
+
+/// A group of another worker's pairs with one wall.
+struct WallGroup {
+    first: usize,
+    springs: [Row; GROUP],
+    rolling: [Row; GROUP],
 }
 
 /// What all workers read and none writes.
@@ -71,26 +98,82 @@ struct SphereInputs<'a, S> {
     grain_kind: Option<PairKind>,
     /// The inner list of pairs of a grain and a wall.
     wall_pairs: &'a [SpherePair<WallId>],
-    /// The grains' parts in the pairs.
+    /// Which pairs are whose.
     parts: &'a Parts,
     /// Where every grain was when the inner list was filtered [m].
     reference: &'a [Row],
 }
 
+impl WallGroup {
+    /// The group of `walls` that begins with number `first`.
+    fn of(walls: &SpherePairs<WallId>, first: usize) -> Self {
+        let copy = |rows: &[Row]| std::array::from_fn(|k| rows[first + k]);
+        Self {
+            first,
+            springs: copy(&walls.springs),
+            rolling: copy(&walls.rolling),
+        }
+    }
+}
+
+/// The pairs of these `numbers` with what they remember, in whole groups.
+fn copied(grains: &SpherePairs, numbers: &[u32], padding: Slot) -> SpherePairs {
+    let numbers = || numbers.iter().map(|number| *number as usize);
+    let mut pairs: Vec<SpherePair> = numbers().map(|k| grains.pairs[k]).collect();
+    let padding = SpherePair {
+        grain: padding,
+        partner: padding,
+        kind: PairKind::default(),
+    };
+    fill_group(&mut pairs, padding);
+    let rows = |rows: &[Row]| {
+        let mut copied: Vec<Row> = numbers().map(|k| rows[k]).collect();
+        copied.resize(pairs.len(), UNLOADED);
+        copied
+    };
+    let is_wet = !grains.bridges.groups.is_empty();
+    let mut bridges = Bridges::none(if is_wet { pairs.len() } else { 0 });
+    if is_wet {
+        for (k, number) in numbers().enumerate() {
+            bridges.set(k, &grains.bridges.get(number));
+        }
+    }
+    SpherePairs {
+        springs: rows(&grains.springs),
+        rolling: rows(&grains.rolling),
+        forces: Vec::new(),
+        kind: grains.kind,
+        bridges,
+        pairs,
+    }
+}
+
 impl<'a, S: LawSource> SphereShare<'a, S> {
-    /// The shares of a batch's workers. What one phase writes and the other reads is lent as
+    /// The shares of a batch's workers. What one step writes and the next reads is lent as
     /// columns, what stays with a worker is cut into slices.
     pub fn all(spheres: &'a mut SphereKernel<S>, batch: &'a Batch) -> Vec<Self> {
-        let ranges = WorkerRanges::all(&spheres.neighbours, batch.size());
+        spheres.make_plans(batch.size());
+        let plans = &spheres.plans;
+        let wet = spheres.liquid.is_some();
+        for (rings, plan) in spheres.rings.iter_mut().zip(plans) {
+            rings.fit(plan, spheres.walls.len(), wet);
+        }
+        let padding = Slot(spheres.loads.len() as u32);
         let Neighbours {
             grains,
             walls,
-            forces,
-            bridge_effects,
             parts,
             reference,
             ..
         } = &mut spheres.neighbours;
+        let mut foreign = (plans.iter())
+            .map(|plan| {
+                let groups = plan.foreign_at_walls.iter();
+                let at_walls: Vec<_> = groups.map(|first| WallGroup::of(walls, *first)).collect();
+                (copied(grains, &plan.foreign, padding), at_walls)
+            })
+            .collect::<Vec<_>>()
+            .into_iter();
         let common = SphereInputs {
             source: spheres.source,
             law: spheres.law,
@@ -104,245 +187,209 @@ impl<'a, S: LawSource> SphereShare<'a, S> {
             parts,
             reference,
         };
-        let wet = spheres.liquid.is_some();
-        let own_grains = || ranges.iter().map(|own| own.grains.clone());
-        let own_films = || ranges.iter().map(|own| own.films(wet));
-        let own_pairs = || ranges.iter().map(|own| own.pairs.clone());
-        let own_bridges = || ranges.iter().map(|own| own.bridges(wet));
-        let own_groups = || own_bridges().map(|own| own.start / GROUP..own.end / GROUP);
-        let own_walls = ranges.iter().map(|own| own.at_walls.clone());
-        let own_forces = ranges.iter().map(|own| own.forces(grains.pairs.len()));
+        let own_grains = || plans.iter().map(|plan| plan.grains.clone());
+        let own_films = || own_grains().map(|own| if wet { own } else { 0..0 });
+        let own_pairs = || plans.iter().map(|plan| plan.pairs.clone());
+        let own_groups = || {
+            let groups = own_pairs().map(|own| own.start / GROUP..own.end / GROUP);
+            groups.map(|own| if wet { own } else { 0..0 })
+        };
+        let own_walls = || plans.iter().map(|plan| plan.at_walls.clone());
 
-        let mut bodies = batch.lend_ranges(&mut spheres.bodies, own_grains());
-        let mut films = batch.lend_ranges(&mut spheres.films, own_films());
-        let mut forces = batch.lend(forces, own_forces).into_iter();
-        let mut bridge_effects = batch.lend_ranges(bridge_effects, own_bridges());
+        let mut first_bodies = batch.lend_ranges(&mut spheres.bodies, own_grains());
+        let mut second_bodies = batch.lend_ranges(&mut spheres.next_bodies, own_grains());
+        let mut first_films = batch.lend_ranges(&mut spheres.films, own_films());
+        let mut second_films = batch.lend_ranges(&mut spheres.next_films, own_films());
         let mut loads = split_once(&mut spheres.loads, own_grains());
+        let mut accounts = split_once(&mut spheres.accounts, own_grains());
         let mut bridge_loads = split_once(&mut spheres.bridge_loads, own_films());
-        let mut grain_springs = split_once(&mut grains.springs, own_pairs());
-        let mut wall_springs = split(&mut walls.springs, own_walls).into_iter();
+        let mut springs = split_once(&mut grains.springs, own_pairs());
+        let mut rolling = split_once(&mut grains.rolling, own_pairs());
+        let mut forces = split_once(&mut grains.forces, own_pairs());
         let mut bridges = split_once(&mut grains.bridges.groups, own_groups());
-        let share = |own: &WorkerRanges| {
+        let mut wall_springs = split(&mut walls.springs, own_walls()).into_iter();
+        let mut wall_rolling = split(&mut walls.rolling, own_walls()).into_iter();
+        let mut wall_forces = split(&mut walls.forces, own_walls()).into_iter();
+        let mut rings = spheres.rings.iter_mut();
+        let wall_pairs = &walls.pairs;
+        let mut share = |plan: &'a Plan| {
+            let histories = wall_springs.next()?.into_iter().zip(wall_rolling.next()?);
+            let rows = histories.zip(wall_forces.next()?).zip(&plan.at_walls);
+            let at_walls = rows.map(|(((springs, rolling), forces), own)| WallRows {
+                first: own.start,
+                pairs: &wall_pairs[own.clone()],
+                springs,
+                rolling,
+                forces,
+            });
+            let at_walls = at_walls.collect();
+            let (foreign, foreign_at_walls) = foreign.next()?;
             Some(Self {
-                ranges: own.clone(),
+                plan,
                 common,
-                bodies: bodies.next()?,
-                films: films.next()?,
-                forces: forces.next()?,
-                bridge_effects: bridge_effects.next()?,
-                loads: loads.next()?,
-                bridge_loads: bridge_loads.next()?,
-                grain_springs: grain_springs.next()?,
-                wall_springs: wall_springs.next()?,
-                bridges: bridges.next()?,
+                first: Copies {
+                    bodies: first_bodies.next()?,
+                    films: first_films.next()?,
+                },
+                second: Copies {
+                    bodies: second_bodies.next()?,
+                    films: second_films.next()?,
+                },
+                own: OwnRows {
+                    loads: loads.next()?,
+                    accounts: accounts.next()?,
+                    bridge_loads: bridge_loads.next()?,
+                    springs: springs.next()?,
+                    rolling: rolling.next()?,
+                    forces: forces.next()?,
+                    bridges: bridges.next()?,
+                    at_walls,
+                    foreign,
+                    foreign_at_walls,
+                    rings: rings.next()?,
+                },
             })
         };
-        ranges.iter().filter_map(share).collect()
+        plans.iter().filter_map(&mut share).collect()
     }
+}
 
-    /// Computes the forces of the worker's pairs by `law`; returns how many bridges broke.
-    fn compute<L: Law>(
-        &mut self,
-        processor: Processor,
-        law: L,
-        walls: &Walls,
-        phase: &InPhase<'_, ForcePhase>,
-    ) -> u64 {
-        let common = &self.common;
-        let mut forces = self.forces.write(phase);
-        let of_grains = PairRows {
-            pairs: &common.grain_pairs[self.ranges.pairs.clone()],
-            kind: common.grain_kind,
-            springs: &mut *self.grain_springs,
-            forces: forces.next().unwrap_or_default(),
-            bridges: &mut *self.bridges,
-            bridge_effects: self.bridge_effects.write_first(phase),
-        };
-        let rows = self.ranges.at_walls.iter().zip(&mut self.wall_springs);
-        let of_walls = rows.zip(forces).map(|((own, springs), forces)| PairRows {
-            pairs: &common.wall_pairs[own.clone()],
-            kind: None,
-            springs,
-            forces,
-            // Walls hold no bridges.
-            bridges: &mut [],
-            bridge_effects: &mut [],
+/// A step of a share, by a law that is chosen once for all pairs.
+struct TakeStep<'s, 'a, S> {
+    plan: &'a Plan,
+    common: &'s SphereInputs<'a, S>,
+    own: &'s mut OwnRows<'a>,
+    moment: &'s Moment<'s>,
+    /// All grains and films as they were, and the worker's own as they become.
+    before: (&'s [Sphere], &'s [f64]),
+    after: (&'s mut [Sphere], &'s mut [f64]),
+}
+
+impl<S: LawSource> TakeStep<'_, '_, S> {
+    fn run(self) -> PassReport {
+        self.common.source.choose(self.common.law, self)
+    }
+}
+
+impl<S: LawSource> LawUser for TakeStep<'_, '_, S> {
+    type Output = PassReport;
+
+    fn with<L: Law>(self, law: L) -> PassReport {
+        let Self {
+            plan,
+            common,
+            own,
+            moment,
+            before: (bodies_before, films_before),
+            after: (bodies, films),
+        } = self;
+        let pairs_at_walls = common.wall_pairs;
+        let own_walls = own.at_walls.iter_mut().map(|rows| AtWall {
+            first: rows.first,
+            rows: PairRows {
+                pairs: rows.pairs,
+                kind: None,
+                springs: &mut *rows.springs,
+                rolling: &mut *rows.rolling,
+                bridges: &mut [],
+            },
+            forces: &mut *rows.forces,
+            done: 0,
         });
-        let films = self.films.read(phase);
-        processor.run(PairLoop {
+        let foreign_walls = own.foreign_at_walls.iter_mut().map(|group| AtWall {
+            first: group.first,
+            rows: PairRows {
+                pairs: &pairs_at_walls[group.first..group.first + GROUP],
+                kind: None,
+                springs: &mut group.springs[..],
+                rolling: &mut group.rolling[..],
+                bridges: &mut [],
+            },
+            forces: &mut [],
+            done: 0,
+        });
+        let mut at_walls: Vec<AtWall<'_>> = own_walls.chain(foreign_walls).collect();
+        let pass = Pass {
             surroundings: PairSurroundings {
                 law,
                 dt: common.motion.dt,
-                bodies: self.bodies.read(phase),
-                walls,
+                bodies: bodies_before,
+                walls: moment.walls,
                 constants: common.constants,
                 wetting: common.liquid.map(|liquid| Wetting {
                     liquid,
-                    films,
+                    films: films_before,
                     constants: common.film_constants,
                 }),
             },
-            of_grains,
-            of_walls,
-        })
-    }
-
-    /// Sums the forces on the worker's grains and moves them.
-    fn finish<const WET: bool>(
-        &mut self,
-        processor: Processor,
-        last: bool,
-        phase: &InPhase<'_, MotionPhase>,
-    ) -> Outcome {
-        let own = self.ranges.grains.clone();
-        processor.run(FinishStep::<WET> {
-            motion: self.common.motion,
-            pairs: PairEffects {
-                forces: self.forces.read(phase),
-                bridge_effects: self.bridge_effects.read(phase),
-                parts: self.common.parts,
+            plan,
+            own: PairRows {
+                pairs: &common.grain_pairs[plan.pairs.clone()],
+                kind: common.grain_kind,
+                springs: &mut *own.springs,
+                rolling: &mut *own.rolling,
+                bridges: &mut *own.bridges,
             },
-            begin: own.start,
-            bodies: self.bodies.write_first(phase),
-            loads: &mut *self.loads,
-            films: self.films.write_first(phase),
-            bridge_loads: &mut *self.bridge_loads,
-            references: &self.common.reference[own],
-            last,
-        })
-    }
-}
-
-/// The forces of a share, by a law that is chosen once for all pairs.
-struct ComputeForces<'s, 'a, 'p, S> {
-    share: &'s mut SphereShare<'a, S>,
-    processor: Processor,
-    walls: &'s Walls,
-    phase: &'s InPhase<'p, ForcePhase>,
-}
-
-impl<S: LawSource> LawUser for ComputeForces<'_, '_, '_, S> {
-    type Output = Tally;
-
-    fn with<L: Law>(self, law: L) -> Tally {
-        Tally {
-            ruptures: self
-                .share
-                .compute(self.processor, law, self.walls, self.phase),
-            ..Tally::default()
-        }
+            own_forces: &mut *own.forces,
+            foreign: PairRows {
+                pairs: &own.foreign.pairs,
+                kind: own.foreign.kind,
+                springs: &mut own.foreign.springs,
+                rolling: &mut own.foreign.rolling,
+                bridges: &mut own.foreign.bridges.groups,
+            },
+            at_walls: &mut at_walls,
+            rings: &mut *own.rings,
+            grains: GrainRows {
+                motion: common.motion,
+                parts: common.parts,
+                begin: plan.grains.start,
+                before: bodies_before,
+                bodies,
+                loads: &mut *own.loads,
+                accounts: &mut *own.accounts,
+                films_before,
+                films,
+                bridge_loads: &mut *own.bridge_loads,
+                references: &common.reference[plan.grains.clone()],
+                last: moment.last,
+            },
+            timed: moment.timed,
+        };
+        pass.take(moment.processor)
     }
 }
 
 impl<S: LawSource> Share for SphereShare<'_, S> {
-    fn compute_forces(
-        &mut self,
-        processor: Processor,
-        walls: &Walls,
-        phase: &InPhase<'_, ForcePhase>,
-    ) -> Tally {
-        let (source, stated) = (self.common.source, self.common.law);
-        let forces = ComputeForces {
-            share: self,
-            processor,
-            walls,
-            phase,
+    fn follow(self, course: &Course, phase: InPhase<'_, ForcePhase>) -> BatchReport {
+        course.in_passes(self, phase)
+    }
+}
+
+impl<S: LawSource> PassingShare for SphereShare<'_, S> {
+    fn pass_forth(&mut self, moment: &Moment<'_>, phase: &InPhase<'_, ForcePhase>) -> PassReport {
+        let (from, to) = (&self.first, &mut self.second);
+        let step = TakeStep {
+            plan: self.plan,
+            common: &self.common,
+            own: &mut self.own,
+            moment,
+            before: (from.bodies.read(phase), from.films.read(phase)),
+            after: (to.bodies.write_first(phase), to.films.write_first(phase)),
         };
-        source.choose(stated, forces)
+        step.run()
     }
 
-    fn move_grains(
-        &mut self,
-        processor: Processor,
-        last: bool,
-        phase: &InPhase<'_, MotionPhase>,
-    ) -> Outcome {
-        if self.common.liquid.is_some() {
-            self.finish::<true>(processor, last, phase)
-        } else {
-            self.finish::<false>(processor, last, phase)
-        }
-    }
-}
-
-/// Which rows one worker works on.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct WorkerRanges {
-    /// Slots of the grains that it moves.
-    grains: Range<usize>,
-    /// Pairs of grains whose forces it computes, in whole groups.
-    pairs: Range<usize>,
-    /// Pairs with walls, likewise: about those of its grains.
-    at_walls: Vec<Range<usize>>,
-}
-
-/// What it takes to move a grain without partners, measured in partners.
-const COST_OF_GRAIN: usize = 3;
-
-impl WorkerRanges {
-    /// The ranges of `size` workers: pairs of grains in equal numbers, as each takes about as long,
-    /// and grains such that each worker has as many partners to sum up.
-    fn all(neighbours: &Neighbours, size: usize) -> Vec<Self> {
-        let groups = neighbours.grains.pairs.len() / GROUP;
-        let cuts = cuts(neighbours, size);
-        let mut ranges: Vec<Self> = (0..size)
-            .map(|worker| {
-                let groups = range_of(groups, worker, size);
-                Self {
-                    grains: cuts[worker]..cuts[worker + 1],
-                    pairs: groups.start * GROUP..groups.end * GROUP,
-                    at_walls: Vec::new(),
-                }
-            })
-            .collect();
-        share_walls(&neighbours.walls.pairs, &mut ranges);
-        ranges
-    }
-
-    /// Where its films are: those of its grains, in a `wet` world.
-    fn films(&self, wet: bool) -> Range<usize> {
-        if wet { self.grains.clone() } else { 0..0 }
-    }
-
-    /// Where its bridges are: those of its pairs of grains, in a `wet` world.
-    fn bridges(&self, wet: bool) -> Range<usize> {
-        if wet { self.pairs.clone() } else { 0..0 }
-    }
-
-    /// Where the forces of its pairs are: those with walls stand behind those of `grain_pairs`
-    /// pairs of grains.
-    fn forces(&self, grain_pairs: usize) -> Vec<Range<usize>> {
-        let behind = |own: &Range<usize>| own.start + grain_pairs..own.end + grain_pairs;
-        let of_walls = self.at_walls.iter().map(behind);
-        std::iter::once(self.pairs.clone())
-            .chain(of_walls)
-            .collect()
-    }
-}
-
-/// Slots at which the workers' grains begin, and the end: each worker has as much to sum up and
-/// move.
-fn cuts(neighbours: &Neighbours, size: usize) -> Vec<usize> {
-    let count = neighbours.reference.len();
-    let cost = |slot: usize| neighbours.parts.before(slot) + COST_OF_GRAIN * slot;
-    let begin = |worker: usize| {
-        let before = |slot: &usize| cost(*slot) * size < cost(count) * worker;
-        (0..count).take_while(before).count()
-    };
-    (0..=size).map(begin).collect()
-}
-
-/// Gives each group of pairs with a wall to whom its first grain belongs.
-fn share_walls(pairs: &[SpherePair<WallId>], ranges: &mut [WorkerRanges]) {
-    let last = ranges.len() - 1;
-    for (group, own) in pairs.chunks(GROUP).enumerate() {
-        let slot = own[0].grain.index();
-        let owner = ranges.partition_point(|range| range.grains.end <= slot);
-        let at_walls = &mut ranges[owner.min(last)].at_walls;
-        let begin = group * GROUP;
-        match at_walls.last_mut().filter(|range| range.end == begin) {
-            Some(range) => range.end += own.len(),
-            None => at_walls.push(begin..begin + own.len()),
-        }
+    fn pass_back(&mut self, moment: &Moment<'_>, phase: &InPhase<'_, MotionPhase>) -> PassReport {
+        let (from, to) = (&self.second, &mut self.first);
+        let step = TakeStep {
+            plan: self.plan,
+            common: &self.common,
+            own: &mut self.own,
+            moment,
+            before: (from.bodies.read(phase), from.films.read(phase)),
+            after: (to.bodies.write_first(phase), to.films.write_first(phase)),
+        };
+        step.run()
     }
 }

@@ -8,7 +8,7 @@ use super::super::row::row;
 use super::super::terms::{AT_THE_BOUND, ForceTerms};
 use super::super::walls::WallBody;
 use super::contacts::{PairState, common_constants, half_step};
-use super::integrate::{SphereLoad, StepConstants, Total, kick, set_free_spin};
+use super::integrate::{Moving, SphereAccount, SphereLoad, StepConstants, Total};
 use super::partners::{GrainAndWall, Partners, TwoGrains};
 use super::rows::Sphere;
 use crate::lanes::{Elementwise, One, WIDEST};
@@ -127,14 +127,17 @@ fn vector(lanes: [One; 3]) -> DVec3 {
 pub fn half_a_step_ago(world: &World, i: usize) -> Sphere {
     let (grains, dt) = (&world.grains, world.clock.time_step);
     let mut sphere = Sphere::of(grains, i);
-    let load = SphereLoad::of(grains, i, dt);
+    let load = SphereLoad::of(grains, i);
     let total = Total::<Elementwise>::load((), &load, f64::from(grains.open_bridges[i]));
     let back = StepConstants {
         dt: -dt,
         gravity: row(world.gravity, 0.0),
         ..StepConstants::default()
     };
-    kick((), &mut sphere, &total, &back);
-    set_free_spin((), &mut sphere, &load, &total, dt);
+    let mut moving = Moving::of((), &sphere);
+    moving.kick((), &total, &back);
+    moving.put(&mut sphere);
+    let compliance = SphereAccount::of(grains, i, dt).compliance;
+    sphere.free_spin = moving.free_spin((), compliance, &total, dt);
     sphere
 }

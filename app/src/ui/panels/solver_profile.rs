@@ -8,6 +8,7 @@ use crate::ui::widgets::value_table::{TableRow, table_ui};
 use crate::ui::words::number;
 use crate::view::ViewSettings;
 use bevy_egui::egui::{self, RichText, Sense, WidgetInfo, WidgetType, vec2};
+use grainfall::run::{MeasuredBed, MeasuredStep};
 use grainfall::solver::{Profile, Stage, TimeStepAdvice};
 
 /// The panel of the solver's profile.
@@ -37,6 +38,7 @@ impl Panel for SolverProfile {
         let run = simulation.half(view.focus);
         profile_ui(ui, run.profile());
         advice_ui(ui, run.advice());
+        measured_ui(ui, MeasuredBed::like(run.scene()));
         let warnings = run.warnings();
         if !warnings.is_empty() {
             ui.label(RichText::new("Warnings").strong());
@@ -48,7 +50,7 @@ impl Panel for SolverProfile {
 }
 
 /// Where the time of `profile` went: a bar per stage, and numbers.
-pub fn profile_ui(ui: &mut egui::Ui, profile: &Profile) {
+fn profile_ui(ui: &mut egui::Ui, profile: &Profile) {
     if profile.steps == 0 {
         ui.weak("The solver rests.");
         return;
@@ -108,7 +110,7 @@ fn bar_ui(ui: &mut egui::Ui, name: &str, share: f32, colour: egui::Color32) {
 }
 
 /// The time step and what limits it.
-pub fn advice_ui(ui: &mut egui::Ui, advice: &TimeStepAdvice) {
+fn advice_ui(ui: &mut egui::Ui, advice: &TimeStepAdvice) {
     ui.add_space(4.0);
     let step = number::short_time(advice.time_step);
     ui.label(RichText::new(format!("Time step {step}")).strong());
@@ -126,4 +128,55 @@ pub fn advice_ui(ui: &mut egui::Ui, advice: &TimeStepAdvice) {
     if let Some(binding) = advice.limits.first() {
         ui.add(egui::Label::new(RichText::new(&binding.reason).weak().small()).wrap());
     }
+}
+
+/// In what a bed came out otherwise with other steps.
+fn measured_ui(ui: &mut egui::Ui, bed: &MeasuredBed) {
+    ui.add_space(4.0);
+    ui.label(RichText::new("Other steps change").strong());
+    let others = bed.steps.iter().filter(|step| !bed.is_standard(step));
+    table_ui(
+        ui,
+        others.map(|step| TableRow {
+            name: name_of(bed, step),
+            value: off(bed, step),
+            hint: hint(bed, step),
+        }),
+    );
+    let standard = name_of(bed, bed.standard());
+    let text = format!("more than scatter, beside {standard}: {}", bed.bed);
+    ui.add(egui::Label::new(RichText::new(text).weak().small()).wrap());
+}
+
+fn name_of(bed: &MeasuredBed, step: &MeasuredStep) -> String {
+    let name = format!(
+        "{} {}",
+        number::short_time(step.time_step),
+        bed.integrator_of(step)
+    );
+    name.trim_end().to_owned()
+}
+
+/// The symbols of what differs.
+fn off(bed: &MeasuredBed, step: &MeasuredStep) -> String {
+    let off = bed.off(step).into_iter();
+    let symbols: Vec<&str> = off.map(|(own, _)| own.symbol()).collect();
+    if symbols.is_empty() {
+        return "nothing".into();
+    }
+    symbols.join(", ")
+}
+
+/// By how much, and all that the step came to.
+fn hint(bed: &MeasuredBed, step: &MeasuredStep) -> String {
+    let results = step
+        .results
+        .iter()
+        .map(|own| format!("\n{}: {}", own.head(), own.cell()));
+    format!(
+        "Off by more than scatter: {}.\nMeans of {} beds:{}",
+        bed.off_in_words(step),
+        step.runs,
+        results.collect::<String>()
+    )
 }
