@@ -13,4 +13,5 @@ mod plots;
 mod remembered;
 mod results;
 mod room;
+mod solver;
 mod start_values;
