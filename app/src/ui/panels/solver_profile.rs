@@ -144,7 +144,10 @@ fn measured_ui(ui: &mut egui::Ui, bed: &MeasuredBed) {
         }),
     );
     let standard = name_of(bed, bed.standard());
-    let text = format!("more than scatter, beside {standard}: {}", bed.bed);
+    let text = format!(
+        "by more than scatter beside {standard}, in a bed that was run: {}",
+        bed.bed
+    );
     ui.add(egui::Label::new(RichText::new(text).weak().small()).wrap());
 }
 
