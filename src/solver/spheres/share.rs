@@ -12,7 +12,7 @@ use super::super::ranges::{split, split_once};
 use super::super::row::Row;
 use super::super::step::{BatchReport, Course, Moment, PassReport, PassingShare, Share};
 use super::super::tangential::UNLOADED;
-use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase};
+use super::super::workers::{Batch, Column, ForcePhase, InPhase, MotionPhase, Phase};
 use super::SphereKernel;
 use super::bridges::{BridgeColumns, Bridges, Wetting};
 use super::contacts::{PairRows, PairSurroundings};
@@ -29,11 +29,16 @@ use crate::physics::{ContactLaw, Liquid};
 
 /// A worker's share of a world of spheres.
 pub struct SphereShare<'a, S> {
-    plan: &'a Plan,
-    common: SphereInputs<'a, S>,
     /// The first copy of grains and films, and the second.
     first: Copies<'a, MotionPhase>,
     second: Copies<'a, ForcePhase>,
+    stepper: Stepper<'a, S>,
+}
+
+/// What takes steps from one copy to the other.
+struct Stepper<'a, S> {
+    plan: &'a Plan,
+    common: SphereInputs<'a, S>,
     own: OwnRows<'a>,
 }
 
@@ -225,8 +230,6 @@ impl<'a, S: LawSource> SphereShare<'a, S> {
             let at_walls = at_walls.collect();
             let (foreign, foreign_at_walls) = foreign.next()?;
             Some(Self {
-                plan,
-                common,
                 first: Copies {
                     bodies: first_bodies.next()?,
                     films: first_films.next()?,
@@ -235,22 +238,50 @@ impl<'a, S: LawSource> SphereShare<'a, S> {
                     bodies: second_bodies.next()?,
                     films: second_films.next()?,
                 },
-                own: OwnRows {
-                    loads: loads.next()?,
-                    accounts: accounts.next()?,
-                    bridge_loads: bridge_loads.next()?,
-                    springs: springs.next()?,
-                    rolling: rolling.next()?,
-                    forces: forces.next()?,
-                    bridges: bridges.next()?,
-                    at_walls,
-                    foreign,
-                    foreign_at_walls,
-                    rings: rings.next()?,
+                stepper: Stepper {
+                    plan,
+                    common,
+                    own: OwnRows {
+                        loads: loads.next()?,
+                        accounts: accounts.next()?,
+                        bridge_loads: bridge_loads.next()?,
+                        springs: springs.next()?,
+                        rolling: rolling.next()?,
+                        forces: forces.next()?,
+                        bridges: bridges.next()?,
+                        at_walls,
+                        foreign,
+                        foreign_at_walls,
+                        rings: rings.next()?,
+                    },
                 },
             })
         };
         plans.iter().filter_map(&mut share).collect()
+    }
+}
+
+impl<S: LawSource> Stepper<'_, S> {
+    /// Takes a step from a copy into the one that phase `P` writes.
+    fn step<P>(
+        &mut self,
+        moment: &Moment<'_>,
+        (from, to): (&Copies<'_, P::Other>, &mut Copies<'_, P>),
+        phase: &InPhase<'_, P>,
+    ) -> PassReport
+    where
+        P: Phase<Other: Phase<Other = P>>,
+    {
+        let common = &self.common;
+        let step = TakeStep {
+            plan: self.plan,
+            common,
+            own: &mut self.own,
+            moment,
+            before: (from.bodies.read(phase), from.films.read(phase)),
+            after: (to.bodies.write_first(phase), to.films.write_first(phase)),
+        };
+        common.source.choose(common.law, step)
     }
 }
 
@@ -263,12 +294,6 @@ struct TakeStep<'s, 'a, S> {
     /// All grains and films as they were, and the worker's own as they become.
     before: (&'s [Sphere], &'s [f64]),
     after: (&'s mut [Sphere], &'s mut [f64]),
-}
-
-impl<S: LawSource> TakeStep<'_, '_, S> {
-    fn run(self) -> PassReport {
-        self.common.source.choose(self.common.law, self)
-    }
 }
 
 impl<S: LawSource> LawUser for TakeStep<'_, '_, S> {
@@ -368,28 +393,12 @@ impl<S: LawSource> Share for SphereShare<'_, S> {
 
 impl<S: LawSource> PassingShare for SphereShare<'_, S> {
     fn pass_forth(&mut self, moment: &Moment<'_>, phase: &InPhase<'_, ForcePhase>) -> PassReport {
-        let (from, to) = (&self.first, &mut self.second);
-        let step = TakeStep {
-            plan: self.plan,
-            common: &self.common,
-            own: &mut self.own,
-            moment,
-            before: (from.bodies.read(phase), from.films.read(phase)),
-            after: (to.bodies.write_first(phase), to.films.write_first(phase)),
-        };
-        step.run()
+        let copies = (&self.first, &mut self.second);
+        self.stepper.step(moment, copies, phase)
     }
 
     fn pass_back(&mut self, moment: &Moment<'_>, phase: &InPhase<'_, MotionPhase>) -> PassReport {
-        let (from, to) = (&self.second, &mut self.first);
-        let step = TakeStep {
-            plan: self.plan,
-            common: &self.common,
-            own: &mut self.own,
-            moment,
-            before: (from.bodies.read(phase), from.films.read(phase)),
-            after: (to.bodies.write_first(phase), to.films.write_first(phase)),
-        };
-        step.run()
+        let copies = (&self.second, &mut self.first);
+        self.stepper.step(moment, copies, phase)
     }
 }
