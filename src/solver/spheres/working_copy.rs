@@ -19,7 +19,7 @@ pub struct SphereKernel<S = StatedLaw> {
     pub(super) slots: Slots,
     /// What the pair loop reads of every grain, and the padding body behind them.
     pub(super) bodies: Vec<Sphere>,
-    /// What the step after next reads of them: a step goes from one copy to the other.
+    /// The other copy of them: a step reads one and writes the other.
     pub(super) next_bodies: Vec<Sphere>,
     /// What acts on every grain at the end of a call.
     pub(super) loads: Vec<SphereLoad>,
