@@ -184,11 +184,7 @@ impl GrainQuantity {
                 values.extend(coordinations(world).into_iter().map(f64::from));
             }
             Self::KineticEnergy => {
-                let energy = |i: usize| {
-                    0.5 * grains.mass[i] * grains.velocity[i].length_squared()
-                        + world.rotational_energy(i)
-                };
-                values.extend((0..grains.len()).map(energy));
+                values.extend((0..grains.len()).map(|i| world.kinetic_energy_of(i)));
             }
             Self::LargestForce => append_largest_forces(world, values),
             Self::Pressure => append_pressures(world, values),

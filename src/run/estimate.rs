@@ -5,6 +5,7 @@
 //! are those of the machine that `benches/README.md` tells of, a factor of a few from any other's.
 
 use super::machine::{free_disk, free_memory};
+use super::settling::settling_step;
 use crate::measure::Measure;
 use crate::physics::Integrator;
 use crate::scene::SAMPLE_INTERVAL;
@@ -163,7 +164,7 @@ impl Estimate {
         let samples = scene.duration / apart + 1.0;
         let columns = Measure::COUNT as f64 + 2.0;
         let outputs = scene.duration / scene.output_interval + 1.0;
-        let settling = settling_time(scene) / time_step;
+        let settling = settling_time(scene) / settling_step(scene);
         let grain = grains as f64;
         let slower = if scene.is_polyhedral() {
             1.0

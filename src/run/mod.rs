@@ -17,6 +17,7 @@
 //! | `events` | what happened, and when: impacts, avalanches, changes … |
 //! | `kept_memory` | what a run keeps in memory by design |
 //! | `past`, `undo` | what is told of a timeline; what can be taken back |
+//! | `estimate` | what a scene asks of a machine, before any work |
 //! | `preparation`, `settling`, `bed` | from a scene to a settled bed at time zero; where beds are kept |
 //! | `trajectory`, `check` | the run itself: world, solver, commands, samples; what it refuses |
 //! | `branch`, `history` | what is known of a branch; its changes, and what tells it from others |
@@ -24,7 +25,7 @@
 //! | `orientations` | how far spheres have turned, for pictures |
 //! | `method` | which solver and measures computed a run |
 //! | `step_costs` | what shorter and longer steps changed in whole beds |
-//! | `estimate`, `machine` | what a scene asks of a machine, before any work; what that has left; work that gives way |
+//! | `machine` | what a machine has left; work that gives way |
 //! | `tables` | what the columns of tables hold, for programs that read them |
 //! | `measured` | what was measured, and how much of it stands in files |
 //! | `meetings` | which of few grains met and parted, and when |

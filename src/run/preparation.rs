@@ -4,11 +4,11 @@
 //! instead. The work comes in short pieces, so that whoever does it can show progress and stop.
 
 use super::bed::{BedKey, BedStore};
-use super::settling::{Settling, needs_settling};
+use super::settling::{Settling, needs_settling, settling_step};
 use super::{Run, bed};
 use crate::measure::elastic_energy;
 use crate::scene::Scene;
-use crate::solver::{Fault, Solver, advise};
+use crate::solver::{Fault, Solver};
 use crate::world::{self, Packing, World};
 use std::sync::Arc;
 
@@ -148,15 +148,6 @@ impl Preparation {
     }
 }
 
-/// The step with which the bed of `scene` settles [s]: the dry one, whatever its liquid asks for.
-fn settling_step(scene: &Scene) -> f64 {
-    let dry = Scene {
-        liquid: None,
-        ..scene.clone()
-    };
-    advise(&dry).time_step
-}
-
 /// `world` with the contacts and forces of grains that touch from the start, their elastic energy
 /// in the ledger. Where its state is a fault, it stays as it was built: the run's first step meets
 /// the fault again and says so.
@@ -184,8 +175,8 @@ pub enum BedError {
 /// # Errors
 /// A [`BedError`] that says what kept it from resting or from being stored.
 pub fn make_bed(scene: &Scene, threads: usize) -> Result<Vec<u8>, BedError> {
-    let built = world::build(scene, settling_step(scene));
     let step = settling_step(scene);
+    let built = world::build(scene, step);
     let key = BedKey::of(&built, step)?;
     let mut settling = Settling::new(built, step, threads);
     while !settling.advance()? {}

@@ -7,19 +7,20 @@
 //! The grains fall freely, then lose a share of their velocity between pieces of so many steps
 //! until they creep, then relax with nothing but the contact laws, so that the end is a true
 //! equilibrium; where they do not come to rest so (a grain may swing between two others with hardly
-//! a loss), they are calmed again. All stages are counted in steps: the same scene gives the same
-//! bits.
+//! a loss), they are calmed again. Large beds do so in longer steps and do not wait for stragglers
+//! (`docs/reach.md`). All stages are counted in steps: the same scene gives the same bits.
 
 use super::pieces::Pieces;
 use crate::measure::elastic_energy;
-use crate::scene::{Scene, SceneContainer, SceneGrains};
-use crate::solver::{Fault, Solver};
+use crate::scene::{Scene, SceneContainer, SceneGrains, TimeStep};
+use crate::solver::{Fault, Solver, advise};
 use crate::world::{Clock, WallMotion, World};
 use glam::DVec3;
 use std::time::{Duration, Instant};
 
-/// Wall-clock time that a piece takes: whoever stops a run waits for it.
-const PIECE_TIME: Duration = Duration::from_millis(50);
+/// Wall-clock time that a piece takes at most, as a rule: whoever stops a run waits for it. Slices of
+/// small beds take less.
+const PIECE_TIME: Duration = Duration::from_millis(500);
 /// Share of its velocity that a grain keeps from one slice of the calming stage to the next.
 const KEPT: f64 = 0.9;
 /// Kinetic energy over `Σ m g r` at which calming ends.
@@ -27,6 +28,13 @@ const CREEPING: f64 = 1e-8;
 /// Kinetic energy over `Σ m g r` of a bed at rest; rms speeds are then near 1e-5 m/s for
 /// millimetres.
 const QUIET: f64 = 1e-9;
+/// Grains from which on a bed is a large one. It settles in the *fast* step, falls for longer, and of
+/// every so many grains the fastest is left out where it is said how much the bed still moves:
+/// somewhere in it there is always one that spins or swings between two others with hardly a loss.
+const LARGE: usize = 10_000;
+/// Free falls through its height that a large bed takes before it is calmed: until the waves of its
+/// impact have died down, which calming would slow.
+const FALLS_OF_LARGE: f64 = 2.0;
 /// A relaxation, in units of `√(r/g)`: grains that balance where they cannot stay fall within it.
 const RELAXATION: f64 = 10.0;
 /// Longest settling, in units of `√(r/g)`, after which a bed is taken as it is.
@@ -38,6 +46,21 @@ const SLICES: f64 = 8.0;
 pub fn needs_settling(scene: &Scene) -> bool {
     let filled = matches!(scene.grains, SceneGrains::Fill { count, .. } if count > 0);
     filled && scene.container != SceneContainer::Nothing && scene.gravity.length() > 0.0
+}
+
+/// The step with which the bed of `scene` settles [s]: that of the dry scene, whatever its liquid asks
+/// for.
+pub fn settling_step(scene: &Scene) -> f64 {
+    let time_step = match scene.time_step {
+        TimeStep::Automatic if scene.grain_count() >= LARGE => TimeStep::Fast,
+        asked => asked,
+    };
+    let dry = Scene {
+        liquid: None,
+        time_step,
+        ..scene.clone()
+    };
+    advise(&dry).time_step
 }
 
 /// A bed on its way to rest.
@@ -78,11 +101,16 @@ impl Settling {
         let steps = |time: f64| (time / world.clock.time_step).ceil().max(1.0) as u64;
         let unit = (radius / gravity).sqrt();
         let slice = steps(unit / SLICES);
+        let falls = if world.grains.len() < LARGE {
+            1.0
+        } else {
+            FALLS_OF_LARGE
+        };
         Self {
             slice,
             slice_end: slice,
             pieces: Pieces::of(PIECE_TIME),
-            fall: steps((2.0 * extent(&world) / gravity).sqrt()),
+            fall: steps(falls * (2.0 * extent(&world) / gravity).sqrt()),
             relaxation: steps(RELAXATION * unit),
             patience: steps(PATIENCE * unit),
             energy_scale: energy_scale(&world),
@@ -100,7 +128,7 @@ impl Settling {
     /// # Errors
     /// The solver's [`Fault`].
     pub fn advance(&mut self) -> Result<bool, Fault> {
-        let steps = (self.slice_end - self.world.clock.step).min(self.pieces.steps());
+        let steps = self.next_piece();
         let started = Instant::now();
         self.solver.advance(&mut self.world, steps)?;
         self.pieces.fit(steps, started.elapsed());
@@ -109,7 +137,7 @@ impl Settling {
             return Ok(false);
         }
         self.slice_end = step + self.slice;
-        let agitation = self.world.kinetic_energy() / self.energy_scale;
+        let agitation = kinetic_energy(&self.world) / self.energy_scale;
         self.stage = match self.stage {
             _ if step >= self.patience => SettlingStage::AtRest,
             SettlingStage::Falling if step >= self.fall => SettlingStage::Calming,
@@ -141,6 +169,12 @@ impl Settling {
     /// The settled world at time zero, the walls moving as the scene says.
     pub fn finish(self) -> World {
         start(self.world, &self.built)
+    }
+
+    /// Steps of the next piece: those left of the slice, in as few equal pieces as may be.
+    fn next_piece(&self) -> u64 {
+        let left = self.slice_end - self.world.clock.step;
+        left.div_ceil(left.div_ceil(self.pieces.steps()))
     }
 
     fn calm(&mut self) {
@@ -222,6 +256,23 @@ fn round(vector: &mut DVec3) {
     *vector = vector.as_vec3().as_dvec3();
 }
 
+/// Kinetic energy of `world`, of a [`LARGE`] bed without its few fastest grains [J].
+fn kinetic_energy(world: &World) -> f64 {
+    let energy = |i| world.kinetic_energy_of(i);
+    let counted = world.grains.len() - world.grains.len() / LARGE;
+    let mut energies: Vec<f64> = (0..world.grains.len()).map(energy).collect();
+    let limit = if counted < energies.len() {
+        *energies
+            .clone()
+            .select_nth_unstable_by(counted, f64::total_cmp)
+            .1
+    } else {
+        f64::INFINITY
+    };
+    energies.retain(|energy| *energy < limit);
+    energies.iter().sum()
+}
+
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -241,4 +292,43 @@ fn energy_scale(world: &World) -> f64 {
     let grains = &world.grains;
     let moments = grains.mass.iter().zip(&grains.radius).map(|(m, r)| m * r);
     moments.sum::<f64>() * world.gravity.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn box_of(count: usize) -> Scene {
+        let text = format!(
+            "(title: \"box\", materials: {{\"glass\": ()}}, container: Box(min: (0, 0, 0), max: (1, 1, 1), \
+             material: \"glass\"), grains: Fill(count: {count}, species: [(radius_mm: 2, material: \"glass\")]))"
+        );
+        Scene::parse("box.ron", &text).unwrap()
+    }
+
+    /// Every grain with a kinetic energy of 1 J, the first two with 5 J.
+    #[test]
+    fn fastest_of_ten_thousand_is_left_out_where_a_bed_is_large() {
+        for (count, counted) in [(9_999, 9_999.0 + 8.0), (10_000, 9_999.0 + 4.0)] {
+            let mut world = crate::world::build(&box_of(count), 1e-5);
+            let grains = &mut world.grains;
+            for (i, (v, m)) in grains.velocity.iter_mut().zip(&grains.mass).enumerate() {
+                let energy = if i < 2 { 5.0 + 1e-6 * i as f64 } else { 1.0 };
+                v.x = (2.0 * energy / m).sqrt();
+            }
+            let energy = kinetic_energy(&world);
+            assert!((energy - counted).abs() < 1e-4, "{energy} J of {count}");
+        }
+    }
+
+    #[test]
+    fn large_bed_settles_in_the_fast_step_unless_the_scene_gives_one() {
+        let mut scene = box_of(9_999);
+        let standard = advise(&scene).time_step;
+        assert_eq!(settling_step(&scene), standard);
+        scene = box_of(10_000);
+        assert_eq!(settling_step(&scene), 1.5 * standard);
+        scene.time_step = TimeStep::Given(1e-6);
+        assert_eq!(settling_step(&scene), 1e-6);
+    }
 }

@@ -171,13 +171,15 @@ impl World {
 
     /// Kinetic energy of translation and rotation [J].
     pub fn kinetic_energy(&self) -> f64 {
-        let grains = &self.grains;
-        (0..grains.len())
-            .map(|i| {
-                0.5 * grains.mass[i] * grains.velocity[i].length_squared()
-                    + self.rotational_energy(i)
-            })
+        (0..self.grains.len())
+            .map(|i| self.kinetic_energy_of(i))
             .sum()
+    }
+
+    /// Kinetic energy of translation and rotation of grain `i` [J].
+    pub fn kinetic_energy_of(&self, i: usize) -> f64 {
+        let grains = &self.grains;
+        0.5 * grains.mass[i] * grains.velocity[i].length_squared() + self.rotational_energy(i)
     }
 
     /// Kinetic energy of the rotation of grain `i` [J].

@@ -19,6 +19,7 @@
 //! | `terms` | a contact's force, term by term |
 //! | `normal_law` | a contact's normal force over the gap |
 //! | `working_copy` | what is kept between loading a world and storing it |
+//! | `exchange` | how grains, films and contacts come into it and back |
 //! | `plan` | what one worker does in a step, and in which order |
 //! | `rings`, `places` | what pairs do, until their grains have moved; where each writes it |
 //! | `pass` | a worker's step: pairs, and grains right behind them |
@@ -37,6 +38,7 @@
 
 mod bridges;
 mod contacts;
+mod exchange;
 mod integrate;
 mod kinds;
 mod neighbours;
@@ -55,24 +57,18 @@ mod terms;
 mod working_copy;
 
 use super::FaultKind;
-use super::ranges::split_once;
 use super::row::{length_squared, row, vector};
 use super::step::{Kernel, Tally};
-use super::tangential::UNLOADED;
 use super::walls::Walls;
 use super::workers::{Batch, WorkerPool};
 use crate::lanes::Processor;
-use crate::physics::Liquid;
-use crate::physics::law::{BridgeKinds, LawSource, contributions, rupture_gap};
-use crate::world::{Contact, Partner, World};
-use bridges::{BridgeRow, Bridges};
-use integrate::{SphereAccount, SphereLoad, StartStep, StepConstants};
+use crate::physics::law::LawSource;
+use crate::world::World;
+use integrate::{SphereAccount, StartStep, StepConstants};
 pub use normal_law::NormalLaw;
-use pair_list::{PairOrder, SpherePairs};
-use parts::Part;
 use plan::Plan;
 use rings::Rings;
-use rows::{PairKind, Sphere, SpherePair};
+use rows::Sphere;
 use share::SphereShare;
 pub use terms::force_terms;
 pub use working_copy::SphereKernel;
@@ -105,7 +101,8 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
         self.load_grains(pool, world);
         self.load_liquid(world);
         self.fit_lists(pool, world);
-        self.neighbours.load_histories(&world.contacts, &self.slots);
+        self.neighbours
+            .load_histories(pool, &world.contacts, &self.slots);
     }
 
     fn start(&mut self, processor: Processor) -> bool {
@@ -152,28 +149,9 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
 
     /// Columns are written in the order of the grains' indices, contacts too: slots do not show.
     fn store(&self, pool: &mut WorkerPool, world: &mut World) {
-        let grains = &mut world.grains;
-        let indices = self.slots.grains().iter().map(|grain| *grain as usize);
-        let rows = self.loads.iter().zip(&self.accounts);
-        for (i, (body, (load, account))) in indices.clone().zip(self.bodies.iter().zip(rows)) {
-            grains.position[i] = vector(body.position);
-            grains.velocity[i] = vector(body.velocity);
-            grains.spin[i] = vector(body.spin);
-            grains.force[i] = vector(load.force);
-            grains.torque[i] = vector(load.torque);
-            grains.rolling_torque[i] = vector(load.rolling);
-            grains.contact_count[i] = load.contact_count() as u32;
-            grains.exchanged[i] = account.exchanged;
-        }
-        let wet = self.bridge_loads.iter().zip(&self.films);
-        for (i, ([viscous, capillary, open], film)) in indices.zip(wet) {
-            grains.film[i] = *film;
-            grains.open_bridges[i] = *open as u32;
-            grains.liquid_loss[i] = [*viscous, *capillary];
-        }
+        self.store_grains(pool, &mut world.grains);
+        self.store_contacts(pool, &mut world.contacts);
         world.ledger.ruptures += self.ruptures;
-        world.contacts.clear();
-        self.collect_contacts(pool, &mut world.contacts);
     }
 
     /// Of several grains the one of lowest index, so that the message does not depend on slots.
@@ -202,99 +180,6 @@ impl<S: LawSource> Kernel for SphereKernel<S> {
 }
 
 impl<S: LawSource> SphereKernel<S> {
-    /// Rows of the grains, slot by slot, and of the padding body.
-    fn load_grains(&mut self, pool: &mut WorkerPool, world: &World) {
-        let (grains, dt) = (&world.grains, world.clock.time_step);
-        let count = grains.len();
-        for bodies in [&mut self.bodies, &mut self.next_bodies] {
-            bodies.resize(count + 1, Sphere::default());
-            bodies[count] = Sphere::default();
-        }
-        self.loads.resize(count, SphereLoad::default());
-        self.accounts.resize(count, SphereAccount::default());
-        let ranges = pool.ranges(count, 1);
-        let rows = split_once(&mut self.loads, ranges.iter().cloned())
-            .zip(split_once(&mut self.accounts, ranges.iter().cloned()));
-        let rows = split_once(&mut self.bodies, ranges.iter().cloned()).zip(rows);
-        let shares = ranges.iter().cloned().zip(rows).collect();
-        let indices = self.slots.grains();
-        pool.map(shares, |(range, (bodies, (loads, accounts)))| {
-            let rows = bodies.iter_mut().zip(loads.iter_mut().zip(accounts));
-            for ((body, (load, account)), grain) in rows.zip(&indices[range]) {
-                let i = *grain as usize;
-                *body = Sphere::of(grains, i);
-                *load = SphereLoad::of(grains, i);
-                *account = SphereAccount::of(grains, i, dt);
-            }
-        });
-    }
-
-    /// Films, bridges and what bridges have done; the lists reach as far as any bridge can.
-    fn load_liquid(&mut self, world: &World) {
-        self.liquid = world.wetting().copied();
-        self.films.clear();
-        self.next_films.clear();
-        self.bridge_loads.clear();
-        self.ruptures = 0;
-        let Some(liquid) = self.liquid else {
-            self.neighbours.set_reach(None);
-            return;
-        };
-        let grains = &world.grains;
-        for i in self.slots.grains().iter().map(|grain| *grain as usize) {
-            let [viscous, capillary] = grains.liquid_loss[i];
-            let open = f64::from(grains.open_bridges[i]);
-            self.bridge_loads.push([viscous, capillary, open]);
-            self.films.push(grains.film[i]);
-        }
-        self.films.push(0.0);
-        self.next_films.clone_from(&self.films);
-        self.neighbours
-            .set_reach(Some(largest_reach(world, &liquid)));
-        self.adopt_bridges(world, &liquid);
-    }
-
-    /// Makes the pairs of `world` the listed ones, so that the next refresh keeps all that bridges
-    /// hold.
-    fn adopt_bridges(&mut self, world: &World, liquid: &Liquid) {
-        let mut kinds = BridgeKinds::of(liquid);
-        let mut rows = Vec::new();
-        for contact in &world.contacts {
-            let Partner::Grain(partner) = contact.partner else {
-                continue;
-            };
-            let radius = &world.grains.radius;
-            let radii = (radius[contact.grain as usize], radius[partner as usize]);
-            let bridge = contact.bridge.as_ref();
-            let bridge = bridge.map_or(BridgeRow::default(), |bridge| {
-                BridgeRow::of(bridge, &mut kinds, radii)
-            });
-            let pair = self.pair(contact, self.slots.slot_of(partner));
-            rows.push((pair, bridge));
-        }
-        rows.sort_unstable_by_key(|(pair, ..)| pair.key());
-        let mut list = SpherePairs {
-            springs: vec![UNLOADED; rows.len()],
-            rolling: vec![UNLOADED; rows.len()],
-            bridges: Bridges::none(rows.len()),
-            ..SpherePairs::default()
-        };
-        for (k, (pair, bridge)) in rows.into_iter().enumerate() {
-            list.pairs.push(pair);
-            list.bridges.set(k, &bridge);
-        }
-        self.neighbours.adopt(list);
-    }
-
-    /// The pair of a contact with this partner; its kind does not matter.
-    fn pair<P>(&self, contact: &Contact, partner: P) -> SpherePair<P> {
-        SpherePair {
-            grain: self.slots.slot_of(contact.grain),
-            partner,
-            kind: PairKind::default(),
-        }
-    }
-
     /// Makes the lists fit the positions that were just loaded.
     fn fit_lists(&mut self, pool: &mut WorkerPool, world: &World) {
         if self.liquid.is_some() || !self.neighbours.inner_covers(&self.bodies, &self.walls) {
@@ -303,25 +188,6 @@ impl<S: LawSource> SphereKernel<S> {
         self.kinds.compute(self.source, world);
         let slack = self.neighbours.slack();
         self.motion.slack_squared = slack * slack;
-    }
-
-    /// The contacts of the grains, sorted by grain and partner.
-    fn collect_contacts(&self, pool: &mut WorkerPool, contacts: &mut Vec<Contact>) {
-        let ranges = pool.ranges(self.loads.len(), 1);
-        let found = pool.map(ranges, |range| {
-            let mut found = Vec::new();
-            for i in range {
-                let parts = self.neighbours.parts.of(self.slots.slot_of(i as u32));
-                let contact = |part: &Part| self.neighbours.contact(*part, &self.slots);
-                found.extend(parts.iter().filter_map(contact));
-            }
-            found
-        });
-        let count = found.iter().map(Vec::len).sum();
-        contacts.reserve(count);
-        for mut own in found {
-            contacts.append(&mut own);
-        }
     }
 
     /// Brings the lists up to date with the positions; returns how often neighbours were searched
@@ -372,17 +238,4 @@ impl<S: LawSource> SphereKernel<S> {
             None
         }
     }
-}
-
-/// Largest gap that a bridge of `world` can hold [m], for the largest grains and the thickest
-/// films.
-fn largest_reach(world: &World, liquid: &Liquid) -> f64 {
-    let largest = |column: &[f64]| column.iter().copied().fold(0.0, f64::max);
-    let (radius, film) = (largest(&world.grains.radius), largest(&world.grains.film));
-    let (first, second) = contributions(liquid, (radius, radius), (film, film));
-    let held = world.contacts.iter().filter_map(|c| c.bridge.as_ref());
-    let volume = held
-        .map(|bridge| bridge.volume)
-        .fold(first + second, f64::max);
-    rupture_gap(liquid, (radius, radius), volume)
 }

@@ -29,7 +29,7 @@ use super::super::walls::Walls;
 use super::super::workers::WorkerPool;
 use super::kinds::{KindFinder, Kinds};
 use super::pair_list::{PairOrder, SpherePairs, fill_group};
-use super::parts::{Part, Parts};
+use super::parts::Parts;
 use super::rows::{PairKind, Slot, Sphere, SpherePair, WallId};
 use super::slots::Slots;
 use crate::world::{Contact, Partner, Surface};
@@ -121,11 +121,41 @@ impl Neighbours {
             })
     }
 
-    /// The pair of which a grain has this part as a contact, if it touches or has a bridge and the
-    /// grain is its first partner.
-    pub fn contact(&self, part: Part, slots: &Slots) -> Option<Contact> {
-        let index = part.pair();
-        let bridge = self.grains.bridges.get(index).bridge();
+    /// The contacts of which the grain in this slot is the first partner, in the order of the
+    /// partners.
+    pub fn contacts_of<'a>(
+        &'a self,
+        slot: Slot,
+        slots: &'a Slots,
+    ) -> impl Iterator<Item = Contact> + use<'a> {
+        self.held_pairs(slot)
+            .map(|index| self.contact(index, slots))
+    }
+
+    /// How many there are.
+    pub fn contact_count(&self, slot: Slot) -> usize {
+        self.held_pairs(slot).count()
+    }
+
+    /// The pairs of which the grain in this slot is the first partner and that touch or have a
+    /// bridge.
+    fn held_pairs(&self, slot: Slot) -> impl Iterator<Item = usize> {
+        let pairs = self
+            .parts
+            .as_first(slot.index())
+            .iter()
+            .map(|part| part.pair());
+        pairs.filter(|index| {
+            let rolling = match index.checked_sub(self.grains.pairs.len()) {
+                None => self.grains.rolling[*index],
+                Some(k) => self.walls.rolling[k],
+            };
+            rolling[3] > 0.0 || self.grains.bridges.get(*index).exists()
+        })
+    }
+
+    /// The pair of this number as a contact.
+    fn contact(&self, index: usize, slots: &Slots) -> Contact {
         let (grain, partner, history) = match index.checked_sub(self.grains.pairs.len()) {
             None => {
                 let pair = self.grains.pairs[index];
@@ -139,17 +169,16 @@ impl Neighbours {
             }
         };
         let [spring, rolling, force] = history;
-        let touching = rolling[3] > 0.0;
-        ((touching || bridge.is_some()) && part.side() == 0).then(|| Contact {
+        Contact {
             grain: slots.grain_in(grain),
             partner,
             spring: vector(spring),
             stiffness: spring[3],
             rolling: vector(rolling),
             force: vector(force),
-            touching,
-            bridge,
-        })
+            touching: rolling[3] > 0.0,
+            bridge: self.grains.bridges.get(index).bridge(),
+        }
     }
 
     /// Says how far bridges reach [m], none where nothing is wet. The lists follow at the next
@@ -161,38 +190,30 @@ impl Neighbours {
         }
     }
 
-    /// Gives the listed pairs the histories of these contacts; all others have none.
-    pub fn load_histories(&mut self, contacts: &[Contact], slots: &Slots) {
-        self.grains.forget();
-        self.walls.forget();
-        // Contacts come, as a rule, in the order of the parts.
-        let (mut grain, mut next) = (u32::MAX, 0);
-        for contact in contacts {
-            if contact.grain != grain {
-                (grain, next) = (contact.grain, 0);
-            }
-            let own = self.parts.as_first(slots.slot_of(grain).index());
-            let is_of = |place: &usize| self.partner(own[*place].pair(), slots) == contact.partner;
-            let Some(place) = (next..own.len()).chain(0..next).find(is_of) else {
-                continue;
-            };
-            let index = own[place].pair();
-            next = place + 1;
-            let spring = row(contact.spring, contact.stiffness);
-            let rolling = row(contact.rolling, f64::from(contact.touching));
-            match index.checked_sub(self.grains.pairs.len()) {
-                None => self.grains.remember(index, spring, rolling),
-                Some(k) => self.walls.remember(k, spring, rolling),
-            }
-        }
-    }
-
-    /// The second side of the listed pair of this index.
-    fn partner(&self, index: usize, slots: &Slots) -> Partner {
-        match index.checked_sub(self.grains.pairs.len()) {
-            None => Partner::Grain(slots.grain_in(self.grains.pairs[index].partner)),
-            Some(k) => Partner::Wall(self.walls.pairs[k].partner.0),
-        }
+    /// Gives the listed pairs the histories of these contacts, sorted by grain; all others have
+    /// none.
+    pub fn load_histories(&mut self, pool: &mut WorkerPool, contacts: &[Contact], slots: &Slots) {
+        let first = first_contacts(contacts, slots.grains().len());
+        let history = |slot: Slot, partner: Partner| {
+            // Padding is no grain.
+            let grain = slots
+                .grains()
+                .get(slot.index())
+                .map(|grain| *grain as usize)?;
+            let own = &contacts[first[grain]..first[grain + 1]];
+            let contact = own.iter().find(|contact| contact.partner == partner)?;
+            let touching = f64::from(contact.touching);
+            Some([
+                row(contact.spring, contact.stiffness),
+                row(contact.rolling, touching),
+            ])
+        };
+        self.grains.remember(pool, |pair| {
+            history(pair.grain, Partner::Grain(slots.grain_in(pair.partner)))
+        });
+        self.walls.remember(pool, |pair| {
+            history(pair.grain, Partner::Wall(pair.partner.0))
+        });
     }
 
     /// Takes over pairs with their bridges, sorted by their slots, whatever was listed
@@ -422,6 +443,19 @@ impl OuterSearch<'_> {
         }
         (of_grains, at_walls)
     }
+}
+
+/// Where the contacts of each of so many grains begin among `contacts`, which are sorted by grain,
+/// and where those of the last one end.
+fn first_contacts(contacts: &[Contact], grains: usize) -> Vec<usize> {
+    let mut first = vec![0; grains + 1];
+    for contact in contacts {
+        first[contact.grain as usize + 1] += 1;
+    }
+    for grain in 0..grains {
+        first[grain + 1] += first[grain];
+    }
+    first
 }
 
 /// The pairs whose kind is not known yet.

@@ -69,21 +69,35 @@ where
     }
 }
 
+impl<P: Sync> SpherePairs<P> {
+    /// Gives every pair the spring and the torque of rolling friction that `history` knows of it;
+    /// where it knows none, the two do not touch.
+    pub fn remember(
+        &mut self,
+        pool: &mut WorkerPool,
+        history: impl Fn(&SpherePair<P>) -> Option<[Row; 2]> + Sync,
+    ) {
+        let ranges = pool.ranges(self.pairs.len(), 1);
+        let rows = split_once(&mut self.springs, ranges.iter().cloned())
+            .zip(split_once(&mut self.rolling, ranges.iter().cloned()));
+        let shares = ranges.iter().cloned().zip(rows).collect();
+        let pairs = &self.pairs;
+        pool.map(
+            shares,
+            |(range, (springs, rolling)): (Range<usize>, (&mut [Row], &mut [Row]))| {
+                let rows = springs.iter_mut().zip(rolling);
+                for (pair, (spring, rolling)) in pairs[range].iter().zip(rows) {
+                    [*spring, *rolling] = history(pair).unwrap_or([UNLOADED; 2]);
+                }
+            },
+        );
+    }
+}
+
 impl<P> SpherePairs<P> {
     /// Spring, torque of rolling friction and force of the pair of this number.
     pub fn history(&self, k: usize) -> [Row; 3] {
         [self.springs[k], self.rolling[k], self.forces[k]]
-    }
-
-    /// Sets the first two.
-    pub fn remember(&mut self, k: usize, spring: Row, rolling: Row) {
-        (self.springs[k], self.rolling[k]) = (spring, rolling);
-    }
-
-    /// Nobody touches any more.
-    pub fn forget(&mut self) {
-        self.springs.fill(UNLOADED);
-        self.rolling.fill(UNLOADED);
     }
 }
 

@@ -51,12 +51,6 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The parts of the grain in this slot.
-    pub fn of(&self, slot: Slot) -> &[Part] {
-        let i = slot.index();
-        &self.list[self.first[i] as usize..self.first[i + 1] as usize]
-    }
-
     /// How many parts the grains before the `i`-th slot have.
     pub fn before(&self, i: usize) -> usize {
         self.first[i] as usize
