@@ -157,6 +157,12 @@ impl Coupling {
         self.normal[SUM / 4][SUM % 4]
     }
 
+    /// Both sides.
+    #[inline(always)]
+    pub fn sides(&self) -> [PackedPartner; 2] {
+        [PackedPartner::grain(self.first), self.second]
+    }
+
     /// Number of the pair among those of its worker.
     #[inline(always)]
     pub fn pair(&self) -> usize {
@@ -560,8 +566,9 @@ fn blocks_of<N: Lanes>(
 
 /// What the matrices of a worker's pairs make of motions.
 pub struct Product<'a> {
-    /// The worker's pairs.
-    pub couplings: &'a [Coupling],
+    /// Both sides of the worker's pairs: a product reads nothing else of them but what their assembly
+    /// left, of which there is much.
+    pub sides: &'a [[PackedPartner; 2]],
     /// What their assembly left.
     pub columns: &'a [f64],
     /// A motion of every body; walls have none.
@@ -598,10 +605,9 @@ impl Product<'_> {
         factor: Option<f64>,
     ) -> [[N::Quad; WIDEST]; 3] {
         let columns = &self.columns[start * COLUMNS..][..COLUMNS * N::COUNT];
-        let own = group::<N, _>(&self.couplings[start..end]);
-        let firsts = side_by_side::<N, _>(|k| PackedPartner::grain(own[k].first));
-        let first = self.side::<N>(processor, firsts);
-        let second = self.side::<N>(processor, side_by_side::<N, _>(|k| own[k].second));
+        let own = group::<N, _>(&self.sides[start..end]);
+        let first = self.side::<N>(processor, side_by_side::<N, _>(|k| own[k][0]));
+        let second = self.side::<N>(processor, side_by_side::<N, _>(|k| own[k][1]));
         let zero = N::splat(processor, 0.0);
         let mut between = [zero; 3];
         for k in 0..3 {
@@ -626,7 +632,7 @@ impl Product<'_> {
     /// The pairs that are taken together, from each first to each end.
     #[inline(always)]
     fn groups<N: Lanes>(&self) -> impl Iterator<Item = [usize; 2]> + use<N> {
-        let count = self.couplings.len();
+        let count = self.sides.len();
         (0..count)
             .step_by(N::COUNT)
             .map(move |start| [start, (start + N::COUNT).min(count)])
@@ -663,7 +669,9 @@ impl Work for Image<'_> {
 pub struct Final<'a> {
     /// Length of the step [s].
     pub dt: f64,
-    /// The pairs and the changes `Δu`.
+    /// The worker's pairs.
+    pub couplings: &'a [Coupling],
+    /// What they make of the changes `Δu`.
     pub product: Product<'a>,
     /// Position, velocity and spin of every wall.
     pub walls: &'a [[Row; 3]],
@@ -679,7 +687,7 @@ impl Work for Final<'_> {
         let factor = Some(-1.0 / self.dt);
         for [start, end] in self.product.groups::<N>() {
             let found = self.product.of_group::<N>(processor, [start, end], factor);
-            for (k, coupling) in self.product.couplings[start..end].iter().enumerate() {
+            for (k, coupling) in self.couplings[start..end].iter().enumerate() {
                 let wrench = wrench_of::<N>(&found, k);
                 let effect = &mut self.forces[coupling.pair()];
                 effect.force = wrench.force;

@@ -272,6 +272,7 @@ impl Workspace {
                 forces[own].set_stiffness(coupling.stiffness());
                 implicit.resisting[first + own] = true;
                 implicit.slots[first + own] = implicit.base + self.joint.couplings.len() as u32;
+                self.joint.sides.push(coupling.sides());
                 self.joint.couplings.push(coupling);
             }
         }

@@ -66,6 +66,7 @@ use super::bodies::{Body, Load};
 use super::couplings::{Blocks, Coupling, Motion, Symmetric, Wrench};
 use super::gaps::Gap;
 use super::neighbours::PairsOfBodies;
+use super::pairs::PackedPartner;
 use crate::lanes::{Lanes, Work};
 use std::ops::Range;
 
@@ -84,6 +85,8 @@ const TOLERANCE: f64 = 1e-3;
 pub struct Joint {
     /// Its pairs.
     pub couplings: Vec<Coupling>,
+    /// Their sides.
+    pub sides: Vec<[PackedPartner; 2]>,
     /// The gaps of its pairs that close within the step.
     pub gaps: Vec<Gap>,
     /// Their matrices, as many side by side as there are lanes.
@@ -100,6 +103,7 @@ impl Joint {
     /// Begins a step.
     pub fn clear(&mut self) {
         self.couplings.clear();
+        self.sides.clear();
         self.gaps.clear();
         self.progress = Progress::default();
     }
@@ -290,13 +294,14 @@ fn gather(links: &[u32], wrenches: &[Wrench]) -> Six {
     let (mut force, mut torque) = ([0.0; 4], [0.0; 4]);
     for link in links {
         let wrench = &wrenches[(link / 2) as usize];
-        if link % 2 == 0 {
-            force = along(&force, 1.0, &wrench.force);
-            torque = along(&torque, 1.0, &wrench.first);
+        // No branch: which side a body is cannot be foretold.
+        let (sign, turn) = if link % 2 == 0 {
+            (1.0, &wrench.first)
         } else {
-            force = along(&force, -1.0, &wrench.force);
-            torque = along(&torque, 1.0, &wrench.second);
-        }
+            (-1.0, &wrench.second)
+        };
+        force = along(&force, sign, &wrench.force);
+        torque = along(&torque, 1.0, turn);
     }
     [force, torque]
 }

@@ -448,13 +448,14 @@ impl PolyhedraShare<'_> {
             &joint.motions
         };
         let product = Product {
-            couplings: &own.couplings,
+            sides: &own.sides,
             columns: &own.columns,
             motions: motions.read(phase),
         };
         if is_done {
             processor.run(Final {
                 dt: self.common.dt,
+                couplings: &own.couplings,
                 product,
                 walls: &self.wall_motions,
                 forces: self.resistances.write_first(phase),
