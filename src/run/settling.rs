@@ -192,12 +192,20 @@ impl Settling {
         let decades = |from: f64, to: f64| {
             ((from / agitation.max(1e-300)).ln() / (from / to).ln()).clamp(0.0, 1.0) as f32
         };
+        // Where falling and calming end, about.
+        let [fallen, calmed] = if self.world.grains.len() < LARGE {
+            [0.3, 0.8]
+        } else {
+            [0.5, 0.65]
+        };
+        let between = |from: f32, to: f32, part: f32| from + (to - from) * part.min(1.0);
         match self.stage {
             SettlingStage::Falling => {
-                0.3 * (self.world.clock.step as f32 / self.fall as f32).min(1.0)
+                let part = self.world.clock.step as f32 / self.fall as f32;
+                between(0.0, fallen, part)
             }
-            SettlingStage::Calming => 0.3 + 0.5 * decades(1.0, CREEPING),
-            SettlingStage::Relaxing { .. } => 0.8 + 0.2 * decades(CREEPING, QUIET),
+            SettlingStage::Calming => between(fallen, calmed, decades(1.0, CREEPING)),
+            SettlingStage::Relaxing { .. } => between(calmed, 1.0, decades(CREEPING, QUIET)),
             SettlingStage::AtRest => 1.0,
         }
     }
