@@ -49,7 +49,7 @@ pub fn needs_settling(scene: &Scene) -> bool {
 }
 
 /// The step with which the bed of `scene` settles [s]: that of the dry scene, whatever its liquid asks
-/// for.
+/// for; the *fast* one for a [`LARGE`] bed, where the scene leaves the step to the program.
 pub fn settling_step(scene: &Scene) -> f64 {
     let time_step = match scene.time_step {
         TimeStep::Automatic if scene.grain_count() >= LARGE => TimeStep::Fast,
