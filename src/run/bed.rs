@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 /// Raised whenever the file's layout, the settling or the solver's arithmetic changes: older beds
 /// are then stale.
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 const MAGIC: &[u8; 12] = b"grainfallbed";
 /// Largest file that is read [bytes]: the bed of as many grains as a scene may have.
 const LARGEST_FILE: u64 = 1 << 30;

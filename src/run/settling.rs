@@ -52,7 +52,7 @@ pub fn needs_settling(scene: &Scene) -> bool {
 /// for; the *fast* one for a [`LARGE`] bed, where the scene leaves the step to the program.
 pub fn settling_step(scene: &Scene) -> f64 {
     let time_step = match scene.time_step {
-        TimeStep::Automatic if scene.grain_count() >= LARGE => TimeStep::Fast,
+        TimeStep::Automatic | TimeStep::Following if scene.grain_count() >= LARGE => TimeStep::Fast,
         asked => asked,
     };
     let dry = Scene {
@@ -335,7 +335,10 @@ mod tests {
         let standard = advise(&scene).time_step;
         assert_eq!(settling_step(&scene), standard);
         scene = box_of(10_000);
-        assert_eq!(settling_step(&scene), 1.5 * standard);
+        for left_to_us in [TimeStep::Automatic, TimeStep::Following] {
+            scene.time_step = left_to_us;
+            assert_eq!(settling_step(&scene), 1.5 * standard);
+        }
         scene.time_step = TimeStep::Given(1e-6);
         assert_eq!(settling_step(&scene), 1e-6);
     }
