@@ -83,6 +83,30 @@ impl Estimate {
         }
     }
 
+    /// A single run's result with the relative scatter of `others`, means over equal runs of other
+    /// cases: their `s²/mean²`, each weighed by its degrees of freedom. As it stands where none of
+    /// them has an error.
+    #[must_use]
+    pub fn scattering_as(self, others: impl IntoIterator<Item = Self>) -> Self {
+        let known = others.into_iter().filter_map(|other| {
+            let variance = other.error?.powi(2) * other.samples as f64;
+            let relative = variance / other.mean.powi(2);
+            relative.is_finite().then_some((relative, other.freedom))
+        });
+        let (sum, freedom) = known.fold((0.0, 0), |(sum, all), (relative, own)| {
+            (sum + relative * own as f64, all + own)
+        });
+        if freedom == 0 {
+            return self;
+        }
+        Self {
+            error: Some(self.mean.abs() * (sum / freedom as f64).sqrt()),
+            samples: 1,
+            freedom,
+            ..self
+        }
+    }
+
     /// The same in a unit of which the SI unit holds `factor`.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {

@@ -169,7 +169,7 @@ impl CaseResult {
     }
 }
 
-/// What running `case` takes.
+/// What running `case` on one thread takes.
 pub fn job(sweep: &Sweep, case: &Case) -> Job {
     Job {
         threads: 1,
@@ -218,18 +218,23 @@ fn stated_method(folder: &Path) -> Result<Option<String>, RunnerError> {
     Ok(summary["method"].as_str().map(str::to_owned))
 }
 
-/// Runs `case`, from its checkpoint where there is one, until it is done or `stop` says so; a
-/// finished one is only read. None where it was stopped while its bed was settling.
+/// Runs `case` on so many `threads`, from its checkpoint where there is one, until it is done or
+/// `stop` says so; a finished one is only read. None where it was stopped while its bed was
+/// settling.
 ///
 /// # Errors
 /// When the input asks for something that cannot be, or a file cannot be written.
 pub fn run(
     sweep: &Sweep,
     case: &Case,
+    threads: usize,
     watch: &mut dyn Watch,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<CaseResult>, RunnerError> {
-    let job = job(sweep, case);
+    let job = Job {
+        threads,
+        ..job(sweep, case)
+    };
     let finished = runner::run(&job, watch, stop);
     let (finished, run) = finished.map_err(|error| error.within(&case.name))?;
     let (ending, results) = (finished.ending, finished.results);

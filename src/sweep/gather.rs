@@ -67,7 +67,7 @@ fn in_folder(sweep: &Sweep, case: &Case) -> Result<(Option<CaseResult>, Standing
     if standing != Standing::Done {
         return Ok((None, standing));
     }
-    match case::run(sweep, case, &mut (), &|| true) {
+    match case::run(sweep, case, 1, &mut (), &|| true) {
         // Somebody has begun to read or to run it since.
         Err(RunnerError::Output(OutputError::Taken { holder, .. })) => {
             Ok((None, Standing::Taken(holder)))

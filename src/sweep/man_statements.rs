@@ -8,7 +8,7 @@ use super::ensemble::Ensemble;
 use super::statements::{Part, Statement};
 use crate::measure::{
     CRITICAL_ASPECT_RATIO, DepositShape, Estimate, Measure, PEAK_TIME_LAW, Quantity, REST_TIME_LAW,
-    RunQuantity, TALL_ASPECT_RATIO, TALL_REST_TIME_LAW, Verdict, cone_volume_law,
+    ResultKey, RunQuantity, TALL_ASPECT_RATIO, TALL_REST_TIME_LAW, Verdict, cone_volume_law,
     contact_shares_law, run_out_law,
 };
 use crate::scene::{SceneContainer, SceneGrains};
@@ -40,13 +40,18 @@ struct Fallen<'a> {
     /// Effective aspect ratio.
     effective: f64,
     ensemble: &'a Ensemble<'a>,
+    /// What it stands among.
+    all: &'a [&'a Ensemble<'a>],
 }
 
 /// The statements for which `ensembles` has columns of polyhedra.
 pub fn column_statements<'a>(
     ensembles: impl IntoIterator<Item = &'a Ensemble<'a>>,
 ) -> Vec<Statement> {
-    let mut columns: Vec<Fallen> = ensembles.into_iter().filter_map(Fallen::of).collect();
+    let all: Vec<&Ensemble> = ensembles.into_iter().collect();
+    let mut columns: Vec<Fallen> = (all.iter())
+        .filter_map(|ensemble| Fallen::of(ensemble, &all))
+        .collect();
     columns.sort_by(|a, b| a.effective.total_cmp(&b.effective));
     let columns = Columns(columns);
     let all = [
@@ -63,7 +68,7 @@ pub fn column_statements<'a>(
 }
 
 impl<'a> Fallen<'a> {
-    fn of(ensemble: &'a Ensemble<'a>) -> Option<Self> {
+    fn of(ensemble: &'a Ensemble<'a>, all: &'a [&'a Ensemble<'a>]) -> Option<Self> {
         let scene = &ensemble.first().case.scene;
         let (SceneContainer::Column { height, .. }, SceneGrains::Voronoi(cells)) =
             (&scene.container, &scene.grains)
@@ -75,16 +80,30 @@ impl<'a> Fallen<'a> {
             share: cells.species.get(1).map_or(0.0, |kind| kind.share),
             effective: ensemble.mean(RunQuantity::EffectiveAspectRatio)?,
             ensemble,
+            all,
         })
     }
 
-    fn get(&self, quantity: RunQuantity) -> Option<Estimate> {
-        self.ensemble.estimate(quantity)
+    /// A result. One column alone says nothing of its error: it is given the relative scatter of
+    /// the columns of several seeds.
+    fn get(&self, key: impl Into<ResultKey>) -> Option<Estimate> {
+        let key = key.into();
+        let own = self.ensemble.estimate(key)?;
+        Some(if own.error.is_some() {
+            own
+        } else {
+            own.scattering_as(self.all.iter().filter_map(|other| other.estimate(key)))
+        })
     }
 
     fn place(&self) -> String {
+        let seeds = if self.ensemble.members.len() == 1 {
+            ", one seed"
+        } else {
+            ""
+        };
         format!(
-            "H = {} mm, {} % of rough grains{}",
+            "H = {} mm, {} % of rough grains{}{seeds}",
             rounded(self.height),
             rounded(100.0 * self.share),
             self.friction()
@@ -156,7 +175,7 @@ impl<'a> Fallen<'a> {
             (Measure::SecondPairs, second),
         ];
         let part = |(measure, law): (Measure, f64)| {
-            let own = self.ensemble.estimate(measure)?;
+            let own = self.get(measure)?;
             let bounds = law - tolerance..law + tolerance;
             Some(Part {
                 place: self.place(),

@@ -218,7 +218,7 @@ pub fn run_case(
     case::check_method(sweep, std::slice::from_ref(case))?;
     SweepFolder::open(sweep, std::slice::from_ref(case))?;
     let stop = || interrupted.load(Ordering::Relaxed);
-    let outcome = case::run(sweep, case, watch, &stop)?;
+    let outcome = case::run(sweep, case, 1, watch, &stop)?;
     let ending = outcome.map_or(Ending::Interrupted, |outcome| outcome.ending);
     Ok((case.name.clone(), ending))
 }
@@ -285,6 +285,13 @@ fn means<'a, 'b>(ensembles: &'a [Ensemble<'b>]) -> &'a [Ensemble<'b>] {
     if has_seeds { ensembles } else { &[] }
 }
 
+/// How many of so many `cases` run at the same time, and on how many threads each, where `jobs` may:
+/// fewer cases than that share them.
+fn shared_out(jobs: usize, cases: usize) -> (usize, usize) {
+    let at_once = jobs.clamp(1, cases.max(1));
+    (at_once, (jobs / at_once).max(1))
+}
+
 /// Runs the cases in this `order`, each that is done handed to `keep`; returns what became of them
 /// in their own.
 fn run_cases(
@@ -296,6 +303,7 @@ fn run_cases(
     keep: &Keep,
 ) -> Result<Vec<CaseResult>, RunnerError> {
     let shares: Vec<CaseProgress> = cases.iter().map(|_| CaseProgress::default()).collect();
+    let (at_once, threads) = shared_out(sweep.jobs, order.len());
     let waiting = Mutex::new(VecDeque::from(order));
     let next = || {
         let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
@@ -306,11 +314,11 @@ fn run_cases(
     let results = Mutex::new(Vec::new());
     let follower = std::thread::current();
     std::thread::scope(|scope| {
-        for _ in 0..sweep.jobs.clamp(1, cases.len().max(1)) {
+        for _ in 0..at_once {
             scope.spawn(|| {
                 while let Some(index) = next().filter(|_| !stop()) {
                     let mut share = &shares[index];
-                    let result = case::run(sweep, &cases[index], &mut share, &stop);
+                    let result = case::run(sweep, &cases[index], threads, &mut share, &stop);
                     let result = result.and_then(|outcome| kept(outcome, keep));
                     if let Err(RunnerError::Output(OutputError::Taken { .. })) = result {
                         // Another sweep is at it: its outcome is read when that is done.
@@ -383,5 +391,28 @@ fn follow(
                 spoken(left)
             )
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shared_out;
+
+    #[test]
+    fn fewer_cases_than_jobs_share_them() {
+        for (jobs, cases, expected) in [
+            (2, 1, (1, 2)),
+            (2, 2, (2, 1)),
+            (2, 9, (2, 1)),
+            (16, 3, (3, 5)),
+            (4, 0, (1, 4)),
+            (0, 3, (1, 1)),
+        ] {
+            assert_eq!(
+                shared_out(jobs, cases),
+                expected,
+                "{jobs} jobs, {cases} cases"
+            );
+        }
     }
 }

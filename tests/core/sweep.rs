@@ -323,7 +323,12 @@ fn cases_run_one_by_one_and_merged_are_the_sweep_to_the_bit() {
         sweep
     };
     let never = AtomicBool::new(false);
-    run(&tied(&whole), &never).unwrap();
+    // Four threads for each of the four, one for each of the parts.
+    let shared = Sweep {
+        jobs: 16,
+        ..tied(&whole)
+    };
+    run(&shared, &never).unwrap();
     let parts = tied(&parts);
     assert_eq!(sweep::count(&parts).unwrap(), 4);
     let message = sweep::merge(&parts).unwrap_err().to_string();

@@ -21,7 +21,8 @@ pub struct PaperTask {
     /// Folder for the results [default: out/PAPER]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Cases that run at the same time, each on one thread [default: all cores]
+    /// Cases that run at the same time, each on one thread; fewer share as many [default: all
+    /// cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub threads: Option<u16>,
     /// A file that keeps the results beside the folder, a line for each case, such as

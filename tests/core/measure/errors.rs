@@ -248,6 +248,30 @@ fn the_mean_of_events_is_known_by_their_spread() {
     assert_eq!(Estimate::of_runs(&[28.0]).error, None);
 }
 
+/// One run of a case beside ten other cases of three runs each, all of which scatter by 2 %.
+#[test]
+fn a_single_run_is_given_the_scatter_of_cases_of_several() {
+    let run = |noise: &mut Noise, truth: f64| truth * (1.0 + 0.02 * noise.normal());
+    let alone = |noise: &mut Noise| {
+        let others = (1..=10).map(|case| {
+            let runs = [0; 3].map(|_| run(noise, f64::from(case)));
+            Estimate::of_runs(&runs)
+        });
+        let others: Vec<Estimate> = others.collect();
+        Estimate::too_short(run(noise, 5.0), 1).scattering_as(others)
+    };
+    let trials = Trials::many(10 * TRIALS, 5.0, alone);
+    trials.assert_right(0.1, 0.02, "one run");
+    // s²/mean² of 0.02 once and of 0.0001 twice.
+    let others = [&[9.0, 11.0][..], &[99.0, 101.0, 100.0], &[7.0]].map(Estimate::of_runs);
+    let one = Estimate::too_short(50.0, 1).scattering_as(others);
+    let expected = 50.0 * (0.0202_f64 / 3.0).sqrt();
+    assert_close(one.error.unwrap(), expected, 1e-12);
+    assert_eq!((one.mean, one.samples, one.freedom), (50.0, 1, 3));
+    let none = Estimate::too_short(50.0, 1);
+    assert_eq!(none.scattering_as([Estimate::of_runs(&[7.0])]), none);
+}
+
 #[test]
 fn a_ratio_has_the_relative_errors_of_both() {
     let of = |mean, error| Estimate {
