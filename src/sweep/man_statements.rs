@@ -40,7 +40,7 @@ struct Fallen<'a> {
     /// Effective aspect ratio.
     effective: f64,
     ensemble: &'a Ensemble<'a>,
-    /// What it stands among.
+    /// All ensembles, its own among them.
     all: &'a [&'a Ensemble<'a>],
 }
 

@@ -25,7 +25,7 @@ pub struct Sweep {
     pub variations: Vec<Variation>,
     /// The output folder.
     pub out: PathBuf,
-    /// Cases that run at the same time, each on one thread; fewer share as many.
+    /// Cases that run at the same time, each on one thread; fewer cases share the threads.
     pub jobs: usize,
     /// Where settled beds are looked for and kept.
     pub beds: BedStore,

@@ -21,7 +21,7 @@ pub struct PaperTask {
     /// Folder for the results [default: out/PAPER]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Cases that run at the same time, each on one thread; fewer share as many [default: all
+    /// Cases that run at the same time, each on one thread; fewer cases share the threads [default: all
     /// cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=512))]
     pub threads: Option<u16>,
