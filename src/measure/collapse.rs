@@ -24,6 +24,10 @@ pub struct Collapse {
     /// First time after that with a kinetic energy per grain below 1 % of the peak and the front
     /// within 1 % of `R_∞`, `t_f` [s]; none while it moves.
     pub rest_time: Option<f64>,
+    /// The same by the energy alone [s].
+    pub energy_rest_time: Option<f64>,
+    /// The same by the front alone [s].
+    pub front_rest_time: Option<f64>,
     /// Radius of the front in the last sample, `R_∞` of a column at rest [m].
     pub front: f64,
     /// Height in the last sample, `H_∞` of a column at rest [m].
@@ -42,13 +46,18 @@ impl Collapse {
         let peak =
             (0..energy.len()).reduce(|best, k| if energy[k] > energy[best] { k } else { best })?;
         let fronts = series.column(Measure::FrontRadius);
-        let rests = |k: &usize| {
-            energy[*k] < AT_REST * energy[peak] && (fronts[*k] - front).abs() <= STILL * front
+        let is_slow = |k: &usize| energy[*k] < AT_REST * energy[peak];
+        let is_there = |k: &usize| (fronts[*k] - front).abs() <= STILL * front;
+        let first = |is: &dyn Fn(&usize) -> bool| {
+            let found = (peak..energy.len()).find(is);
+            found.map(|k| series.time()[k])
         };
         Some(Self {
             peak_time: series.time()[peak],
             peak_energy: energy[peak],
-            rest_time: (peak..energy.len()).find(rests).map(|k| series.time()[k]),
+            rest_time: first(&|k| is_slow(k) && is_there(k)),
+            energy_rest_time: first(&is_slow),
+            front_rest_time: first(&is_there),
             front,
             height: last.value(Measure::DepositHeight),
         })

@@ -37,10 +37,15 @@ impl Summary {
 
     fn add_motion(&mut self, column: &InitialColumn, collapse: &Collapse) {
         let (peak, unit) = (collapse.peak_time, column.time_unit());
-        let rest = collapse.rest_time.unwrap_or(f64::NAN);
+        let or_none = |time: Option<f64>| time.unwrap_or(f64::NAN);
+        let rest = or_none(collapse.rest_time);
         self.add(RunQuantity::PeakEnergy, collapse.peak_energy);
         self.add(RunQuantity::PeakTime, peak);
         self.add(RunQuantity::RestTime, rest);
+        let by_energy = or_none(collapse.energy_rest_time);
+        self.add(RunQuantity::EnergyRestTime, by_energy);
+        let by_front = or_none(collapse.front_rest_time);
+        self.add(RunQuantity::FrontRestTime, by_front);
         self.add(RunQuantity::DimensionlessPeakTime, peak / unit);
         self.add(RunQuantity::DimensionlessRestTime, rest / unit);
     }

@@ -222,6 +222,22 @@ quantities! {
             format: Format::Fixed(2),
             scope: Scope::Columns,
         }
+        EnergyRestTime {
+            key: "rest time of the energy",
+            description: "first sample after the peak with a kinetic energy per grain below 1 % \
+                          of the peak, wherever the front is",
+            unit: units::TIME,
+            format: Format::Fixed(2),
+            scope: Scope::Columns,
+        }
+        FrontRestTime {
+            key: "rest time of the front",
+            description: "first sample after the peak with the front within 1 % of R_∞, however \
+                          fast grains are",
+            unit: units::TIME,
+            format: Format::Fixed(2),
+            scope: Scope::Columns,
+        }
         DimensionlessPeakTime {
             key: "T_max",
             description: "over √(R_i/g)",

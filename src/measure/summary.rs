@@ -89,6 +89,24 @@ impl SummaryEntry {
     }
 }
 
+#[cfg(test)]
+impl Summary {
+    /// Numbers that a run came to, without notes.
+    pub(crate) fn of_numbers(numbers: &[(ResultKey, f64)]) -> Self {
+        let entry = |(key, value): &(ResultKey, f64)| SummaryEntry {
+            key: *key,
+            value: Some(MeasuredValue::Number(*value)),
+            note: String::new(),
+        };
+        Self {
+            from: 20.0,
+            to: 50.0,
+            samples: 1500,
+            entries: numbers.iter().map(entry).collect(),
+        }
+    }
+}
+
 impl Summary {
     /// The entry of `key`, if the run has that result.
     pub fn entry(&self, key: impl Into<ResultKey>) -> Option<&SummaryEntry> {

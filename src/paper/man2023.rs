@@ -10,7 +10,8 @@ use crate::measure::{
 };
 use crate::physics::units;
 use crate::sweep::{
-    CaseResult, Ensemble, Sweep, TableColumn, column_statements, ensembles, statements_table,
+    CaseResult, ColumnMeasure, Columns, Ensemble, Sweep, TableColumn, column_statements, ensembles,
+    statements_table,
 };
 
 /// The paper. Springs and dashpots are taken implicitly, with steps as far from the shortest ones as
@@ -20,7 +21,7 @@ pub static MAN2023: Paper = Paper {
     source: "Man et al. 2023, the collapse of columns of grains of two frictions",
     scene: "column",
     settings: &["until=rest", "integrator=implicit", "output-interval=20ms"],
-    keys: &["mu11", "mu22", "height", "mix"],
+    keys: &["mu11", "mu22", "solid-fraction", "height", "mix"],
     readings: &[],
     beside: &[
         Beside {
@@ -42,17 +43,34 @@ pub static MAN2023: Paper = Paper {
     ],
     batches: &[
         Batch::new("h1", H1, MIXES, (1, 3)),
-        Batch::new("frictions", &["0.1", "0.1", "10mm"], &["0.3"], (1, 3)),
-        Batch::new("frictions", &["0.4", "0.8", "10mm"], &["0.3"], (1, 3)),
+        Batch::new(
+            "frictions",
+            &["0.1", "0.1", DENSE, "10mm"],
+            &["0.3"],
+            (1, 3),
+        ),
+        Batch::new(
+            "frictions",
+            &["0.4", "0.8", DENSE, "10mm"],
+            &["0.3"],
+            (1, 3),
+        ),
         Batch::new("h2", H2, MIXES, (1, 1)),
         Batch::new("h5", H5, MIXES, (1, 1)),
         Batch::new("h10", H10, &["0.3"], (1, 1)),
         Batch::new("h5", H5, MIXES, (2, 3)),
         Batch::new("h2", H2, MIXES, (2, 3)),
-        Batch::new("h20", &["0.1", "0.4", "200mm"], &["0.3"], (1, 1)),
+        Batch::new("loose", LOOSE_H1, MIXES, (1, 3)),
+        Batch::new("loose", LOOSE_H2, &["0.3"], (1, 3)),
+        Batch::new("loose", LOOSE_H5, MIXES, (1, 1)),
+        Batch::new("rough", &["0.6", "0.4", DENSE, "10mm"], &["0.3"], (1, 3)),
+        Batch::new("rough", &["0.6", "0.4", LOOSE, "10mm"], &["0.3"], (1, 3)),
+        Batch::new("rough", &["0.6", "0.4", DENSE, "50mm"], &["0.3"], (1, 1)),
+        Batch::new("rough", &["0.6", "0.4", LOOSE, "50mm"], &["0.3"], (1, 1)),
+        Batch::new("h20", &["0.1", "0.4", DENSE, "200mm"], &["0.3"], (1, 1)),
         Batch::new("h10", H10, &["0.1", "0.5"], (1, 1)),
         Batch::new("h10", H10, &["0.3"], (2, 3)),
-        Batch::new("h35", &["0.1", "0.4", "350mm"], &["0.3"], (1, 1)),
+        Batch::new("h35", &["0.1", "0.4", DENSE, "350mm"], &["0.3"], (1, 1)),
     ],
     small_settings: &[
         "duration=60ms",
@@ -70,10 +88,16 @@ pub static MAN2023: Paper = Paper {
     tables,
 };
 
-const H1: &[&str] = &["0.1", "0.4", "10mm"];
-const H2: &[&str] = &["0.1", "0.4", "20mm"];
-const H5: &[&str] = &["0.1", "0.4", "50mm"];
-const H10: &[&str] = &["0.1", "0.4", "100mm"];
+const H1: &[&str] = &["0.1", "0.4", DENSE, "10mm"];
+const H2: &[&str] = &["0.1", "0.4", DENSE, "20mm"];
+const H5: &[&str] = &["0.1", "0.4", DENSE, "50mm"];
+const H10: &[&str] = &["0.1", "0.4", DENSE, "100mm"];
+const LOOSE_H1: &[&str] = &["0.1", "0.4", LOOSE, "10mm"];
+const LOOSE_H2: &[&str] = &["0.1", "0.4", LOOSE, "20mm"];
+const LOOSE_H5: &[&str] = &["0.1", "0.4", LOOSE, "50mm"];
+/// The solid fractions of the paper: of its Figs. 5 to 14, and of its Figs. 15 and 16 beside it.
+const DENSE: &str = "0.8";
+const LOOSE: &str = "0.55";
 const MIXES: &[&str] = &["0.1", "0.3", "0.5"];
 
 /// The rows of the table behind those of the laws.
@@ -101,6 +125,8 @@ const CONE: TableColumn = TableColumn::of_run("V_cone/V_init", RunQuantity::Rela
 /// The tables, from the cases that are there.
 fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
     let ensembles = ensembles(sweep, outcomes);
+    let all: Vec<&Ensemble> = ensembles.iter().collect();
+    let columns_of = Columns::of(&ensembles, &all, ColumnMeasure::Usual);
     let table = |name, title, text| PaperTable { name, title, text };
     vec![
         table(
@@ -112,7 +138,7 @@ fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
         table(
             "statements",
             "Statements",
-            statements_table(&column_statements(&ensembles)),
+            statements_table(&column_statements(&columns_of)),
         ),
     ]
 }
@@ -185,4 +211,105 @@ fn columns(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
 
 fn nothing() -> String {
     NOTHING.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paper::{PaperJob, Selection};
+    use crate::sweep::Case;
+
+    /// Columns of 1 cm, of three seeds each, that fall as `results` say of their solid fraction, off by
+    /// a hundredth from seed to seed, and the table of their statements.
+    fn statements(results: impl Fn(f64) -> Vec<(RunQuantity, f64)>) -> String {
+        let selection = Selection {
+            parts: vec!["h1".to_owned(), "loose".to_owned()],
+            only: Some("height=10mm".to_owned()),
+            ..Selection::default()
+        };
+        let job = PaperJob::new(&MAN2023, &selection, "nowhere".into(), 1).unwrap();
+        let outcome = |case: &Case| {
+            let by = match case.values.last().unwrap().as_str() {
+                "1" => 0.99,
+                "2" => 1.0,
+                _ => 1.01,
+            };
+            let solid: f64 = case.values[2].parse().unwrap();
+            let mut numbers = vec![(RunQuantity::EffectiveAspectRatio.into(), 0.5)];
+            let own = results(solid).into_iter();
+            numbers.extend(own.map(|(key, value)| (key.into(), by * value)));
+            let results = Summary::of_numbers(&numbers);
+            CaseResult::kept(case, results, String::new(), String::new())
+        };
+        let cases = crate::sweep::cases(job.sweep()).unwrap();
+        assert_eq!(cases.len(), 18);
+        let outcomes: Vec<CaseResult> = cases.iter().map(outcome).collect();
+        let tables = tables(job.sweep(), &outcomes);
+        let found = tables.into_iter().find(|own| own.name == "statements");
+        found.unwrap().text
+    }
+
+    /// The verdict in the row of a statement that begins so.
+    fn verdict<'a>(table: &'a str, statement: &str) -> &'a str {
+        let row = table
+            .lines()
+            .find(|row| row.starts_with(&format!("| {statement}")));
+        let row = row.unwrap_or_else(|| panic!("no {statement} in {table}"));
+        row.split('|').nth(2).unwrap().trim()
+    }
+
+    #[test]
+    fn loose_columns_are_judged_by_their_own_laws_and_beside_dense_ones_like_them() {
+        let root = 0.5_f64.sqrt();
+        let as_stated = statements(|solid| {
+            let (run_out, factors) = if solid < 0.6 {
+                (0.30, [0.92, 3.0])
+            } else {
+                (0.40, [1.5, 4.5])
+            };
+            vec![
+                (RunQuantity::RunOut, run_out),
+                (RunQuantity::PeakTime, 0.05 * factors[0]),
+                (RunQuantity::RestTime, 0.05 * factors[1]),
+                (RunQuantity::DimensionlessPeakTime, root * factors[0]),
+                (RunQuantity::DimensionlessRestTime, root * factors[1]),
+            ]
+        });
+        for statement in [
+            "At φ_i 0.55 T_max is 0.92 √α_eff",
+            "At φ_i 0.55 T_f is 3.0 √α_eff",
+            "T_f is 4.5 √α_eff below 3.5",
+            "A loose column is fastest sooner",
+            "A loose column is at rest sooner",
+            "A loose column runs out less far",
+            // 0.75 beside (0.55/0.8)^(1.35/2) = 0.777.
+            "Over φ_i^0.5 α_eff loose and dense",
+            "The run-out is about α_eff^1.35",
+        ] {
+            assert_eq!(verdict(&as_stated, statement), "holds", "{statement}");
+        }
+        let otherwise = statements(|solid| {
+            let run_out = if solid < 0.6 { 0.6 } else { 0.40 };
+            vec![
+                (RunQuantity::RunOut, run_out),
+                (RunQuantity::RestTime, run_out),
+                (RunQuantity::DimensionlessRestTime, root * 4.5),
+            ]
+        });
+        for statement in [
+            "At φ_i 0.55 T_f is 3.0 √α_eff",
+            "A loose column is at rest sooner",
+            "A loose column runs out less far",
+            "Over φ_i^0.5 α_eff loose and dense",
+        ] {
+            assert_eq!(
+                verdict(&otherwise, statement),
+                "does not hold",
+                "{statement}"
+            );
+        }
+        // What is stated of dense columns is not judged by loose ones.
+        let statement = "The run-out is about α_eff^1.35";
+        assert_eq!(verdict(&otherwise, statement), "holds");
+    }
 }

@@ -16,9 +16,11 @@
 //! | `kept_file` | the file that keeps results, a line for each case |
 //! | `kept_line` | what a line holds, and by what a case is known |
 //! | `registry` | the papers by name |
-//! | `kasper2021` | Kasper et al. 2021: its cases and tables |
-//! | `readings` | the readings of Kasper et al. 2021: likewise |
+//! | `man_readings` | what Man et al. 2023 leave open, read in several ways: cases and tables |
 //! | `man2023` | Man et al. 2023: likewise |
+//! | `kasper_readings` | what Kasper et al. 2021 leave open: likewise |
+//! | `kasper2021` | Kasper et al. 2021: likewise |
+//! | `readings` | tables of readings |
 //! | `document` | tables between the markers of a document |
 //! | `markdown` | rows of tables |
 //! | `plan` | what a paper is: cases by parts and seeds |
@@ -26,9 +28,11 @@
 mod document;
 mod job;
 mod kasper2021;
+mod kasper_readings;
 mod kept_file;
 mod kept_line;
 mod man2023;
+mod man_readings;
 mod markdown;
 mod plan;
 mod readings;

@@ -1,383 +1,98 @@
-//! The readings of Kasper et al. 2021: what its text leaves open or states twice, one departure at a
-//! time, and what becomes of its statements under each.
+//! What becomes of a paper's statements under each reading of it: the tables.
 //!
-//! In: what a reading sets, and the drums that it changes. Out: the cases, and tables of what they
-//! came to: the readings, numbers, verdicts on every statement and a score for each reading. Drums
-//! that a reading does not change are those of the paper as printed. Order of the cases: one seed of
-//! all readings first, then more seeds, then finer grains. Nothing is chosen by what it comes to.
+//! In: readings, each with the statements judged by its runs. Out: tables in Markdown: the readings,
+//! the verdict on every statement under each, and a score for each.
 //!
 //! The score counts a statement that holds as 1 and one that holds in part as 1/2. What is not decided
 //! may be either: so a score is a range, which narrows with more seeds.
 
 use super::markdown::{head, line};
-use super::plan::{Batch, Paper, PaperTable, Reading};
-use crate::measure::{DropThreshold, Measure, ResultKey, RunQuantity, Verdict, numeral::NOTHING};
-use crate::sweep::{
-    CaseResult, Drum, Drums, Ensemble, MeasuredBy, READING, Statement, Sweep, drum_statements,
-    ensembles,
-};
-
-/// The readings, as a paper of their own.
-pub static KASPER2021_READINGS: Paper = Paper {
-    name: "kasper2021-readings",
-    source: "Readings of Kasper, Magnanimo, de Jong, Beek, Jarray, Particuology (2021), doi 10.1016/j.partic.2020.12.001",
-    scene: "wet",
-    settings: &["duration=50s"],
-    keys: &[READING, "radius", "liquid"],
-    readings: READINGS,
-    beside: &[],
-    batches: &BATCHES,
-    small_settings: &[
-        "duration=1s",
-        "count=36",
-        "drum-radius=20mm",
-        "drum-width=16mm",
-        "drum-speed=10rpm",
-        "liquid-volume=0.3ml",
-    ],
-    small_batches: &[
-        Batch::new("r3", &[AS_PRINTED, "3mm"], &["0", "1", "7"], (1, 1)),
-        Batch::new("walls", &["walls-as-grains", "3mm"], &["0", "7"], (1, 1)),
-        Batch::new("r3", &[AS_PRINTED, "3mm"], &["0", "1", "7"], (2, 2)),
-        Batch::new("walls", &["walls-as-grains", "3mm"], &["0", "7"], (2, 2)),
-    ],
-    tables,
-};
+use super::plan::PaperTable;
+use crate::measure::{Verdict, numeral::NOTHING};
+use crate::sweep::{Ensemble, Statement};
 
 /// The reading of all other tables.
-const AS_PRINTED: &str = "as-printed";
-/// The liquids of the first rounds, and of the later ones: of readings that change all drums, the
-/// wet ones, the dry one.
-const ALL: Liquids = [&["0", "1", "3", "7"], &["5"]];
-const WET: Liquids = [&["1", "3", "7"], &["5"]];
-const DRY: Liquids = [&["0"], &[]];
+pub(super) const AS_PRINTED: &str = "as-printed";
 
-type Liquids = [&'static [&'static str]; 2];
-/// The values of `reading` and `radius`, and the liquids that are run with them.
-type Runs = (&'static [&'static str], Liquids);
-
-/// How much a reading is worth running: it moves nothing beyond the scatter of the drums as printed,
-/// it does, or it is what all others are set beside.
-#[derive(Clone, Copy)]
-enum Weight {
-    Slight,
-    Tells,
-    Printed,
-}
-use Weight::{Printed, Slight, Tells};
-
-/// The `liquids` of a reading of this `weight` in a round of those of the `wanted` one.
-const fn only(wanted: Weight, weight: Weight, liquids: Liquids) -> Liquids {
-    if wanted as u8 == weight as u8 {
-        liquids
-    } else {
-        [&[], &[]]
-    }
-}
-
-/// Makes the list of readings, and what is run of each at either radius.
-macro_rules! readings {
-    ($(($name:expr, $liquids:ident, $weight:ident, $text:literal, [$($setting:literal),*]),)+) => {
-        static READINGS: &[Reading] = &[$(Reading {
-            name: $name,
-            text: $text,
-            settings: &[$($setting),*],
-        }),+];
-        const R3: Round = [$((&[$name, "3mm"], $liquids)),+];
-        const R3_TELL: Round = [$((&[$name, "3mm"], only(Tells, $weight, $liquids))),+];
-        const R3_PRINTED: Round = [$((&[$name, "3mm"], only(Printed, $weight, $liquids))),+];
-        const R3_SLIGHT: Round = [$((&[$name, "3mm"], only(Slight, $weight, $liquids))),+];
-        const R2_TELL: Round = [$((&[$name, "2mm"], only(Tells, $weight, $liquids))),+];
-        const R2_PRINTED: Round = [$((&[$name, "2mm"], only(Printed, $weight, $liquids))),+];
-        const R2_SLIGHT: Round = [$((&[$name, "2mm"], only(Slight, $weight, $liquids))),+];
-        const READINGS_COUNT: usize = [$($name),+].len();
-    };
-}
-
-readings! {
-    (AS_PRINTED, ALL, Printed, "as printed, with the choices of all other tables", []),
-    ("as-coded", WET, Tells, "bridges as LIGGGHTS 3.8 computes them: all four of the next", ["bridge-law=as-coded"]),
-    ("shaded-caps", WET, Slight, "bridges hold 6.7 % of both films instead of 5 %", ["bridge-volume=shaded-cap"]),
-    ("half-product-angle", WET, Slight, "two grains' contact angle is half the product: 40° act as 14°", ["pair-angle=half-product"]),
-    ("weak-viscosity", WET, Tells, "viscous forces grow down to 1.01 r* only, not to 0.01 (r_i + r_j)", ["viscous-gap=coded"]),
-    ("open-capillary-gap", WET, Slight, "the capillary force of grains in contact is that at no gap", ["capillary-gap=open"]),
-    ("rupture-at-d0", WET, Slight, "bridges break at d0, forces beyond 0.1 (r_i + r_j) being those there", ["rupture=at-d0"]),
-    ("coulomb-total", WET, Slight, "friction is bounded by the normal force of contact and bridge together", ["coulomb=total"]),
-    (
-        "wet-friction-as-dry", WET, Tells, "wet grains have the dry ones' friction, 0.40 (0.30 at walls)",
-        ["wet-friction.glass.glass=0.4", "wet-friction.glass.drum=0.3"]
-    ),
-    (
-        "dry-friction-as-wet", DRY, Tells, "dry grains have the wet ones' friction, 0.10 (0.15 at walls)",
-        ["friction.glass.glass=0.1", "friction.glass.drum=0.15"]
-    ),
-    (
-        "walls-as-grains", ALL, Tells, "walls have the grains' friction, 0.10 wet and 0.40 dry",
-        ["wet-friction.glass.drum=0.1", "friction.glass.drum=0.4"]
-    ),
-    ("solid-fill", ALL, Tells, "grains, not their bed, fill 35 % of the drum", ["count=783"]),
-    (
-        "no-rolling-friction", ALL, Tells, "no rolling friction",
-        ["rolling-friction.glass.glass=0", "rolling-friction.glass.drum=0"]
-    ),
-    ("no-rolling-friction-at-walls", ALL, Slight, "no rolling friction at walls", ["rolling-friction.glass.drum=0"]),
-    ("quarter-step", ALL, Slight, "a quarter of the time step", ["time-step=reference"]),
-}
-
-/// What is run of each reading in a round.
-type Round = [Runs; READINGS_COUNT];
-/// The rounds: part, what is run, which of its liquids, the first and the last seed. Of the drums as
-/// printed there are as many seeds as the other tables have.
-type Seeded = (&'static str, &'static Round, usize, (u64, u64));
-const ROUNDS: [Seeded; 14] = [
-    ("r3", &R3, 0, (1, 1)),
-    ("r3", &R3_PRINTED, 0, (2, 8)),
-    ("r3", &R3_PRINTED, 1, (1, 8)),
-    ("r3", &R3_TELL, 0, (2, 2)),
-    ("r3", &R3_TELL, 0, (3, 4)),
-    ("r3", &R3_TELL, 1, (1, 4)),
-    ("r2", &R2_PRINTED, 0, (1, 4)),
-    ("r2", &R2_PRINTED, 1, (1, 4)),
-    ("r2", &R2_TELL, 0, (1, 2)),
-    ("r2", &R2_TELL, 1, (1, 2)),
-    ("r3-rest", &R3_SLIGHT, 0, (2, 4)),
-    ("r3-rest", &R3_SLIGHT, 1, (1, 4)),
-    ("r2-rest", &R2_SLIGHT, 0, (1, 2)),
-    ("r2-rest", &R2_SLIGHT, 1, (1, 2)),
-];
-
-static BATCHES: [Batch; ROUNDS.len() * READINGS_COUNT] = {
-    let mut all = [const { Batch::new("", &[], &[], (1, 1)) }; ROUNDS.len() * READINGS_COUNT];
-    let mut k = 0;
-    while k < all.len() {
-        let (part, runs, which, seeds) = ROUNDS[k / READINGS_COUNT];
-        let (values, liquids) = runs[k % READINGS_COUNT];
-        all[k] = Batch::new(part, values, liquids[which], seeds);
-        k += 1;
-    }
-    all
-};
-
-/// The tables, from the cases that are there.
-fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
-    let ensembles = ensembles(sweep, outcomes);
-    let measured: Vec<Measured> = Measured::all(&ensembles);
-    let table = |name, title, text| PaperTable { name, title, text };
-    vec![
-        table("readings", "Readings", readings_table(&measured)),
-        table("numbers", "What each comes to", numbers_table(&measured)),
-        table(
-            "verdicts",
-            "The paper's statements under each",
-            verdicts_table(&measured),
-        ),
-        table("scores", "Scores", scores_table(&measured)),
-    ]
-}
-
-/// A reading with its drums, and the statements judged by them.
-struct Measured<'a> {
+/// A reading, and the statements judged by what was run of it.
+pub(super) struct Judged {
     /// Its number in the tables.
-    number: usize,
-    name: String,
-    text: String,
-    drums: Drums<'a>,
-    statements: Vec<Statement>,
+    pub number: usize,
+    /// What it is called.
+    pub name: String,
+    /// What it reads otherwise.
+    pub text: String,
+    /// From how many runs.
+    pub runs: usize,
+    /// The statements for which these are cases.
+    pub statements: Vec<Statement>,
 }
 
-impl<'a> Measured<'a> {
-    /// The readings of which there are drums of their own, and other measures of the drums as
-    /// printed.
-    fn all(ensembles: &'a [Ensemble<'a>]) -> Vec<Self> {
-        let ensembles = compared(ensembles);
-        let runs = READINGS.iter().filter_map(|reading| {
-            let drums = drums_of(reading.name, &ensembles)?;
-            Some((reading.name.to_owned(), reading.text.to_owned(), drums))
-        });
-        let measures = OTHER_MEASURES.iter().filter_map(|(name, text, measure)| {
-            let mut drums = drums_of(AS_PRINTED, &ensembles)?;
-            drums
-                .0
-                .iter_mut()
-                .for_each(|drum| drum.measured_by = *measure);
-            Some(((*name).to_owned(), (*text).to_owned(), drums))
-        });
-        let numbered = (0..).zip(runs.chain(measures));
-        let of = |(number, (name, text, drums))| Self {
-            number,
-            name,
-            text,
-            statements: drum_statements(&drums),
-            drums,
-        };
-        numbered.map(of).collect()
-    }
-
+impl Judged {
     /// The verdict on the statement `text`, where there is something to judge it by.
-    fn verdict(&self, text: &str) -> Option<Verdict> {
+    pub(super) fn verdict(&self, text: &str) -> Option<Verdict> {
         let found = self.statements.iter().find(|own| own.text == text);
         found.map(Statement::verdict)
     }
 
     /// How many statements have this verdict.
-    fn count(&self, verdict: Verdict) -> usize {
+    pub(super) fn count(&self, verdict: Verdict) -> usize {
         let of = |own: &&Statement| own.verdict() == verdict;
         self.statements.iter().filter(of).count()
     }
 
     /// The least and the most that it can score.
-    fn score(&self) -> [f64; 2] {
+    pub(super) fn score(&self) -> [f64; 2] {
         let least = self.count(Verdict::Holds) as f64 + 0.5 * self.count(Verdict::InPart) as f64;
         [least, least + self.count(Verdict::NotDecided) as f64]
     }
 }
 
-/// Other measures of the same runs.
-const OTHER_MEASURES: [(&str, &str, MeasuredBy); 4] = [
-    (
-        "drops-from-0.5°",
-        "as printed; drops of θ count from 0.5° on, not from 1°",
-        MeasuredBy::Drops(DropThreshold::HalfDegree),
-    ),
-    (
-        "drops-from-2°",
-        "as printed; drops of θ count from 2° on",
-        MeasuredBy::Drops(DropThreshold::TwoDegrees),
-    ),
-    (
-        "drops-from-3°",
-        "as printed; drops of θ count from 3° on",
-        MeasuredBy::Drops(DropThreshold::ThreeDegrees),
-    ),
-    (
-        "co-rotating-Tg",
-        "as printed; velocities are those in the drum's frame",
-        MeasuredBy::CorotatingFrame,
-    ),
-];
-
-/// The drums of the reading called `name`: those run under it, and of the liquids with which it is
-/// not run those as printed; none where none of its own is there.
-fn drums_of<'a>(name: &str, ensembles: &[&'a Ensemble<'a>]) -> Option<Drums<'a>> {
-    let reading_of = |own: &Ensemble| own.values.first().cloned();
-    let is_own = |own: &&&Ensemble| reading_of(own).as_deref() == Some(name);
-    ensembles.iter().find(is_own)?;
-    let is_run = |own: &Ensemble| {
-        let liquid = own.values.last().cloned().unwrap_or_default();
-        let runs = BATCHES
-            .iter()
-            .filter(|batch| batch.values.first() == Some(&name));
-        runs.flat_map(|batch| batch.list)
-            .any(|value| *value == liquid)
-    };
-    let is_unchanged =
-        |own: &&&Ensemble| reading_of(own).as_deref() == Some(AS_PRINTED) && !is_run(own);
-    Some(Drums::of(
-        ensembles
-            .iter()
-            .copied()
-            .filter(|own| is_own(&own) || is_unchanged(&own)),
-    ))
-}
-
-/// The drums of the radii at which every reading was run that was run at all: what is judged by
-/// coarse grains alone is set beside coarse grains.
-fn compared<'a>(ensembles: &'a [Ensemble<'a>]) -> Vec<&'a Ensemble<'a>> {
-    let has = |reading: &str, radius: &str| {
+/// The ensembles of the cases, by the values of a range of their keys, with which every reading was
+/// run that was run at all: what is judged by coarse grains alone is set beside coarse grains.
+pub(super) fn compared<'a>(
+    ensembles: &'a [Ensemble<'a>],
+    keys: std::ops::Range<usize>,
+) -> Vec<&'a Ensemble<'a>> {
+    let has = |reading: &str, case: &[String]| {
         let mut all = ensembles.iter();
-        all.any(|own| own.values[0] == reading && own.values[1] == radius)
+        all.any(|own| own.values[0] == reading && own.values[keys.clone()] == *case)
     };
     let is_of_all = |own: &&Ensemble| {
         let mut all = ensembles.iter();
-        all.all(|other| has(&other.values[0], &own.values[1]))
+        all.all(|other| has(&other.values[0], &own.values[keys.clone()]))
     };
     ensembles.iter().filter(is_of_all).collect()
 }
 
-fn readings_table(measured: &[Measured]) -> String {
+/// The tables of these readings, with the one of `numbers` that is the paper's own.
+pub(super) fn tables_of(judged: &[&Judged], numbers: String) -> Vec<PaperTable> {
+    let table = |name, title, text| PaperTable { name, title, text };
+    vec![
+        table("readings", "Readings", readings_table(judged)),
+        table("numbers", "What each comes to", numbers),
+        table(
+            "verdicts",
+            "The paper's statements under each",
+            verdicts_table(judged),
+        ),
+        table("scores", "Scores", scores_table(judged)),
+    ]
+}
+
+fn readings_table(judged: &[&Judged]) -> String {
     let heads = ["", "reading", "what it reads otherwise", "runs"];
     let mut text = head(&heads.map(str::to_owned));
-    for own in measured {
-        let runs: usize = own
-            .drums
-            .0
-            .iter()
-            .map(|drum| drum.ensemble.members.len())
-            .sum();
+    for own in judged {
         let cells = [
             own.number.to_string(),
             own.name.clone(),
             own.text.clone(),
-            runs.to_string(),
+            own.runs.to_string(),
         ];
         text += &line(&cells);
     }
     text
-}
-
-/// A result of the drum of one liquid, by its number in Table 1, and what its column is called.
-type Column = (&'static str, &'static str, ResultKey);
-
-/// The columns of the table of numbers.
-const NUMBERS: [Column; 9] = [
-    ("θ, dry", "0", ResultKey::OfSamples(Measure::SurfaceAngle)),
-    ("θ, n = 1", "1", ResultKey::OfSamples(Measure::SurfaceAngle)),
-    ("θ, n = 7", "7", ResultKey::OfSamples(Measure::SurfaceAngle)),
-    ("Δθ, dry", "0", ResultKey::OfRun(RunQuantity::Drop)),
-    ("Δθ, n = 1", "1", ResultKey::OfRun(RunQuantity::Drop)),
-    ("Δθ, n = 7", "7", ResultKey::OfRun(RunQuantity::Drop)),
-    (
-        "Tg, n = 1",
-        "1",
-        ResultKey::OfSamples(Measure::GranularTemperature),
-    ),
-    (
-        "ta/ts, n = 1",
-        "1",
-        ResultKey::OfRun(RunQuantity::NonRigidShare),
-    ),
-    (
-        "ta/ts, n = 3",
-        "3",
-        ResultKey::OfRun(RunQuantity::NonRigidShare),
-    ),
-];
-
-/// A row for each reading and radius.
-fn numbers_table(measured: &[Measured]) -> String {
-    let heads = ["", "r [mm]"]
-        .into_iter()
-        .chain(NUMBERS.map(|(name, ..)| name));
-    let mut text = head(&heads.map(str::to_owned).collect::<Vec<_>>());
-    for own in measured {
-        for radius in own.radii() {
-            let first = [own.number.to_string(), radius.to_string()];
-            let of = |(_, liquid, key): &Column| own.number_text(radius, liquid, *key);
-            let cells: Vec<String> = first.into_iter().chain(NUMBERS.iter().map(of)).collect();
-            text += &line(&cells);
-        }
-    }
-    text
-}
-
-impl Measured<'_> {
-    /// The radii of its drums [mm], coarse grains first.
-    fn radii(&self) -> Vec<f64> {
-        let mut radii: Vec<f64> = self.drums.0.iter().map(|drum| drum.radius).collect();
-        radii.dedup();
-        radii.reverse();
-        radii
-    }
-
-    fn number_text(&self, radius: f64, liquid: &str, key: ResultKey) -> String {
-        let is_it = |drum: &&Drum| {
-            let own = drum.ensemble.values.last();
-            drum.radius == radius && own.is_some_and(|own| own == liquid)
-        };
-        let found = self.drums.0.iter().find(is_it);
-        let estimate = found.and_then(|drum| drum.get(key));
-        estimate.map_or_else(|| NOTHING.to_owned(), |own| key.quantity().text(own))
-    }
 }
 
 /// The mark of a verdict.
@@ -392,12 +107,12 @@ fn mark(verdict: Option<Verdict>) -> &'static str {
 }
 
 /// A row for each statement, a column for each reading.
-fn verdicts_table(measured: &[Measured]) -> String {
-    let numbers = measured.iter().map(|own| own.number.to_string());
+fn verdicts_table(judged: &[&Judged]) -> String {
+    let numbers = judged.iter().map(|own| own.number.to_string());
     let heads = std::iter::once("statement".to_owned()).chain(numbers);
     let mut table = head(&heads.collect::<Vec<_>>());
-    for statement in statements(measured) {
-        let marks = measured
+    for statement in statements(judged) {
+        let marks = judged
             .iter()
             .map(|own| mark(own.verdict(statement)).to_owned());
         let cells = std::iter::once(statement.to_owned()).chain(marks);
@@ -408,9 +123,9 @@ fn verdicts_table(measured: &[Measured]) -> String {
 }
 
 /// All statements that some reading is judged by, in the paper's order.
-fn statements(measured: &[Measured]) -> Vec<&'static str> {
+fn statements(judged: &[&Judged]) -> Vec<&'static str> {
     let mut known: Vec<&str> = Vec::new();
-    for own in measured.iter().flat_map(|own| &own.statements) {
+    for own in judged.iter().flat_map(|own| &own.statements) {
         if !known.contains(&own.text) {
             known.push(own.text);
         }
@@ -419,7 +134,7 @@ fn statements(measured: &[Measured]) -> Vec<&'static str> {
 }
 
 /// A row for each reading, and which statements none of them reaches.
-fn scores_table(measured: &[Measured]) -> String {
+pub(super) fn scores_table(judged: &[&Judged]) -> String {
     let heads = [
         "",
         "reading",
@@ -431,7 +146,7 @@ fn scores_table(measured: &[Measured]) -> String {
         "does not hold",
     ];
     let mut text = head(&heads.map(str::to_owned));
-    for own in measured {
+    for own in judged {
         let [least, most] = own.score();
         let counts = [
             Verdict::Holds,
@@ -448,7 +163,7 @@ fn scores_table(measured: &[Measured]) -> String {
         let counts = counts.map(|verdict| own.count(verdict).to_string());
         text += &line(&first.into_iter().chain(counts).collect::<Vec<_>>());
     }
-    text + &unreached(measured)
+    text + &unreached(judged)
 }
 
 /// `6`, or `6 to 8.5`.
@@ -461,12 +176,9 @@ fn range(least: f64, most: f64) -> String {
 }
 
 /// Which statements hold under no reading, and of these the ones that may yet.
-fn unreached(measured: &[Measured]) -> String {
+fn unreached(judged: &[&Judged]) -> String {
     let verdicts = |text: &str| {
-        let all: Vec<Verdict> = measured
-            .iter()
-            .filter_map(|own| own.verdict(text))
-            .collect();
+        let all: Vec<Verdict> = judged.iter().filter_map(|own| own.verdict(text)).collect();
         all
     };
     let never = |text: &&str| {
@@ -482,163 +194,8 @@ fn unreached(measured: &[Measured]) -> String {
         [] => String::new(),
         texts => format!("\n{head}: {}.\n", texts.join("; ")),
     };
-    let all = statements(measured);
+    let all = statements(judged);
     let of = |is: &dyn Fn(&&str) -> bool| all.iter().copied().filter(|text| is(text)).collect();
     list("No reading reaches", of(&never))
         + &list("Not decided under any reading that might", of(&open))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::measure::{MeasuredValue, Series, Summary, SummaryEntry};
-    use crate::output::Ending;
-    use crate::paper::{PaperJob, Selection};
-    use crate::sweep::Case;
-
-    const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
-    /// The paper's sweep, with what its cases came to: beds that stand at `angle` [°] by their
-    /// reading and liquid, of two seeds 0.2° apart, and flow for 0.5 of the time, in the drum's
-    /// frame for 0.3.
-    fn outcomes(angle: impl Fn(&str, &str) -> Option<f64>) -> (Sweep, Vec<CaseResult>) {
-        let selection = Selection {
-            parts: vec!["r3".to_owned()],
-            seeds: Some(2),
-            ..Selection::default()
-        };
-        let paper = &KASPER2021_READINGS;
-        let job = PaperJob::new(paper, &selection, "nowhere".into(), 1).unwrap();
-        let cases = crate::sweep::cases(job.sweep()).unwrap();
-        let outcomes = cases.into_iter().filter_map(|case| {
-            let [reading, _, liquid, seed] = &case.values[..] else {
-                return None;
-            };
-            let by = if seed == "1" { -0.1 } else { 0.1 };
-            let angle = angle(reading, liquid)? + by;
-            Some(outcome(case.clone(), angle))
-        });
-        (job.sweep().clone(), outcomes.collect())
-    }
-
-    fn outcome(case: Case, angle: f64) -> CaseResult {
-        let entry = |key, value| SummaryEntry {
-            key,
-            value: Some(MeasuredValue::Number(value)),
-            note: String::new(),
-        };
-        let share = ResultKey::OfRun(RunQuantity::NonRigidShare);
-        let corotating = ResultKey::OfRun(RunQuantity::CorotatingShare);
-        let surface = ResultKey::OfSamples(Measure::SurfaceAngle);
-        let entries = vec![
-            entry(surface, angle * DEGREE),
-            entry(share, 0.5),
-            entry(corotating, 0.3),
-        ];
-        CaseResult {
-            case,
-            ending: Ending::Done,
-            results: Summary {
-                from: 20.0,
-                to: 50.0,
-                samples: 1500,
-                entries,
-            },
-            series: Series::default(),
-            flow: Vec::new(),
-            fastest: None,
-            hash: String::new(),
-            method: None,
-        }
-    }
-
-    #[test]
-    fn drums_that_a_reading_does_not_change_are_those_as_printed() {
-        let (sweep, outcomes) = outcomes(|reading, liquid| match (reading, liquid) {
-            (AS_PRINTED, "0") => Some(33.0),
-            (AS_PRINTED, "1") => Some(27.0),
-            // Changes wet drums alone, and the dry one alone.
-            ("wet-friction-as-dry", "1") => Some(39.0),
-            ("dry-friction-as-wet", "0") => Some(25.0),
-            _ => None,
-        });
-        let ensembles = ensembles(&sweep, &outcomes);
-        let measured = Measured::all(&ensembles);
-        let verdict = |name: &str| {
-            let own = measured.iter().find(|own| own.name == name).unwrap();
-            own.verdict("The wet bed stands higher than the dry one")
-        };
-        assert_eq!(verdict(AS_PRINTED), Some(Verdict::DoesNot));
-        assert_eq!(verdict("wet-friction-as-dry"), Some(Verdict::Holds));
-        assert_eq!(verdict("dry-friction-as-wet"), Some(Verdict::Holds));
-        // What was not run yet stands in no table.
-        assert!(!measured.iter().any(|own| own.name == "solid-fill"));
-        let tables = tables(&sweep, &outcomes);
-        let text = |name: &str| &tables.iter().find(|own| own.name == name).unwrap().text;
-        let row = "| 1 | 3 | 33.00° ± 0.10° | 39.00° ± 0.10° | – |";
-        assert!(text("numbers").contains(row), "{}", text("numbers"));
-        let row = "| The wet bed stands higher than the dry one | ✗ | ✓ | ✓ |";
-        assert!(text("verdicts").contains(row), "{}", text("verdicts"));
-    }
-
-    #[test]
-    fn readings_are_compared_at_the_radii_at_which_all_of_them_were_run() {
-        let both = Selection {
-            parts: vec!["r3".to_owned(), "r2".to_owned()],
-            seeds: Some(1),
-            ..Selection::default()
-        };
-        let job = PaperJob::new(&KASPER2021_READINGS, &both, "nowhere".into(), 1).unwrap();
-        let cases = crate::sweep::cases(job.sweep()).unwrap();
-        let rows = |fine: &[&str]| {
-            let is_there = |case: &&Case| {
-                let [reading, radius, ..] = &case.values[..] else {
-                    return false;
-                };
-                let is_read = [AS_PRINTED, "as-coded"].contains(&reading.as_str());
-                is_read && (radius == "3mm" || fine.contains(&reading.as_str()))
-            };
-            let there = cases.iter().filter(is_there).cloned();
-            let outcomes: Vec<CaseResult> = there.map(|case| outcome(case, 30.0)).collect();
-            let ensembles = ensembles(job.sweep(), &outcomes);
-            let measured = Measured::all(&ensembles);
-            measured.iter().map(Measured::radii).collect::<Vec<_>>()
-        };
-        let coarse = vec![vec![3.0]; 2 + OTHER_MEASURES.len()];
-        assert_eq!(rows(&[AS_PRINTED]), coarse);
-        let all = vec![vec![3.0, 2.0]; 2 + OTHER_MEASURES.len()];
-        assert_eq!(rows(&[AS_PRINTED, "as-coded"]), all);
-    }
-
-    #[test]
-    fn a_score_leaves_open_what_is_not_decided_and_names_what_none_reaches() {
-        let (sweep, outcomes) = outcomes(|reading, liquid| match (reading, liquid) {
-            (AS_PRINTED, "0") => Some(33.0),
-            (AS_PRINTED, "1") => Some(27.0),
-            _ => None,
-        });
-        let ensembles = ensembles(&sweep, &outcomes);
-        let measured = Measured::all(&ensembles);
-        let own = &measured[0];
-        let [least, most] = own.score();
-        assert_eq!(most - least, own.count(Verdict::NotDecided) as f64);
-        assert_eq!(least, own.count(Verdict::Holds) as f64);
-        let scores = scores_table(&measured);
-        let missed = "No reading reaches: The wet bed stands higher than the dry one";
-        assert!(scores.contains(missed), "{scores}");
-    }
-
-    #[test]
-    fn other_measures_take_other_results_of_the_same_runs() {
-        let (sweep, outcomes) = outcomes(|reading, _| (reading == AS_PRINTED).then_some(30.0));
-        let ensembles = ensembles(&sweep, &outcomes);
-        let measured = Measured::all(&ensembles);
-        let share = |name: &str| {
-            let own = measured.iter().find(|own| own.name == name).unwrap();
-            own.number_text(3.0, "1", ResultKey::OfRun(RunQuantity::NonRigidShare))
-        };
-        assert_eq!(share(AS_PRINTED), "0.5 ± 0");
-        assert_eq!(share("drops-from-2°"), "0.5 ± 0");
-        assert_eq!(share("co-rotating-Tg"), "0.3 ± 0");
-    }
 }

@@ -1,13 +1,20 @@
 //! The papers by name.
 
+use super::kasper_readings::KASPER2021_READINGS;
 use super::kasper2021::KASPER2021;
+use super::man_readings::MAN2023_READINGS;
 use super::man2023::MAN2023;
 use super::plan::Paper;
-use super::readings::KASPER2021_READINGS;
+
 use crate::runner::RunnerError;
 
 /// Every paper that the program can run.
-pub static PAPERS: [&Paper; 3] = [&KASPER2021, &KASPER2021_READINGS, &MAN2023];
+pub static PAPERS: [&Paper; 4] = [
+    &KASPER2021,
+    &KASPER2021_READINGS,
+    &MAN2023,
+    &MAN2023_READINGS,
+];
 
 /// The paper called `name`.
 ///

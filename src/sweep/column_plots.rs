@@ -278,8 +278,7 @@ mod tests {
     use super::super::{Case, Variation};
     use super::*;
     use crate::measure::{
-        MeasuredValue, PEAK_TIME_LAW, REST_TIME_LAW, Sample, Series, Summary, SummaryEntry,
-        cone_volume_law, run_out_law,
+        PEAK_TIME_LAW, REST_TIME_LAW, Sample, Series, Summary, cone_volume_law, run_out_law,
     };
     use crate::output::Ending;
     use crate::run::BedStore;
@@ -323,17 +322,7 @@ mod tests {
             (RunQuantity::DimensionlessRestTime, REST_TIME_LAW * root),
             (RunQuantity::SecondShare, 0.3),
         ];
-        let entry = |(quantity, value): (RunQuantity, f64)| SummaryEntry {
-            key: quantity.into(),
-            value: Some(MeasuredValue::Number(value)),
-            note: String::new(),
-        };
-        Summary {
-            from: 0.0,
-            to: 0.58,
-            samples: 30,
-            entries: numbers.into_iter().map(entry).collect(),
-        }
+        Summary::of_numbers(&numbers.map(|(quantity, value)| (quantity.into(), value)))
     }
 
     /// Thirty samples of a front that spreads evenly.

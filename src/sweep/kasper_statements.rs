@@ -281,8 +281,7 @@ mod tests {
     use super::super::kasper_parts::SHARE;
     use super::super::{Case, Variation};
     use super::*;
-    use crate::measure::{MeasuredValue, Series, Summary, SummaryEntry};
-    use crate::output::Ending;
+    use crate::measure::Summary;
     use crate::run::BedStore;
     use crate::scene::Scene;
 
@@ -313,32 +312,15 @@ mod tests {
 
     /// A run with these values varied, whose bed stands at `angle` [°] and flows for this `share`.
     fn outcome(values: &[&str], scene: Scene, angle: f64, share: f64) -> CaseResult {
-        let entry = |key, value| SummaryEntry {
-            key,
-            value: Some(MeasuredValue::Number(value)),
-            note: String::new(),
+        let case = Case {
+            name: values.join("_"),
+            values: values.iter().map(|&value| value.to_owned()).collect(),
+            scene,
+            script: Vec::new(),
+            time_step: 1e-5,
         };
-        CaseResult {
-            case: Case {
-                name: values.join("_"),
-                values: values.iter().map(|&value| value.to_owned()).collect(),
-                scene,
-                script: Vec::new(),
-                time_step: 1e-5,
-            },
-            ending: Ending::Done,
-            results: Summary {
-                from: 20.0,
-                to: 50.0,
-                samples: 1500,
-                entries: vec![entry(ANGLE, angle * DEGREE), entry(SHARE, share)],
-            },
-            series: Series::default(),
-            flow: Vec::new(),
-            fastest: None,
-            hash: String::new(),
-            method: None,
-        }
+        let results = Summary::of_numbers(&[(ANGLE, angle * DEGREE), (SHARE, share)]);
+        CaseResult::kept(&case, results, String::new(), String::new())
     }
 
     const WATER: &str = "liquid: (case: 1, volume_ml: 4),";

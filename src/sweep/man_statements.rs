@@ -1,21 +1,20 @@
 //! What Man et al. 2023 state of columns of two frictions, as rules.
 //!
-//! In: the ensembles of a sweep of columns of polyhedra. Out: each statement for which there are
+//! In: columns of polyhedra. Out: each statement for which there are
 //! cases, with its comparisons. Bounds that the paper gives in words or only in its plots (*about*)
 //! stand here as numbers, each in the rule that a reader sees.
 
-use super::ensemble::Ensemble;
+use super::columns::{Column, Columns, rounded};
 use super::statements::{Part, Statement};
 use crate::measure::{
     CRITICAL_ASPECT_RATIO, DepositShape, Estimate, Measure, PEAK_TIME_LAW, Quantity, REST_TIME_LAW,
-    ResultKey, RunQuantity, TALL_ASPECT_RATIO, TALL_REST_TIME_LAW, Verdict, cone_volume_law,
+    RunQuantity, TALL_ASPECT_RATIO, TALL_REST_TIME_LAW, Verdict, cone_volume_law,
     contact_shares_law, run_out_law,
 };
-use crate::scene::{SceneContainer, SceneGrains};
 use std::ops::Range;
 
 /// By how much a result may lie beside a law that is read from a plot.
-const ABOUT: f64 = 0.2;
+pub(super) const ABOUT: f64 = 0.2;
 /// Half the time between two samples over `√(R_i/g)` at the paper's radius: by so much `T_max` may
 /// be too small, 0.01 s over 0.0505 s.
 const HALF_A_SAMPLE: f64 = 0.2;
@@ -26,40 +25,24 @@ const BESIDE: f64 = 0.4;
 const MANY: usize = 10_000;
 
 /// How a ratio is written.
-const RATIO: Quantity = Quantity {
+pub(super) const RATIO: Quantity = Quantity {
     key: "ratio",
     ..*RunQuantity::NonRigidShare.quantity()
 };
 
-/// A column of the paper.
-struct Fallen<'a> {
-    /// Height at the start [mm].
-    height: f64,
-    /// Share by number of the rough grains.
-    share: f64,
-    /// Effective aspect ratio.
-    effective: f64,
-    ensemble: &'a Ensemble<'a>,
-    /// All ensembles, its own among them.
-    all: &'a [&'a Ensemble<'a>],
-}
-
-/// The statements for which `ensembles` has columns of polyhedra.
-pub fn column_statements<'a>(
-    ensembles: impl IntoIterator<Item = &'a Ensemble<'a>>,
-) -> Vec<Statement> {
-    let all: Vec<&Ensemble> = ensembles.into_iter().collect();
-    let mut columns: Vec<Fallen> = (all.iter())
-        .filter_map(|ensemble| Fallen::of(ensemble, &all))
-        .collect();
-    columns.sort_by(|a, b| a.effective.total_cmp(&b.effective));
-    let columns = Columns(columns);
+/// The statements for which there are columns.
+pub fn column_statements(columns: &Columns) -> Vec<Statement> {
+    let all = columns.0.iter().cloned();
+    let (loose, dense): (Vec<_>, Vec<_>) = all.partition(Column::is_loose);
+    let (loose, dense) = (Columns(loose), Columns(dense));
     let all = [
-        columns.run_outs(),
-        columns.deposits(),
-        columns.contacts(),
-        columns.times(),
-        columns.energies(),
+        dense.run_outs(),
+        dense.deposits(),
+        dense.contacts(),
+        dense.times(),
+        dense.energies(),
+        loose.loose_times(),
+        loose.beside_dense(&dense),
     ];
     let found = all.into_iter().flatten();
     found
@@ -67,54 +50,7 @@ pub fn column_statements<'a>(
         .collect()
 }
 
-impl<'a> Fallen<'a> {
-    fn of(ensemble: &'a Ensemble<'a>, all: &'a [&'a Ensemble<'a>]) -> Option<Self> {
-        let scene = &ensemble.first().case.scene;
-        let (SceneContainer::Column { height, .. }, SceneGrains::Voronoi(cells)) =
-            (&scene.container, &scene.grains)
-        else {
-            return None;
-        };
-        Some(Self {
-            height: 1e3 * height,
-            share: cells.species.get(1).map_or(0.0, |kind| kind.share),
-            effective: ensemble.mean(RunQuantity::EffectiveAspectRatio)?,
-            ensemble,
-            all,
-        })
-    }
-
-    /// A result. One column alone says nothing of its error: it is given the relative scatter of
-    /// the columns of several seeds.
-    fn get(&self, key: impl Into<ResultKey>) -> Option<Estimate> {
-        let key = key.into();
-        let own = self.ensemble.estimate(key)?;
-        Some(if own.error.is_some() {
-            own
-        } else {
-            own.scattering_as(self.all.iter().filter_map(|other| other.estimate(key)))
-        })
-    }
-
-    fn place(&self) -> String {
-        let seeds = if self.ensemble.members.len() == 1 {
-            ", one seed"
-        } else {
-            ""
-        };
-        format!(
-            "H = {} mm, {} % of rough grains{}{seeds}",
-            rounded(self.height),
-            rounded(100.0 * self.share),
-            self.friction()
-        )
-    }
-
-    /// What sets it apart from columns of other frictions.
-    fn friction(&self) -> String {
-        self.ensemble.apart_from(&["height", "mix"])
-    }
-
+impl Column<'_> {
     /// A result over a `law`, which is to lie within `bounds`.
     fn over(&self, quantity: RunQuantity, law: f64, bounds: Range<f64>) -> Option<Part> {
         let (own, ratio) = (self.get(quantity)?, self.get(quantity)?.times(1.0 / law));
@@ -191,12 +127,9 @@ impl<'a> Fallen<'a> {
     }
 }
 
-/// All columns, in the order of their effective aspect ratio.
-struct Columns<'a>(Vec<Fallen<'a>>);
-
 impl Columns<'_> {
     /// A result over a `law` of the effective aspect ratio, in the columns `from` … `to`.
-    fn beside(
+    pub(super) fn beside(
         &self,
         quantity: RunQuantity,
         within: Range<f64>,
@@ -211,27 +144,13 @@ impl Columns<'_> {
             .collect()
     }
 
-    /// Columns that are alike in `key`, two at least, in the order of their aspect ratio.
-    fn alike(&self, key: impl Fn(&Fallen) -> String) -> Vec<Vec<&Fallen<'_>>> {
-        let mut groups: Vec<(String, Vec<&Fallen>)> = Vec::new();
-        for column in &self.0 {
-            let key = key(column);
-            match groups.iter_mut().find(|(known, _)| *known == key) {
-                Some((_, group)) => group.push(column),
-                None => groups.push((key, vec![column])),
-            }
-        }
-        let groups = groups.into_iter().map(|(_, group)| group);
-        groups.filter(|group| group.len() > 1).collect()
-    }
-
     /// The exponents between neighbours of one mixture whose aspect ratios lie `within`.
     fn exponents(&self, within: &Range<f64>, bounds: &Range<f64>) -> Vec<Part> {
-        let groups = self.alike(|own| format!("{} {}", own.share, own.friction()));
+        let groups = self.alike(|own| format!("{} {} {}", own.share, own.solid, own.friction()));
         let pairs = groups.iter().flat_map(|group| group.windows(2));
-        let part = |pair: &[&Fallen]| {
+        let part = |pair: &[&Column]| {
             let [low, high] = pair else { return None };
-            let is_inside = |own: &Fallen| within.contains(&own.effective);
+            let is_inside = |own: &Column| within.contains(&own.effective);
             if !is_inside(low) || !is_inside(high) {
                 return None;
             }
@@ -249,11 +168,11 @@ impl Columns<'_> {
     fn along(
         &self,
         quantity: RunQuantity,
-        key: impl Fn(&Fallen) -> String,
-        order: impl Fn(&Fallen) -> f64,
+        key: impl Fn(&Column) -> String,
+        order: impl Fn(&Column) -> f64,
         rule: impl Fn(&[Estimate]) -> Verdict,
     ) -> Vec<Part> {
-        let part = |mut group: Vec<&Fallen>| {
+        let part = |mut group: Vec<&Column>| {
             group.sort_by(|a, b| order(a).total_cmp(&order(b)));
             let found = group
                 .iter()
@@ -307,7 +226,7 @@ impl Columns<'_> {
                 rule: "ℛ rises along α_eff at one height",
                 parts: self.along(
                     run_out,
-                    |own| rounded(own.height),
+                    |own| format!("{} {}", rounded(own.height), own.solid),
                     |own| own.effective,
                     Verdict::of_rising,
                 ),
@@ -322,7 +241,7 @@ impl Columns<'_> {
             Statement {
                 text: "A frustum turns into a cone at α_eff about 1.7",
                 rule: "deposits are frusta up to α_eff 1.3, cones from 2.1 on",
-                parts: self.0.iter().filter_map(Fallen::shape).collect(),
+                parts: self.0.iter().filter_map(Column::shape).collect(),
             },
             Statement {
                 text: "The height comes to a plateau of 0.7 to 0.85 (10 % of rough grains), to 1.0 \
@@ -342,7 +261,7 @@ impl Columns<'_> {
         vec![Statement {
             text: "Contacts between the kinds stay as many as by chance",
             rule: "P11, P12 and P22 lie within 0.04 of Eq. 4.1, within 0.02 from 10 000 grains on",
-            parts: self.0.iter().flat_map(Fallen::shares).collect(),
+            parts: self.0.iter().flat_map(Column::shares).collect(),
         }]
     }
 
@@ -353,7 +272,7 @@ impl Columns<'_> {
             RunQuantity::DimensionlessPeakTime,
             RunQuantity::DimensionlessRestTime,
         );
-        let late = |column: &Fallen| {
+        let late = |column: &Column| {
             let own = column.get(peak)?;
             let law = PEAK_TIME_LAW * column.effective.sqrt();
             Some(Part {
@@ -362,7 +281,7 @@ impl Columns<'_> {
                 verdict: Verdict::of_between(own, law - HALF_A_SAMPLE..f64::INFINITY),
             })
         };
-        let fast = |column: &Fallen| {
+        let fast = |column: &Column| {
             let own = column.get(RunQuantity::PeakTime)?;
             (rounded(column.height) == "10").then(|| Part {
                 place: column.place(),
@@ -406,7 +325,8 @@ impl Columns<'_> {
 
     fn energies(&self) -> Vec<Statement> {
         let mixes = |quantity, rule: fn(&[Estimate]) -> Verdict| {
-            let alike = |own: &Fallen| format!("{} {}", rounded(own.height), own.friction());
+            let alike =
+                |own: &Column| format!("{} {} {}", rounded(own.height), own.solid, own.friction());
             self.along(quantity, alike, |own| own.share, rule)
         };
         vec![
@@ -426,7 +346,7 @@ impl Columns<'_> {
 
 /// The relative height of a deposit where the paper has its plateau; none elsewhere, and in other
 /// mixtures than the paper's.
-fn plateau(column: &Fallen) -> Option<Part> {
+fn plateau(column: &Column) -> Option<Part> {
     let highest = match rounded(100.0 * column.share).as_str() {
         "10" => 0.85,
         "30" => 1.0,
@@ -445,7 +365,7 @@ fn plateau(column: &Fallen) -> Option<Part> {
 }
 
 /// The exponent of the run-out between two columns, with the error that follows from theirs.
-fn exponent(low: &Fallen, high: &Fallen) -> Option<Estimate> {
+fn exponent(low: &Column, high: &Column) -> Option<Estimate> {
     let ratio = high
         .get(RunQuantity::RunOut)?
         .over(low.get(RunQuantity::RunOut)?);
@@ -458,9 +378,4 @@ fn exponent(low: &Fallen, high: &Fallen) -> Option<Estimate> {
         error: ratio.error.map(|error| error / (ratio.mean * span)),
         ..ratio
     })
-}
-
-/// Rounded, so that a unit's factor leaves no digits behind.
-fn rounded(value: f64) -> String {
-    ((value * 1e6).round() / 1e6).to_string()
 }

@@ -37,8 +37,8 @@ impl Statement {
 /// What stands over the list.
 const HEAD: &str = "Each verdict follows from its rule: *more than scatter* is Welch's test at 5 %, an \
                     interval is that of 95 %. Errors are over the seeds; of one drum, its own; of \
-                    one column, the relative scatter of columns of several seeds. *Not decided* \
-                    takes more seeds or longer runs.";
+                    one column, the relative scatter of the columns of several seeds nearest in \
+                    height. *Not decided* takes more seeds or longer runs.";
 
 /// The page of these `statements`, of which its title says more.
 pub fn markdown(title: &str, statements: &[Statement]) -> String {

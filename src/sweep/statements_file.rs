@@ -4,9 +4,12 @@
 
 use super::Sweep;
 use super::ensemble::Ensemble;
-use super::kasper_statements::statements_by_reading;
+use super::kasper_statements::{StatementsOfReading, statements_by_reading};
+
+use super::columns::{ColumnMeasure, Columns};
 use super::man_statements::column_statements;
 use super::statements::markdown;
+use super::variation::READING;
 use crate::output::write_file;
 use crate::runner::RunnerError;
 
@@ -22,10 +25,7 @@ pub fn write_statements(
     ensembles: &[Ensemble],
 ) -> Result<Option<String>, RunnerError> {
     let mut readings = statements_by_reading(sweep, ensembles);
-    let columns = column_statements(ensembles);
-    if !columns.is_empty() {
-        readings.push((None, columns));
-    }
+    readings.extend(columns_by_reading(ensembles));
     if readings.is_empty() {
         return Ok(None);
     }
@@ -40,4 +40,24 @@ pub fn write_statements(
         file.write_all(text.as_bytes())
     })?;
     Ok(Some(FILE.to_owned()))
+}
+
+/// The statements for which `ensembles` has columns, reading by reading where that is varied.
+fn columns_by_reading(ensembles: &[Ensemble]) -> Vec<StatementsOfReading> {
+    let all: Vec<&Ensemble> = ensembles.iter().collect();
+    let mut readings: Vec<Option<&str>> = Vec::new();
+    for reading in ensembles.iter().map(|own| own.value_of(READING)) {
+        if !readings.contains(&reading) {
+            readings.push(reading);
+        }
+    }
+    let of = |reading: Option<&str>| {
+        let own = ensembles
+            .iter()
+            .filter(|own| own.value_of(READING) == reading);
+        let columns = Columns::of(own, &all, ColumnMeasure::Usual);
+        (reading.map(str::to_owned), column_statements(&columns))
+    };
+    let found = readings.into_iter().map(of);
+    found.filter(|(_, own)| !own.is_empty()).collect()
 }

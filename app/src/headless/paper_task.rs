@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 /// Which paper, what is to be done with it, and where its results go.
 #[derive(clap::Args)]
 pub struct PaperTask {
-    /// The paper: kasper2021, kasper2021-readings or man2023
+    /// The paper: kasper2021, kasper2021-readings, man2023 or man2023-readings
     name: String,
     #[command(flatten)]
     wanted: Wanted,

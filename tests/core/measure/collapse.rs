@@ -42,6 +42,9 @@ fn peak_and_rest_are_found_in_a_known_course() {
     assert_close(collapse.peak_energy, 6e-6, 1e-20);
     // A hundredth of the peak at 0.37 s; the next sample is the first below it.
     assert_close(collapse.rest_time.unwrap(), 0.38, 1e-15);
+    assert_close(collapse.energy_rest_time.unwrap(), 0.38, 1e-15);
+    // 0.99 · 0.055 = 0.05445 at 0.2945 s.
+    assert_close(collapse.front_rest_time.unwrap(), 0.3, 1e-15);
     assert_close(collapse.front, 0.055, 1e-15);
     assert_eq!(collapse.height, 0.03);
 }
@@ -52,6 +55,8 @@ fn front_that_still_creeps_delays_rest() {
     let collapse = Collapse::of(&course(1.0, energy, creeping)).unwrap();
     // 0.99 · 0.075 = 0.07425 at 0.6895 s.
     assert_close(collapse.rest_time.unwrap(), 0.7, 1e-15);
+    assert_close(collapse.front_rest_time.unwrap(), 0.7, 1e-15);
+    assert_close(collapse.energy_rest_time.unwrap(), 0.38, 1e-15);
 }
 
 #[test]
@@ -142,6 +147,8 @@ fn results_of_a_column_are_those_of_its_collapse() {
     assert_eq!((summary.from, summary.samples), (0.0, 51));
     assert_close(value(RunQuantity::PeakTime), 0.18, 1e-15);
     assert_close(value(RunQuantity::RestTime), 0.38, 1e-15);
+    assert_close(value(RunQuantity::EnergyRestTime), 0.38, 1e-15);
+    assert_close(value(RunQuantity::FrontRestTime), 0.3, 1e-15);
     let unit = (0.025_f64 / 9.81).sqrt();
     assert_close(
         value(RunQuantity::DimensionlessPeakTime) * unit,
