@@ -7,6 +7,9 @@ use std::ops::Range;
 
 /// Size of a plot in pixels.
 const SIZE: (u32, u32) = (760, 520);
+/// Places to which a pixel is divided: coordinates are whole numbers, and a curve of whole pixels is
+/// a stair.
+const FINE: u32 = 10;
 /// A logarithmic axis of fewer decades has labels between them.
 const FEW_DECADES: f64 = 2.5;
 
@@ -218,14 +221,15 @@ impl Plot {
     pub fn draw(&self) -> Result<String, Box<dyn std::error::Error>> {
         let mut text = String::new();
         {
-            let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+            let size = (SIZE.0 * FINE, SIZE.1 * FINE);
+            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
             area.fill(&WHITE)?;
             let (x, y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
             let mut chart = ChartBuilder::on(&area)
-                .caption(&self.title, ("sans-serif", 20))
-                .margin(14)
-                .x_label_area_size(44)
-                .y_label_area_size(72)
+                .caption(&self.title, ("sans-serif", 20 * FINE))
+                .margin(14 * FINE)
+                .x_label_area_size(44 * FINE)
+                .y_label_area_size(72 * FINE)
                 .build_cartesian_2d(x.clone(), y.clone())?;
             chart
                 .configure_mesh()
@@ -233,18 +237,21 @@ impl Plot {
                 .y_desc(&self.y.label)
                 .x_label_formatter(&|place| self.x.text(*place, x.end - x.start))
                 .y_label_formatter(&|place| self.y.text(*place, y.end - y.start))
-                .label_style(("sans-serif", 14))
-                .light_line_style(RGBColor(244, 244, 244))
-                .bold_line_style(RGBColor(224, 224, 224))
+                .label_style(("sans-serif", 14 * FINE))
+                .light_line_style(RGBColor(244, 244, 244).stroke_width(FINE))
+                .bold_line_style(RGBColor(224, 224, 224).stroke_width(FINE))
+                .axis_style(BLACK.stroke_width(FINE))
+                .set_all_tick_mark_size(5 * FINE)
                 .draw()?;
             for (index, line) in self.lines.iter().enumerate() {
                 let colour = colour(index, line.is_law);
                 let points: Vec<(f64, f64)> = self.places(line).collect();
-                let curve = LineSeries::new(points.clone(), colour.stroke_width(2));
+                let curve = LineSeries::new(points.clone(), colour.stroke_width(2 * FINE));
                 let drawn = chart.draw_series(curve)?;
                 if !line.name.is_empty() {
                     drawn.label(&line.name).legend(move |(x, y)| {
-                        PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2))
+                        let end = x + 18 * FINE as i32;
+                        PathElement::new([(x, y), (end, y)], colour.stroke_width(2 * FINE))
                     });
                 }
                 // Marks on results, none on curves.
@@ -252,21 +259,23 @@ impl Plot {
                     chart.draw_series(
                         points
                             .iter()
-                            .map(|point| Circle::new(*point, 4, colour.filled())),
+                            .map(|point| Circle::new(*point, 4 * FINE, colour.filled())),
                     )?;
                 }
                 self.draw_bars(&mut chart, line, colour, [x.clone(), y.clone()])?;
             }
             chart
                 .configure_series_labels()
-                .label_font(("sans-serif", 14))
+                .label_font(("sans-serif", 14 * FINE))
                 .background_style(WHITE.mix(0.85))
-                .border_style(RGBColor(200, 200, 200))
+                .border_style(RGBColor(200, 200, 200).stroke_width(FINE))
+                .legend_area_size(30 * FINE)
+                .margin(10 * FINE)
                 .position(self.emptiest_corner())
                 .draw()?;
             area.present()?;
         }
-        Ok(text)
+        Ok(at_its_size(&text))
     }
 }
 
@@ -294,11 +303,18 @@ impl Plot {
                 .into_iter()
                 .take(if bottom.is_some() { 3 } else { 2 });
             chart.draw_series(
-                drawn.map(|stroke| PathElement::new(stroke, colour.stroke_width(1))),
+                drawn.map(|stroke| PathElement::new(stroke, colour.stroke_width(FINE))),
             )?;
         }
         Ok(())
     }
+}
+
+/// The drawing `text`, shown in pixels.
+fn at_its_size(text: &str) -> String {
+    let size = |(across, upright): (u32, u32)| format!(r#"width="{across}" height="{upright}""#);
+    let fine = size((SIZE.0 * FINE, SIZE.1 * FINE));
+    text.replacen(&fine, &size(SIZE), 1)
 }
 
 fn colour(index: usize, is_law: bool) -> RGBColor {
@@ -349,7 +365,7 @@ mod tests {
         // thicker.
         let text = plot.draw().unwrap();
         let RGBColor(r, g, b) = colour(0, false);
-        let own = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\" stroke-width=\"1\"");
+        let own = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\" stroke-width=\"{FINE}\"");
         assert_eq!(text.matches(&own).count(), 3 + 2);
     }
 
