@@ -250,7 +250,7 @@ impl Plot {
                 let drawn = chart.draw_series(curve)?;
                 if !line.name.is_empty() {
                     drawn.label(&line.name).legend(move |(x, y)| {
-                        let end = x + 18 * FINE as i32;
+                        let end = x + 18 * FINE.cast_signed();
                         PathElement::new([(x, y), (end, y)], colour.stroke_width(2 * FINE))
                     });
                 }
