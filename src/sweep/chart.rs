@@ -268,7 +268,6 @@ impl Plot {
                 .configure_series_labels()
                 .label_font(("sans-serif", 14 * FINE))
                 .background_style(WHITE.mix(0.85))
-                .border_style(RGBColor(200, 200, 200).stroke_width(FINE))
                 .legend_area_size(30 * FINE)
                 .margin(10 * FINE)
                 .position(self.emptiest_corner())
