@@ -6,6 +6,7 @@
 //! in which the bed flows ([`NON_RIGID_TEMPERATURE`]).
 
 use super::estimate::Estimate;
+use super::flowing_layer::FlowingLayer;
 use super::sample::Sample;
 use super::sampled_quantity::Measure;
 use super::surface::SurfaceLine;
@@ -189,17 +190,30 @@ impl FlowHistory {
     /// [m/s]: a mean with its standard error, for which every second in which the bed flows is one
     /// event; NaN where nothing was averaged.
     pub fn velocity_since(&self, time: f64) -> Vec<Estimate> {
-        let first = time.max(0.0).ceil() as usize;
-        let seconds: Vec<&FlowProfile> = self.seconds.iter().skip(first).map(Arc::as_ref).collect();
-        let depths = seconds.iter().map(|second| second.depth.len()).max();
-        let at = |k: usize| {
-            let sums = seconds.iter().filter_map(|second| {
-                let count = second.samples.get(k).filter(|count| **count > 0)?;
-                Some((second.sums[k], f64::from(*count)))
-            });
-            Estimate::of_bursts(&sums.collect::<Vec<_>>())
-        };
-        (0..depths.unwrap_or(0)).map(at).collect()
+        mean_velocities(self.seconds_between(time, f64::INFINITY))
+    }
+
+    /// The flowing layer on the mean, from the first whole second at or after `from` [s] to the second
+    /// of `until` [s]; none where the bed did not flow.
+    pub fn layer_between(&self, from: f64, until: f64) -> Option<FlowingLayer> {
+        let seconds = self.seconds_between(from, until);
+        let depths = &seconds
+            .iter()
+            .find(|second| !second.depth.is_empty())?
+            .depth;
+        let velocities = depths.iter().copied().zip(mean_velocities(seconds));
+        let known: Vec<_> = velocities.filter(|(_, own)| own.mean.is_finite()).collect();
+        FlowingLayer::of(&known)
+    }
+
+    /// The profiles from the first whole second at or after `from` [s] to the second of `until` [s].
+    fn seconds_between(&self, from: f64, until: f64) -> &[Arc<FlowProfile>] {
+        let end = self
+            .seconds
+            .len()
+            .min((until.max(0.0) as usize).saturating_add(1));
+        let first = (from.max(0.0).ceil() as usize).min(end);
+        &self.seconds[first..end]
     }
 
     /// The mean flow from the first whole second at or after `time` [s] on.
@@ -220,14 +234,24 @@ impl FlowHistory {
 
     /// The profile averaged from the first whole second at or after `time` [s] on.
     pub fn since(&self, time: f64) -> FlowProfile {
-        let first = time.max(0.0).ceil() as usize;
         let mut profile = FlowProfile::default();
-        self.seconds
-            .iter()
-            .skip(first)
-            .for_each(|second| profile.merge(second));
+        let seconds = self.seconds_between(time, f64::INFINITY).iter();
+        seconds.for_each(|second| profile.merge(second));
         profile
     }
+}
+
+/// Mean velocity along the surface at each depth over these `seconds` [m/s].
+fn mean_velocities(seconds: &[Arc<FlowProfile>]) -> Vec<Estimate> {
+    let depths = seconds.iter().map(|second| second.depth.len()).max();
+    let at = |k: usize| {
+        let sums = seconds.iter().filter_map(|second| {
+            let count = second.samples.get(k).filter(|count| **count > 0)?;
+            Some((second.sums[k], f64::from(*count)))
+        });
+        Estimate::of_bursts(&sums.collect::<Vec<_>>())
+    };
+    (0..depths.unwrap_or(0)).map(at).collect()
 }
 
 /// Velocity along the surface over the depth below its middle, averaged over the samples of a part of
@@ -239,20 +263,12 @@ pub struct MeanFlow {
 }
 
 impl MeanFlow {
-    /// Depth of the flowing layer [m]: where the mean velocity along the surface changes its sign,
-    /// as grains go down the slope above and up with the drum below. None where it never does.
+    /// Depth of the flowing layer [m]; none where the velocity never changes its sign.
     pub fn layer_depth(&self) -> Option<f64> {
         let known = self.depths.iter().filter(|depth| depth.samples > 0);
-        let known: Vec<[f64; 2]> = known.map(|own| [own.depth, own.velocity]).collect();
-        let crossing = (known.windows(2)).find(|pair| pair[0][1] * pair[1][1] <= 0.0)?;
-        let [[above, first], [below, second]] = [crossing[0], crossing[1]];
-        // Zero at both is zero at the first.
-        let share = if first == second {
-            0.0
-        } else {
-            first / (first - second)
-        };
-        Some(above + share * (below - above))
+        let velocity = |own: &FlowDepth| Estimate::too_short(own.velocity, 0);
+        let known: Vec<_> = known.map(|own| (own.depth, velocity(own))).collect();
+        Some(FlowingLayer::of(&known)?.depth?.mean)
     }
 }
 

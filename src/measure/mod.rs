@@ -27,7 +27,7 @@
 //! | **of a run** | |
 //! | `series` | samples in columns: [`Series`] |
 //! | `avalanches` | the extrema of θ(t) |
-//! | `flow` | the flowing layer: profile over depth, map at the fastest moment |
+//! | `flow`, `flowing_layer` | the flowing layer: profile over depth, speed and depth, map at the fastest moment |
 //! | `column` | a column at its start: `α_eff`, `μ_p`; the laws of Man et al. 2023 |
 //! | `collapse` | when a column was fastest, when it came to rest, what it left |
 //! | `estimate` | a mean with its standard error: [`Estimate`]; the means of events and of runs |
@@ -62,6 +62,7 @@ mod energy_ledger;
 mod estimate;
 mod floor;
 mod flow;
+mod flowing_layer;
 mod grain_quantity;
 mod histogram;
 mod mixing;
@@ -107,6 +108,7 @@ pub use energy_ledger::{EnergyLedger, elastic_energy};
 pub use estimate::Estimate;
 pub use floor::{floor_force, floor_pressure, weight};
 pub use flow::{FlowDepth, FlowHistory, FlowProfile, MeanFlow, NON_RIGID_TEMPERATURE};
+pub use flowing_layer::FlowingLayer;
 pub use grain_quantity::GrainQuantity;
 pub use histogram::Histogram;
 pub use mixing::mixing_index;

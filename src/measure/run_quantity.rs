@@ -75,6 +75,26 @@ quantities! {
             format: Format::Fixed(2),
             scope: Scope::Beds,
         }
+        FlowSpeed {
+            key: "flow speed at the surface",
+            description: "mean speed along the middle of the surface over the samples in which the \
+                          granular temperature is at least 2e-9 m²/s²",
+            short_label: "Flow speed at the surface",
+            symbol: "u_0",
+            unit: units::FLOW_SPEED,
+            format: Format::Fixed(2),
+            scope: Scope::Beds,
+        }
+        FlowDepth {
+            key: "depth of the flowing layer",
+            description: "depth below the middle of the surface at which the mean velocity along it \
+                          over the same samples is zero: above grains go down the slope, below up \
+                          with the drum",
+            symbol: "d_f",
+            unit: units::LENGTH,
+            format: Format::Fixed(2),
+            scope: Scope::Beds,
+        }
         Avalanches {
             key: "avalanches",
             description: "number of complete avalanches in the window",

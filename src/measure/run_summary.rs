@@ -1,14 +1,15 @@
 //! Results of a run, as the papers quote them: of a bed, averages over the last part of it; of a
 //! column, what it did and left.
 //!
-//! In: a [`Series`], the last state of its run, and the time from which the results of a bed count.
+//! In: a [`Series`] and the flow of the same run, its last state, and the time from which the results
+//! of a bed count.
 //! Out: a [`Summary`].
 
 use super::avalanches::Avalanche;
 use super::collapse::Collapse;
 use super::column::InitialColumn;
 use super::estimate::Estimate;
-use super::flow::NON_RIGID_TEMPERATURE;
+use super::flow::{FlowHistory, NON_RIGID_TEMPERATURE};
 use super::quantity::MeasuredValue;
 use super::result_key::{DropThreshold, ResultKey};
 use super::run_quantity::RunQuantity;
@@ -65,13 +66,20 @@ const TURNOVER: [Measure; 7] = [
     Measure::RollingLoss,
 ];
 
-/// Results of a run of which `series` holds the samples and `world` the last state. A column's
-/// begin at its release; a bed's count from `from_time` [s] on, with avalanches of at least
-/// `smallest_drop` [rad].
-pub fn results(series: &Series, world: &World, from_time: f64, smallest_drop: f64) -> Summary {
+/// Results of a run of which `series` holds the samples, `flow` how its bed flowed and `world` the last
+/// state. A column's begin at its release; a bed's count from `from_time` [s] on, with avalanches of
+/// at least `smallest_drop` [rad].
+pub fn results(
+    series: &Series,
+    flow: &FlowHistory,
+    world: &World,
+    from_time: f64,
+    smallest_drop: f64,
+) -> Summary {
     let column = InitialColumn::of(world).zip(Collapse::of(series));
     let Some((column, collapse)) = column else {
         let mut summary = summarise(series, from_time, smallest_drop);
+        add_layer(&mut summary, flow);
         add_case(&mut summary, world);
         return summary;
     };
@@ -104,6 +112,16 @@ pub fn summarise(series: &Series, from_time: f64, smallest_drop: f64) -> Summary
     }
     add_energies(&mut summary, &window);
     summary
+}
+
+/// Adds how fast the bed flowed in the time that the results count, and how deep.
+fn add_layer(summary: &mut Summary, flow: &FlowHistory) {
+    let nothing = Estimate::too_short(f64::NAN, 0);
+    let layer = flow.layer_between(summary.from, summary.to);
+    let speed = layer.map_or(nothing, |layer| layer.speed);
+    let depth = layer.and_then(|layer| layer.depth).unwrap_or(nothing);
+    summary.add_mean(RunQuantity::FlowSpeed, speed);
+    summary.add_mean(RunQuantity::FlowDepth, depth);
 }
 
 /// Adds what depends on the drum and its liquid alone, and the regime that the results show.

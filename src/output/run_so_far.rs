@@ -56,7 +56,8 @@ impl<'a> RunSoFar<'a> {
 
     /// The results so far.
     pub fn results(&self) -> Summary {
-        results(self.series, self.world, self.results_from(), SMALLEST_DROP)
+        let from = self.results_from();
+        results(self.series, self.flow, self.world, from, SMALLEST_DROP)
     }
 
     /// The results of `run`; of one that never stood at time zero, none.

@@ -90,6 +90,11 @@ fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
             wet_table(&drums(CODED), sweep),
         ),
         table(
+            "flow",
+            "The flowing layer, bridges as printed",
+            flow_table(&drums(PRINTED), sweep),
+        ),
+        table(
             "statements",
             "Statements, bridges as printed",
             statements(PRINTED),
@@ -138,6 +143,11 @@ const WET: &[TableColumn] = &[
     TableColumn::of_samples("h", Measure::SurfaceRoughness),
     TableColumn::of_samples("κ", Measure::SurfaceCurvature),
 ];
+/// Those of the table of the flow.
+const FLOW: &[TableColumn] = &[
+    TableColumn::of_run("u_0", RunQuantity::FlowSpeed),
+    TableColumn::of_run("d_f", RunQuantity::FlowDepth),
+];
 const ANGLE: TableColumn = TableColumn::of_samples("θ", Measure::SurfaceAngle);
 const DROP: TableColumn = TableColumn::of_run("Δθ", RunQuantity::Drop);
 const DROPS: TableColumn = TableColumn::of_run("drops", RunQuantity::Avalanches);
@@ -163,17 +173,66 @@ fn dry_table(drums: &Drums) -> String {
     text
 }
 
+/// The heads of the columns that tell a drum from others.
+const WHICH: [&str; 4] = ["r [mm]", "n", "η [mPa s]", "seeds"];
+
+/// What tells `drum` from others, and of how many `seeds` a row is.
+fn which(drum: &Drum, seeds: usize, sweep: &Sweep) -> [String; 4] {
+    let viscosity = if drum.is_dry() {
+        "dry".to_owned()
+    } else {
+        drum.viscosity.to_string()
+    };
+    let number = value(drum.ensemble.first(), "liquid", sweep).to_owned();
+    [
+        drum.radius.to_string(),
+        number,
+        viscosity,
+        seeds.to_string(),
+    ]
+}
+
+/// The drums radius by radius, coarse grains first.
+fn by_radius<'a>(drums: &'a Drums) -> Vec<&'a [Drum<'a>]> {
+    let mut radii: Vec<&[Drum]> = drums.0.chunk_by(|a, b| a.radius == b.radius).collect();
+    radii.reverse();
+    radii
+}
+
+/// A row for each drum of which it is known how fast it flows.
+fn flow_table(drums: &Drums, sweep: &Sweep) -> String {
+    let heads = WHICH.map(str::to_owned).into_iter();
+    let mut text = head(
+        &heads
+            .chain(FLOW.iter().map(TableColumn::head))
+            .collect::<Vec<_>>(),
+    );
+    for drum in by_radius(drums).into_iter().flatten() {
+        let members = drum.ensemble.members.iter();
+        let known = members.filter(|own| own.result(RunQuantity::FlowSpeed).is_some());
+        let seeds = known.count();
+        if seeds > 0 {
+            let results = drum.ensemble.results();
+            let cells = FLOW.iter().map(|column| column.cell_for_people(&results));
+            text += &line(
+                &(which(drum, seeds, sweep).into_iter())
+                    .chain(cells)
+                    .collect::<Vec<_>>(),
+            );
+        }
+    }
+    text
+}
+
 /// A row for each drum, coarse grains first and the dry one of each radius before the wet ones.
 fn wet_table(drums: &Drums, sweep: &Sweep) -> String {
-    let first = ["r [mm]", "n", "η [mPa s]", "seeds"].map(str::to_owned);
+    let first = WHICH.map(str::to_owned);
     let drops = [ANGLE.head(), DROP.head(), DROPS.head()];
     let ratios = ["Δθ/Δθ dry", "Eq. 23"].map(str::to_owned);
     let rest = WET.iter().map(TableColumn::head);
     let heads = first.into_iter().chain(drops).chain(ratios).chain(rest);
     let mut text = head(&heads.collect::<Vec<_>>());
-    let mut radii: Vec<&[Drum]> = drums.0.chunk_by(|a, b| a.radius == b.radius).collect();
-    radii.reverse();
-    for drums in radii
+    for drums in by_radius(drums)
         .iter()
         .filter(|drums| drums.iter().any(|drum| !drum.is_dry()))
     {
@@ -187,19 +246,13 @@ fn wet_table(drums: &Drums, sweep: &Sweep) -> String {
 
 fn wet_row(drum: &Drum, dry: Option<&Drum>, sweep: &Sweep) -> Vec<String> {
     let results = drum.ensemble.results();
-    let viscosity = if drum.is_dry() {
-        "dry".to_owned()
-    } else {
-        drum.viscosity.to_string()
-    };
     let drop = ResultKey::from(RunQuantity::Drop);
     let wet = || (!drum.is_dry()).then_some(drum);
     let ratio = wet().and_then(|wet| Some(wet.get(drop)?.over(dry?.get(drop)?)));
     let ratio = ratio.map(|own| RunQuantity::NonRigidShare.quantity().text(own));
     let law = wet().map(|wet| format!("{:.2}", drop_ratio_law(1e-3 * wet.viscosity)));
     let nothing = || crate::measure::numeral::NOTHING.to_owned();
-    let number = value(drum.ensemble.first(), "liquid", sweep).to_owned();
-    let cells = [drum.radius.to_string(), number, viscosity, seeds(drum)].into_iter();
+    let cells = which(drum, drum.ensemble.members.len(), sweep).into_iter();
     let of_drops = [ANGLE, DROP, DROPS].map(|column| column.cell_for_people(&results));
     let ratios = [ratio, law].map(|cell| cell.unwrap_or_else(nothing));
     let rest = WET.iter().map(|column| column.cell_for_people(&results));

@@ -84,6 +84,8 @@ pub const LENGTH: Unit = Unit {
 };
 /// Angular velocities of grains and surfaces; those of drums are [`TURNING`].
 pub const ANGULAR_VELOCITY: Unit = unit("rad/s", "°/s", DEGREES_PER_RADIAN);
+/// Speeds of beds that flow.
+pub const FLOW_SPEED: Unit = unit("m/s", "mm/s", 1e3);
 /// Volumes of heaps.
 pub const VOLUME: Unit = unit("m³", "cm³", 1e6);
 /// Volumes of films and bridges, which people read in litres with a prefix.

@@ -74,17 +74,28 @@ impl<'a> Ensemble<'a> {
     /// on which all agree, as they are.
     pub fn results(&self) -> Summary {
         let first = &self.first().results;
-        let entries = first.entries.iter().map(|entry| SummaryEntry {
-            key: entry.key,
-            value: self.mean_value(entry.key),
-            note: format!("mean over {} seeds: {}", self.members.len(), entry.note),
-        });
+        let entries = self
+            .most_results()
+            .entries
+            .iter()
+            .map(|entry| SummaryEntry {
+                key: entry.key,
+                value: self.mean_value(entry.key),
+                note: format!("mean over {} seeds: {}", self.members.len(), entry.note),
+            });
         Summary {
             from: first.from,
             to: first.to,
             samples: first.samples,
             entries: entries.collect(),
         }
+    }
+
+    /// Those of the member that has most of them: kept from earlier they may lack some.
+    fn most_results(&self) -> &Summary {
+        let all = self.members.iter().map(|member| &member.results);
+        let most = all.rev().max_by_key(|results| results.entries.len());
+        most.unwrap_or(&self.first().results)
     }
 
     fn mean_value(&self, key: ResultKey) -> Option<MeasuredValue> {

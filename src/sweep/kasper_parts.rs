@@ -33,10 +33,18 @@ pub fn along(
     key: ResultKey,
     rule: impl Fn(&[Estimate]) -> Verdict,
 ) -> Vec<Part> {
+    values_along(series, key.quantity(), |drum| drum.get(key), rule)
+}
+
+/// The same of a `value` that follows from results.
+pub fn values_along(
+    series: &[Vec<&Drum>],
+    quantity: &Quantity,
+    value: impl Fn(&Drum) -> Option<Estimate>,
+    rule: impl Fn(&[Estimate]) -> Verdict,
+) -> Vec<Part> {
     let part = |drums: &Vec<&Drum>| {
-        let found = drums
-            .iter()
-            .filter_map(|drum| Some((*drum, drum.get(key)?)));
+        let found = drums.iter().filter_map(|drum| Some((*drum, value(drum)?)));
         let found: Vec<(&Drum, Estimate)> = found.collect();
         let (first, last) = (found.first()?.0, found.last()?.0);
         let means: Vec<Estimate> = found.iter().map(|(_, mean)| *mean).collect();
@@ -51,10 +59,7 @@ pub fn along(
             let (liquid, from, to) = (first.liquid(), first.radius, last.radius);
             format!("{liquid}, r = {from} to {to} mm")
         };
-        let texts: Vec<String> = means
-            .iter()
-            .map(|mean| key.quantity().text(*mean))
-            .collect();
+        let texts: Vec<String> = means.iter().map(|mean| quantity.text(*mean)).collect();
         let verdict = rule(&means);
         (means.len() > 1).then(|| Part {
             place,

@@ -98,6 +98,8 @@ const DRUM: &[TableColumn] = &[
     TableColumn::of_samples("Tg′", Measure::CorotatingTemperature),
     TableColumn::of_run("ta/ts", RunQuantity::NonRigidShare),
     TableColumn::of_run("ta/ts′", RunQuantity::CorotatingShare),
+    TableColumn::of_run("u_0", RunQuantity::FlowSpeed),
+    TableColumn::of_run("d_f", RunQuantity::FlowDepth),
     TableColumn::of_run("√(1/Ga)", RunQuantity::InverseRootGalilei),
     TableColumn::of_run("Ca", RunQuantity::CapillaryNumber),
     TableColumn::of_samples("φ", Measure::PackingFraction),

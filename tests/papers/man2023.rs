@@ -26,7 +26,7 @@ fn results_of(settings: &[(&str, &str)]) -> Summary {
     };
     let end = run.world().clock.step_at(0.38);
     run.advance_to(end).unwrap();
-    results(run.series(), run.world(), 0.0, SMALLEST_DROP)
+    results(run.series(), run.flow(), run.world(), 0.0, SMALLEST_DROP)
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::*;
 use grainfall::measure::{
-    Collapse, Measure, MeasuredValue, RunQuantity, Sample, Series, results, sample,
+    Collapse, FlowHistory, Measure, MeasuredValue, RunQuantity, Sample, Series, results, sample,
 };
 
 /// Samples every 0.02 s of an energy per grain (two thirds of it translation) and a front, up to
@@ -139,7 +139,7 @@ fn drums_hold_what_they_held_and_nothing_of_columns() {
 fn results_of_a_column_are_those_of_its_collapse() {
     let world = three_grains();
     let series = course(1.0, energy, front);
-    let summary = results(&series, &world, 0.4, 1.0);
+    let summary = results(&series, &FlowHistory::default(), &world, 0.4, 1.0);
     let value = |quantity: RunQuantity| {
         let value = summary.value(quantity);
         value.unwrap_or_else(|| panic!("{quantity:?}"))
@@ -182,7 +182,8 @@ fn results_of_a_column_are_those_of_its_collapse() {
     assert!(text.contains(r#""name":"deposit shape","unit":"1","value":"cone""#));
     assert!(text.contains(r#""name":"front radius R_∞","unit":"m","value":0.05"#));
     // While it moves there is no rest time.
-    let moving = results(&course(0.16, energy, front), &world, 0.0, 1.0);
+    let no_flow = FlowHistory::default();
+    let moving = results(&course(0.16, energy, front), &no_flow, &world, 0.0, 1.0);
     assert_eq!(moving.value(RunQuantity::RestTime), None);
     assert_eq!(moving.value(RunQuantity::DimensionlessRestTime), None);
 }

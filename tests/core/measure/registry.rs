@@ -3,8 +3,8 @@
 
 use super::*;
 use grainfall::measure::{
-    DepositShape, DropThreshold, Format, GrainQuantity, Measure, MeasuredValue, Quantity, Regime,
-    ResultKey, RunQuantity, Series, results, sample,
+    DepositShape, DropThreshold, FlowHistory, Format, GrainQuantity, Measure, MeasuredValue,
+    Quantity, Regime, ResultKey, RunQuantity, Series, results, sample,
 };
 use grainfall::run::Column;
 use std::collections::HashSet;
@@ -98,7 +98,7 @@ fn summaries() -> [grainfall::measure::Summary; 2] {
             state.time = 0.02 * f64::from(step);
             series.push(state);
         }
-        results(&series, &world, 0.0, 0.01)
+        results(&series, &FlowHistory::default(), &world, 0.0, 0.01)
     })
 }
 

@@ -2,8 +2,8 @@
 
 use super::*;
 use grainfall::measure::{
-    Regime, RunQuantity, Series, granular_temperatures, results, rotation_temperature, sample,
-    temperature_map,
+    FlowHistory, Regime, RunQuantity, Series, granular_temperatures, results, rotation_temperature,
+    sample, temperature_map,
 };
 
 /// 0.5 rpm.
@@ -85,7 +85,7 @@ fn a_bed_at_rest_in_a_fast_drum_flows_for_the_paper_and_not_for_the_drum() {
         state.time = 0.02 * f64::from(step);
         series.push(state);
     }
-    let found = results(&series, &world, 0.0, 0.01);
+    let found = results(&series, &FlowHistory::default(), &world, 0.0, 0.01);
     assert_eq!(found.value(RunQuantity::NonRigidShare), Some(1.0));
     assert_eq!(found.value(RunQuantity::CorotatingShare), Some(0.0));
     assert_eq!(found.regime(), Some(Regime::Avalanching));
@@ -97,7 +97,10 @@ fn a_bed_at_rest_in_a_fast_drum_flows_for_the_paper_and_not_for_the_drum() {
     // A bed of smaller grains at the paper's speed says nothing.
     let mut slow = shaken_bed(0.002);
     turn_rigidly(&mut slow, SPEED);
-    assert_eq!(results(&series, &slow, 0.0, 0.01).rotation_note(), None);
+    assert_eq!(
+        results(&series, &FlowHistory::default(), &slow, 0.0, 0.01).rotation_note(),
+        None
+    );
 }
 
 #[test]

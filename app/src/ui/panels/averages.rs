@@ -53,7 +53,10 @@ impl Averages {
         let make = || {
             let series = &first(series, until);
             match simulation.world() {
-                Some(world) => (key, results(series, world, from, SMALLEST_DROP)),
+                Some(world) => {
+                    let flow = simulation.flow();
+                    (key, results(series, flow, world, from, SMALLEST_DROP))
+                }
                 None => (key, summarise(series, from, SMALLEST_DROP)),
             }
         };
