@@ -15,7 +15,7 @@ use crate::sweep::{
 };
 
 /// The paper. Springs and dashpots are taken implicitly, with steps as far from the shortest ones as
-/// explicit ones of 2.2 µs are (`docs/validation.md`), which take nine times as many.
+/// explicit ones of 2.2 µs are (`docs/numerics.md`), which take nine times as many.
 pub static MAN2023: Paper = Paper {
     name: "man2023",
     source: "Man et al. 2023, the collapse of columns of grains of two frictions",

@@ -3,7 +3,7 @@
 //! In: a scene. Out: the bed of its kind that was run, what it came to with each step, and by which
 //! results that is more than scatter. The numbers are in `assets/steps.csv`: means over beds from
 //! different seeds with their standard errors, in SI units. How they were made is told in
-//! `docs/validation.md`.
+//! `docs/numerics.md`.
 //!
 //! Not here: what a step makes of a single impact ([`crate::solver::step_choices`]), which steps are
 //! stable ([`crate::solver::advise`]).

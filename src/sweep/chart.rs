@@ -1,5 +1,6 @@
 //! A plot as SVG: points with their errors and laws over two axes, each linear or logarithmic.
 
+use super::legend::Legend;
 use crate::measure::Estimate;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -7,6 +8,8 @@ use std::ops::Range;
 
 /// Size of a plot in pixels.
 const SIZE: (u32, u32) = (760, 520);
+/// Size of the area between the axes in pixels, about.
+const AREA: (f64, f64) = (660.0, 420.0);
 /// Places to which a pixel is divided: coordinates are whole numbers, and a curve of whole pixels is
 /// a stair.
 const FINE: u32 = 10;
@@ -195,23 +198,41 @@ impl Plot {
         low - margin..high + margin
     }
 
-    /// The corner with the fewest points, for the legend.
-    fn emptiest_corner(&self) -> SeriesLabelPosition {
-        let (x, y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
-        let across = |place: &(f64, f64)| (place.0 - x.start) / (x.end - x.start);
-        let upright = |place: &(f64, f64)| (place.1 - y.start) / (y.end - y.start);
-        let within = |right: bool, upper: bool| {
-            let inside = |p: &(f64, f64)| (across(p) > 0.5) == right && (upright(p) > 0.6) == upper;
-            self.all_places().filter(inside).count()
+    /// The ranges of both axes, and the corner of the legend, under which nothing lies that is marked.
+    fn layout(&self) -> ([Range<f64>; 2], SeriesLabelPosition) {
+        let (x, mut y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
+        let share = |(across, upright): (f64, f64)| {
+            let share =
+                |place: f64, range: &Range<f64>| (place - range.start) / (range.end - range.start);
+            (share(across, &x), share(upright, &y))
         };
-        let corners = [
-            (within(true, true), SeriesLabelPosition::UpperRight),
-            (within(false, true), SeriesLabelPosition::UpperLeft),
-            (within(true, false), SeriesLabelPosition::LowerRight),
-            (within(false, false), SeriesLabelPosition::LowerLeft),
-        ];
-        let emptiest = corners.into_iter().min_by_key(|(count, _)| *count);
-        emptiest.map_or(SeriesLabelPosition::UpperRight, |(_, corner)| corner)
+        let marks = self.lines.iter().filter(|line| self.is_marked(line));
+        let marks = marks.flat_map(|line| self.places(line));
+        let marks: Vec<_> = marks.chain(self.bar_ends()).map(share).collect();
+        let curves: Vec<_> = self.along_lines().map(share).collect();
+        let named = self.lines.iter().map(|line| line.name.as_str());
+        let legend = Legend::of(named.filter(|name| !name.is_empty()), AREA);
+        let place = legend.place(&marks, &curves);
+        y.end = y.start + place.growth * (y.end - y.start);
+        ([x, y], place.corner)
+    }
+
+    /// Places on the lines between all points.
+    fn along_lines(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.lines.iter().flat_map(|line| {
+            let places: Vec<(f64, f64)> = self.places(line).collect();
+            let between = |pair: &[(f64, f64)]| {
+                let [from, to] = [pair[0], pair[1]];
+                let at = |from: f64, to: f64, k: u32| from + f64::from(k) / 16.0 * (to - from);
+                (0..16).map(move |k| (at(from.0, to.0, k), at(from.1, to.1, k)))
+            };
+            places.windows(2).flat_map(between).collect::<Vec<_>>()
+        })
+    }
+
+    /// Marks stand on results, none on curves.
+    fn is_marked(&self, line: &Line) -> bool {
+        !line.is_law && self.places(line).count() <= 16
     }
 
     /// As the text of an SVG file.
@@ -224,7 +245,7 @@ impl Plot {
             let size = (SIZE.0 * FINE, SIZE.1 * FINE);
             let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
             area.fill(&WHITE)?;
-            let (x, y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
+            let ([x, y], corner) = self.layout();
             let mut chart = ChartBuilder::on(&area)
                 .caption(&self.title, ("sans-serif", 20 * FINE))
                 .margin(14 * FINE)
@@ -254,8 +275,7 @@ impl Plot {
                         PathElement::new([(x, y), (end, y)], colour.stroke_width(2 * FINE))
                     });
                 }
-                // Marks on results, none on curves.
-                if !line.is_law && points.len() <= 16 {
+                if self.is_marked(line) {
                     chart.draw_series(
                         points
                             .iter()
@@ -270,7 +290,7 @@ impl Plot {
                 .background_style(WHITE.mix(0.85))
                 .legend_area_size(30 * FINE)
                 .margin(10 * FINE)
-                .position(self.emptiest_corner())
+                .position(corner)
                 .draw()?;
             area.present()?;
         }

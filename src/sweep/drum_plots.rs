@@ -23,7 +23,7 @@ pub fn drum_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
         .iter()
         .map(|result| over.plot(result, &ensembles))
         .collect();
-    plots.extend(drop_ratios(&ensembles));
+    plots.extend(ratios(&ensembles));
     plots.extend(over_galilei(&ensembles));
     plots.extend(profiles(&ensembles));
     let with_course = outcomes.iter().filter(|own| own.has_course());
@@ -46,7 +46,7 @@ const fn linear(file: &'static str, key: ResultKey) -> ResultPlot {
     }
 }
 
-const RESULTS: [ResultPlot; 7] = [
+const RESULTS: [ResultPlot; 9] = [
     linear(
         "surface-angle.svg",
         ResultKey::OfSamples(Measure::SurfaceAngle),
@@ -65,6 +65,8 @@ const RESULTS: [ResultPlot; 7] = [
         "flowing-share-corotating.svg",
         ResultKey::OfRun(RunQuantity::CorotatingShare),
     ),
+    linear("flow-speed.svg", ResultKey::OfRun(RunQuantity::FlowSpeed)),
+    linear("flow-depth.svg", ResultKey::OfRun(RunQuantity::FlowDepth)),
     linear(
         "packing-fraction.svg",
         ResultKey::OfSamples(Measure::PackingFraction),
@@ -182,32 +184,48 @@ fn by_radius(
 /// The varied keys that make a line and its points.
 const OF_THE_PAPER: [&str; 3] = ["liquid", "viscosity", "radius"];
 
-/// Wet over dry drop, with Eq. 23 (Fig. 5b).
-fn drop_ratios(ensembles: &[Ensemble]) -> Option<Plot> {
+/// A result of wet drums over that of the dry one with as large grains, over the viscosity.
+fn over_dry(ensembles: &[Ensemble], key: ResultKey) -> Vec<Line> {
     let dry = |wet: &CaseResult| {
         let mut dry = ensembles.iter().filter(|e| viscosity(e.first()).is_none());
         dry.find(|e| radius(e.first()) == radius(wet))?
-            .estimate(RunQuantity::Drop)
+            .estimate(key)
     };
-    let mut lines = by_radius(ensembles, "", |ensemble| {
+    by_radius(ensembles, "", |ensemble| {
         let viscosity = viscosity(ensemble.first())?;
-        let wet = ensemble.estimate(RunQuantity::Drop)?;
+        let wet = ensemble.estimate(key)?;
         Some((viscosity, wet.over(dry(ensemble.first())?)))
-    });
-    lines.push(Line::law(
-        "0.4 + 0.47 exp(−η/295 mPa s), Eq. 23",
-        0.5,
-        2000.0,
-        |eta| drop_ratio_law(1e-3 * eta),
-    ));
-    let plot = Plot {
-        file: "drop-ratio.svg".into(),
-        title: "wet over dry drop".into(),
+    })
+}
+
+/// Wet over dry drop, with Eq. 23 (Fig. 5b), and wet over dry roughness (Fig. 5c).
+fn ratios(ensembles: &[Ensemble]) -> Vec<Plot> {
+    let plot = |file: &str, title: &str, label: &str, lines| Plot {
+        file: file.into(),
+        title: title.into(),
         x: ChartAxis::logarithmic("viscosity η [mPa s]"),
-        y: ChartAxis::linear("Δθ wet / Δθ dry"),
+        y: ChartAxis::linear(label),
         lines,
     };
-    plot.has_points().then_some(plot)
+    let mut drops = over_dry(ensembles, RunQuantity::Drop.into());
+    let law = "0.4 + 0.47 exp(−η/295 mPa s), Eq. 23";
+    let law = Line::law(law, 0.5, 2000.0, |eta| drop_ratio_law(1e-3 * eta));
+    drops.push(law);
+    let roughness = over_dry(ensembles, Measure::SurfaceRoughness.into());
+    vec![
+        plot(
+            "drop-ratio.svg",
+            "wet over dry drop",
+            "Δθ wet / Δθ dry",
+            drops,
+        ),
+        plot(
+            "roughness-ratio.svg",
+            "wet over dry roughness of the surface",
+            "h wet / h dry",
+            roughness,
+        ),
+    ]
 }
 
 /// Non-rigid share and drop over √(1/Ga) (Fig. 7).
@@ -252,6 +270,7 @@ fn over_galilei(ensembles: &[Ensemble]) -> Vec<Plot> {
 fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
     let mut plots: BTreeMap<u64, Plot> = BTreeMap::new();
     let has_course = |own: &&Ensemble| own.members.iter().any(|member| member.has_course());
+    let is_any_wet = ensembles.iter().any(|own| viscosity(own.first()).is_some());
     for ensemble in ensembles.iter().filter(has_course) {
         let outcome = ensemble.first();
         let radius = radius(outcome);
@@ -263,21 +282,27 @@ fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
             lines: Vec::new(),
         });
         let apart = ensemble.apart_from(&OF_THE_PAPER);
-        let name =
-            viscosity(outcome).map_or_else(|| ensemble.name(), |eta| format!("{eta} mPa s{apart}"));
+        let name = match viscosity(outcome) {
+            Some(eta) => format!("{eta} mPa s{apart}"),
+            None if is_any_wet => format!("dry{apart}"),
+            None => ensemble.name(),
+        };
         plot.lines.push(Line::means(name, profile(ensemble)));
     }
     plots.into_values().collect()
 }
 
-/// Velocity downhill [mm/s] over depth [mm], each a mean over the members that flowed there; of a
-/// single run with the run's own error.
+/// Velocity downhill [mm/s] over depth [mm], each a mean over the members that flowed there for at
+/// least half of the time that they did at the surface; of a single run with the run's own error.
 fn profile(ensemble: &Ensemble) -> Vec<(f64, Estimate)> {
     let members = ensemble.members.iter().map(|member| &member.flow);
     let longest = members.clone().max_by_key(|flow| flow.len());
     let depths = longest.map_or(&[][..], Vec::as_slice);
     let at = |(k, (depth, _)): (usize, &(f64, Estimate))| {
-        let means = members.clone().filter_map(|flow| Some(flow.get(k)?.1));
+        let means = members.clone().filter_map(|flow| {
+            let (own, surface) = (flow.get(k)?.1, flow.first()?.1);
+            (2 * own.samples >= surface.samples).then_some(own)
+        });
         let finite: Vec<Estimate> = means.filter(|velocity| velocity.mean.is_finite()).collect();
         let downhill = match finite[..] {
             [own] => own,

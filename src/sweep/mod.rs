@@ -27,6 +27,7 @@ mod folder;
 mod gather;
 mod kasper_parts;
 mod kasper_statements;
+mod legend;
 mod man_loose_statements;
 mod man_statements;
 mod plan;

@@ -49,9 +49,14 @@ pub fn lacking(outcomes: &[CaseResult]) -> Option<String> {
         1 => "1 case, which is".to_owned(),
         count => format!("{count} cases, which are"),
     };
+    let (named, others) = without.split_at(without.len().min(3));
+    let others = match others.len() {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    let named = named.join(", ");
     Some(format!(
-        "{plots} lack {cases} kept without samples: {}",
-        without.join(", ")
+        "{plots} lack {cases} kept without samples: {named}{others}"
     ))
 }
 

@@ -138,8 +138,14 @@ impl PaperTask {
     }
 
     fn say(&self, job: &PaperJob, papered: &Papered) -> Result<(), RunnerError> {
-        for case in &papered.missing {
+        let (named, others) = papered.missing.split_at(papered.missing.len().min(NAMED));
+        for case in named {
             self.report().note(&format!("missing: {case}"));
+        }
+        if !others.is_empty() {
+            let count = others.len();
+            let note = format!("missing: {count} more, which `--list` and tables.md name");
+            self.report().note(&note);
         }
         if let Some(lacking) = &papered.lacking {
             self.report().note(lacking);
@@ -164,6 +170,8 @@ impl PaperTask {
     }
 }
 
+/// Missing cases that are named one by one.
+const NAMED: usize = 8;
 /// Largest document that is read [bytes].
 const LARGEST: u64 = 16 << 20;
 

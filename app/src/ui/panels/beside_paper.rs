@@ -138,7 +138,9 @@ impl Panel for BesidePaper {
             ui.label(RichText::new(note).small().weak());
         }
         let missing = match (dry, drop) {
-            (None, _) => "No stored dry drum has this radius: set a drum of 3 or 2 mm beside it. ",
+            (None, _) => {
+                "No stored dry drum has this radius: set a drum of 3, 2 or 1.25 mm beside it. "
+            }
             (_, None) => "No avalanche yet. ",
             _ => "",
         };

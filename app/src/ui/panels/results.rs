@@ -42,7 +42,7 @@ const LATEST: [Measure; 25] = [
 ];
 
 /// The averages of a bed.
-const AVERAGES: [ResultKey; 10] = [
+const AVERAGES: [ResultKey; 12] = [
     ResultKey::OfSamples(Measure::SurfaceAngle),
     ResultKey::OfRun(RunQuantity::MaximumAngle),
     ResultKey::OfRun(RunQuantity::ReposeAngle),
@@ -53,6 +53,8 @@ const AVERAGES: [ResultKey; 10] = [
     ResultKey::OfSamples(Measure::GranularTemperature),
     ResultKey::OfRun(RunQuantity::NonRigidShare),
     ResultKey::OfRun(RunQuantity::CorotatingShare),
+    ResultKey::OfRun(RunQuantity::FlowSpeed),
+    ResultKey::OfRun(RunQuantity::FlowDepth),
 ];
 
 /// What stands in their place of a column.
