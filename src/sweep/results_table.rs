@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(
             heads(DRUM),
             "θ [°],θ_m [°],θ_r [°],Δθ [°],drops,Δθ ≥ 0.5° [°],Δθ ≥ 2° [°],Δθ ≥ 3° [°],T_a [s],\
-             Tg [m²/s²],Tg′ [m²/s²],ta/ts,ta/ts′,√(1/Ga),Ca,φ,Z,h [mm],κ [1/m],bridges,ruptures [1/s],\
+             Tg [m²/s²],Tg′ [m²/s²],ta/ts,ta/ts′,u_0 [mm/s],d_f [mm],√(1/Ga),Ca,φ,Z,h [mm],κ [1/m],bridges,ruptures [1/s],\
              drum power [mW],viscous loss [J],largest overlap,energy residual"
         );
         assert_eq!(
