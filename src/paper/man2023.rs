@@ -5,13 +5,11 @@
 use super::markdown::{head, line};
 use super::plan::{Batch, Beside, Paper, PaperTable};
 use crate::measure::numeral::NOTHING;
-use crate::measure::{
-    Measure, RunQuantity, Summary, cone_volume_law, contact_shares_law, run_out_law,
-};
+use crate::measure::{Measure, RunQuantity, cone_volume_law, contact_shares_law, run_out_law};
 use crate::physics::units;
 use crate::sweep::{
-    CaseResult, ColumnMeasure, Columns, Ensemble, Sweep, TableColumn, column_statements, ensembles,
-    statements_table,
+    CaseResult, Column, ColumnMeasure, Columns, Ensemble, Sweep, TableColumn, column_statements,
+    ensembles, statements_table,
 };
 
 /// The paper. Springs and dashpots are taken implicitly, with steps as far from the shortest ones as
@@ -132,9 +130,13 @@ fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
         table(
             "laws",
             "Run-out and cone beside the laws",
-            laws(sweep, &ensembles),
+            laws(sweep, &ensembles, &columns_of),
         ),
-        table("columns", "All results", columns(sweep, &ensembles)),
+        table(
+            "columns",
+            "All results",
+            columns(sweep, &ensembles, &columns_of),
+        ),
         table(
             "statements",
             "Statements",
@@ -158,8 +160,20 @@ fn start(ensemble: &Ensemble) -> Vec<String> {
     ensemble.values.iter().cloned().chain([seeds]).collect()
 }
 
+/// The cell of a result of `ensemble`; of one run it has the error that statements judge it with,
+/// from the scatter of columns like it.
+fn cell(column: &TableColumn, ensemble: &Ensemble, columns: &Columns) -> String {
+    let is_own = |own: &&Column| std::ptr::eq(own.ensemble, ensemble);
+    let single = (columns.0.iter().find(is_own)).filter(|own| own.ensemble.members.len() == 1);
+    let mean = single.and_then(|own| own.get(column.key()));
+    match mean.filter(|mean| mean.error.is_some_and(|error| error > 0.0)) {
+        Some(mean) => column.cell_of(mean),
+        None => column.cell_for_people(&ensemble.results()),
+    }
+}
+
 /// Run-out, volume of the cone and contact shares, each beside the paper's law.
-fn laws(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
+fn laws(sweep: &Sweep, ensembles: &[Ensemble], columns: &Columns) -> String {
     let behind = [
         "α_eff",
         "ℛ",
@@ -173,7 +187,6 @@ fn laws(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
         .collect();
     let mut text = head(&heads);
     for ensemble in ensembles {
-        let results = ensemble.results();
         let number = |quantity| ensemble.mean(quantity);
         let effective = number(RunQuantity::EffectiveAspectRatio);
         let law =
@@ -185,9 +198,9 @@ fn laws(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
         });
         let mut cells = start(ensemble);
         cells.push(effective.map_or_else(nothing, |x| format!("{x:.3}")));
-        cells.push(RUN_OUT.cell_for_people(&results));
+        cells.push(cell(&RUN_OUT, ensemble, columns));
         cells.push(law(run_out_law));
-        cells.push(CONE.cell_for_people(&results));
+        cells.push(cell(&CONE, ensemble, columns));
         cells.push(law(cone_volume_law));
         cells.push(shares);
         text += &line(&cells);
@@ -195,15 +208,14 @@ fn laws(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
     text
 }
 
-fn columns(sweep: &Sweep, ensembles: &[Ensemble]) -> String {
-    let results: Vec<Summary> = ensembles.iter().map(Ensemble::results).collect();
+fn columns(sweep: &Sweep, ensembles: &[Ensemble], columns: &Columns) -> String {
     let heads: Vec<String> = (heads(sweep).into_iter())
         .chain(COLUMN.iter().map(TableColumn::head))
         .collect();
     let mut text = head(&heads);
-    for (ensemble, results) in ensembles.iter().zip(&results) {
+    for ensemble in ensembles {
         let mut cells = start(ensemble);
-        cells.extend(COLUMN.iter().map(|column| column.cell_for_people(results)));
+        cells.extend(COLUMN.iter().map(|own| cell(own, ensemble, columns)));
         text += &line(&cells);
     }
     text
@@ -216,12 +228,22 @@ fn nothing() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::Summary;
     use crate::paper::{PaperJob, Selection};
     use crate::sweep::Case;
 
     /// Columns of 1 cm, of three seeds each, that fall as `results` say of their solid fraction, off by
     /// a hundredth from seed to seed, and the table of their statements.
     fn statements(results: impl Fn(f64) -> Vec<(RunQuantity, f64)>) -> String {
+        table("statements", |_| true, results)
+    }
+
+    /// The table `name` of those of them of which `is_there`.
+    fn table(
+        name: &str,
+        is_there: impl Fn(&Case) -> bool,
+        results: impl Fn(f64) -> Vec<(RunQuantity, f64)>,
+    ) -> String {
         let selection = Selection {
             parts: vec!["h1".to_owned(), "loose".to_owned()],
             only: Some("height=10mm".to_owned()),
@@ -243,10 +265,33 @@ mod tests {
         };
         let cases = crate::sweep::cases(job.sweep()).unwrap();
         assert_eq!(cases.len(), 18);
-        let outcomes: Vec<CaseResult> = cases.iter().map(outcome).collect();
+        let there = cases.iter().filter(|case| is_there(case));
+        let outcomes: Vec<CaseResult> = there.map(outcome).collect();
         let tables = tables(job.sweep(), &outcomes);
-        let found = tables.into_iter().find(|own| own.name == "statements");
-        found.unwrap().text
+        tables
+            .into_iter()
+            .find(|own| own.name == name)
+            .unwrap()
+            .text
+    }
+
+    #[test]
+    fn a_column_that_was_run_once_has_the_relative_scatter_of_those_like_it() {
+        let is_first = |case: &Case| case.values.last().unwrap() == "1";
+        let is_there = |case: &Case| case.values[4] != "0.1" || is_first(case);
+        let laws = table("laws", is_there, |_| vec![(RunQuantity::RunOut, 0.4)]);
+        let rows: Vec<&str> = laws
+            .lines()
+            .filter(|row| row.contains("| 0.1 | 1 |"))
+            .collect();
+        assert_eq!(rows.len(), 2, "{laws}");
+        // Three seeds scatter by a hundredth; seed 1 lies a hundredth low.
+        for row in rows {
+            assert!(row.contains("| 0.396 ± 0.004 |"), "{row}");
+        }
+        // A mean of three has its own error.
+        let of_three = laws.lines().filter(|row| row.contains("| 0.400 ± 0.002 |"));
+        assert_eq!(of_three.count(), 4, "{laws}");
     }
 
     /// The verdict in the row of a statement that begins so.

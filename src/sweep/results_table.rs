@@ -6,7 +6,7 @@
 use super::Sweep;
 use super::case::CaseResult;
 use crate::measure::numeral::NOTHING;
-use crate::measure::{DropThreshold, Format, Measure, ResultKey, RunQuantity, Summary};
+use crate::measure::{DropThreshold, Estimate, Format, Measure, ResultKey, RunQuantity, Summary};
 use crate::output::{Ending, OutputError, write_file};
 use crate::physics::{Unit, units};
 
@@ -59,7 +59,7 @@ impl TableColumn {
     }
 
     /// The result that it shows.
-    pub(super) fn key(&self) -> ResultKey {
+    pub fn key(&self) -> ResultKey {
         self.key
     }
 
@@ -78,9 +78,14 @@ impl TableColumn {
     /// Its cell for people, a mean with its error.
     pub fn cell_for_people(&self, results: &Summary) -> String {
         match results.estimate(self.key) {
-            Some(mean) => (self.key.quantity()).number_with_error_as(mean, self.unit, self.format),
+            Some(mean) => self.cell_of(mean),
             None => self.cell(results),
         }
+    }
+
+    /// Its cell for people where the result is this `mean`.
+    pub fn cell_of(&self, mean: Estimate) -> String {
+        (self.key.quantity()).number_with_error_as(mean, self.unit, self.format)
     }
 }
 
