@@ -1,12 +1,13 @@
 //! A plot as SVG: points with their errors and laws over two axes, each linear or logarithmic.
 
-use super::legend::Legend;
+use super::legend::{LINE, Legend};
 use crate::measure::Estimate;
+use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::ops::Range;
 
-/// Size of a plot in pixels.
+/// Size of a plot in pixels, without a legend beside it.
 const SIZE: (u32, u32) = (760, 520);
 /// Size of the area between the axes in pixels, about.
 const AREA: (f64, f64) = (660.0, 420.0);
@@ -198,23 +199,25 @@ impl Plot {
         low - margin..high + margin
     }
 
-    /// The ranges of both axes, and the corner of the legend, under which nothing lies that is marked.
-    fn layout(&self) -> ([Range<f64>; 2], SeriesLabelPosition) {
-        let (x, mut y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
+    /// The legend, and the corner in which it hides nothing that is marked, where there is one.
+    fn legend(&self, x: &Range<f64>, y: &Range<f64>) -> (Legend, Option<SeriesLabelPosition>) {
         let share = |(across, upright): (f64, f64)| {
             let share =
                 |place: f64, range: &Range<f64>| (place - range.start) / (range.end - range.start);
-            (share(across, &x), share(upright, &y))
+            (share(across, x), share(upright, y))
         };
         let marks = self.lines.iter().filter(|line| self.is_marked(line));
         let marks = marks.flat_map(|line| self.places(line));
         let marks: Vec<_> = marks.chain(self.bar_ends()).map(share).collect();
         let curves: Vec<_> = self.along_lines().map(share).collect();
-        let named = self.lines.iter().map(|line| line.name.as_str());
-        let legend = Legend::of(named.filter(|name| !name.is_empty()), AREA);
-        let place = legend.place(&marks, &curves);
-        y.end = y.start + place.growth * (y.end - y.start);
-        ([x, y], place.corner)
+        let legend = Legend::of(self.named().map(|(_, line)| line.name.as_str()), AREA);
+        (legend, legend.corner(&marks, &curves))
+    }
+
+    /// The lines that have a name, each with its number.
+    fn named(&self) -> impl Iterator<Item = (usize, &Line)> {
+        let lines = self.lines.iter().enumerate();
+        lines.filter(|(_, line)| !line.name.is_empty())
     }
 
     /// Places on the lines between all points.
@@ -241,11 +244,19 @@ impl Plot {
     /// When it cannot be drawn.
     pub fn draw(&self) -> Result<String, Box<dyn std::error::Error>> {
         let mut text = String::new();
+        let (x, y) = (self.range(|(x, _)| x), self.range(|(_, y)| y));
+        let (legend, corner) = self.legend(&x, &y);
+        let beside = if corner.is_some() {
+            0
+        } else {
+            legend.width.ceil() as u32
+        };
+        let size = (SIZE.0 + beside, SIZE.1);
         {
-            let size = (SIZE.0 * FINE, SIZE.1 * FINE);
-            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            area.fill(&WHITE)?;
-            let ([x, y], corner) = self.layout();
+            let fine = (size.0 * FINE, size.1 * FINE);
+            let whole = SVGBackend::with_string(&mut text, fine).into_drawing_area();
+            whole.fill(&WHITE)?;
+            let (area, side) = whole.split_horizontally(SIZE.0 * FINE);
             let mut chart = ChartBuilder::on(&area)
                 .caption(&self.title, ("sans-serif", 20 * FINE))
                 .margin(14 * FINE)
@@ -284,21 +295,39 @@ impl Plot {
                 }
                 self.draw_bars(&mut chart, line, colour, [x.clone(), y.clone()])?;
             }
-            chart
-                .configure_series_labels()
-                .label_font(("sans-serif", 14 * FINE))
-                .background_style(WHITE.mix(0.85))
-                .legend_area_size(30 * FINE)
-                .margin(10 * FINE)
-                .position(corner)
-                .draw()?;
-            area.present()?;
+            match corner {
+                Some(corner) => chart
+                    .configure_series_labels()
+                    .label_font(("sans-serif", 14 * FINE))
+                    .background_style(WHITE.mix(0.85))
+                    .legend_area_size(30 * FINE)
+                    .margin(10 * FINE)
+                    .position(corner)
+                    .draw()?,
+                None => self.list_beside(&side)?,
+            }
+            whole.present()?;
         }
-        Ok(at_its_size(&text))
+        Ok(at_its_size(&text, size))
     }
 }
 
 impl Plot {
+    /// Lists the named lines on the area beside the plot.
+    fn list_beside(&self, side: &DrawingArea<SVGBackend, Shift>) -> DrawingResult {
+        let fine = |pixels: f64| (pixels * f64::from(FINE)) as i32;
+        for (row, (index, line)) in self.named().enumerate() {
+            let y = fine(56.0 + LINE * row as f64);
+            let stroke = colour(index, line.is_law).stroke_width(2 * FINE);
+            let ends = vec![(fine(4.0), y), (fine(22.0), y)];
+            side.draw(&PathElement::new(ends, stroke))?;
+            let place = (fine(30.0), y - fine(7.0));
+            let style = ("sans-serif", 14 * FINE).into_font().color(&BLACK);
+            side.draw(&Text::new(line.name.clone(), place, style))?;
+        }
+        Ok(())
+    }
+
     /// Draws the error bars of `line` in `colour` on a chart that shows these ranges. A bar that
     /// has no lower end, as zero on a logarithmic axis, goes down to the edge.
     fn draw_bars(
@@ -329,11 +358,11 @@ impl Plot {
     }
 }
 
-/// The drawing `text`, shown in pixels.
-fn at_its_size(text: &str) -> String {
-    let size = |(across, upright): (u32, u32)| format!(r#"width="{across}" height="{upright}""#);
-    let fine = size((SIZE.0 * FINE, SIZE.1 * FINE));
-    text.replacen(&fine, &size(SIZE), 1)
+/// The drawing `text`, shown in so many pixels.
+fn at_its_size(text: &str, (across, upright): (u32, u32)) -> String {
+    let size = |across: u32, upright: u32| format!(r#"width="{across}" height="{upright}""#);
+    let fine = size(across * FINE, upright * FINE);
+    text.replacen(&fine, &size(across, upright), 1)
 }
 
 fn colour(index: usize, is_law: bool) -> RGBColor {
@@ -386,6 +415,23 @@ mod tests {
         let RGBColor(r, g, b) = colour(0, false);
         let own = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\" stroke-width=\"{FINE}\"");
         assert_eq!(text.matches(&own).count(), 3 + 2);
+    }
+
+    #[test]
+    fn a_legend_without_a_free_corner_stands_beside_the_plot() {
+        let corners = [(0.0, 1e-9), (0.0, 1e-7), (2.0, 1e-9), (2.0, 1e-7)];
+        let text = plot(&corners).draw().unwrap();
+        assert!(
+            text.starts_with("<svg width=\"823\" height=\"520\""),
+            "{}",
+            &text[..80]
+        );
+        let name = text.find("\na\n").unwrap();
+        let label = &text[text[..name].rfind("<text").unwrap()..name];
+        let x: u32 = label.split('"').nth(1).unwrap().parse().unwrap();
+        assert!(x > SIZE.0 * FINE, "{label}");
+        let text = plot(&corners[..2]).draw().unwrap();
+        assert!(text.starts_with("<svg width=\"760\""));
     }
 
     #[test]
