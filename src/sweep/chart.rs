@@ -17,6 +17,8 @@ const FINE: u32 = 10;
 /// A logarithmic axis of fewer decades has labels between them.
 const FEW_DECADES: f64 = 2.5;
 
+/// How much of its colour a band has.
+const BAND: f64 = 0.25;
 /// Half the width of the ends of an error bar, as a share of the plot's width.
 const BAR_END: f64 = 0.006;
 
@@ -31,7 +33,7 @@ pub struct Line {
     /// Its points, in the units of the axes.
     pub points: Vec<(f64, f64)>,
     /// One standard error below and above a point: its x, and from where to where on the upright
-    /// axis.
+    /// axis. Bars where points are marked, a band along a curve.
     pub bars: Vec<(f64, f64, f64)>,
     /// A law or threshold: drawn as a grey curve without marks.
     pub is_law: bool,
@@ -293,7 +295,11 @@ impl Plot {
                             .map(|point| Circle::new(*point, 4 * FINE, colour.filled())),
                     )?;
                 }
-                self.draw_bars(&mut chart, line, colour, [x.clone(), y.clone()])?;
+                if self.is_marked(line) {
+                    self.draw_bars(&mut chart, line, colour, [x.clone(), y.clone()])?;
+                } else {
+                    self.draw_band(&mut chart, line, colour, y.start)?;
+                }
             }
             match corner {
                 Some(corner) => chart
@@ -356,6 +362,31 @@ impl Plot {
         }
         Ok(())
     }
+
+    /// Draws the errors of `line` as a band in `colour`; what has no lower end, as zero on a
+    /// logarithmic axis, goes down to the edge at `floor`.
+    fn draw_band(
+        &self,
+        chart: &mut Chart,
+        line: &Line,
+        colour: RGBColor,
+        floor: f64,
+    ) -> DrawingResult {
+        let edges = line.bars.iter().map(|(x, low, high)| {
+            let low = Some(self.y.place(*low)).filter(|place| place.is_finite());
+            (self.x.place(*x), low.unwrap_or(floor), self.y.place(*high))
+        });
+        let edges: Vec<_> = edges
+            .filter(|(x, _, high)| x.is_finite() && high.is_finite())
+            .collect();
+        let above = edges.iter().map(|(x, _, high)| (*x, *high));
+        let below = edges.iter().rev().map(|(x, low, _)| (*x, *low));
+        let outline: Vec<(f64, f64)> = above.chain(below).collect();
+        if !outline.is_empty() {
+            chart.draw_series([Polygon::new(outline, colour.mix(BAND).filled())])?;
+        }
+        Ok(())
+    }
 }
 
 /// The drawing `text`, shown in so many pixels.
@@ -415,6 +446,36 @@ mod tests {
         let RGBColor(r, g, b) = colour(0, false);
         let own = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\" stroke-width=\"{FINE}\"");
         assert_eq!(text.matches(&own).count(), 3 + 2);
+    }
+
+    /// The outline of a band runs one error above the points and back one below them.
+    #[test]
+    fn errors_along_a_curve_are_a_band() {
+        let point = |k: u32| {
+            let mean = Estimate::of_runs(&[1e-8, 3e-8]);
+            (f64::from(k), mean)
+        };
+        let plot = Plot {
+            lines: vec![Line::means("a", (0..20).map(point))],
+            ..plot(&[])
+        };
+        let text = plot.draw().unwrap();
+        let band = text.split("<polygon ").nth(1).unwrap();
+        assert!(band.contains("opacity=\"0.25\""), "{band}");
+        let corners = band.split("points=\"").nth(1).unwrap();
+        let corners: Vec<&str> = corners.split('"').next().unwrap().split(' ').collect();
+        let y: Vec<&str> = corners
+            .iter()
+            .filter_map(|at| at.split(',').nth(1))
+            .collect();
+        assert_eq!(y.len(), 40, "{corners:?}");
+        assert!(y[..20].iter().all(|own| *own == y[0]));
+        assert!(y[20..].iter().all(|own| *own == y[39]));
+        let height = |at: &str| at.parse::<f64>().unwrap();
+        assert!(height(y[0]) < height(y[39]), "one above, one below");
+        let RGBColor(r, g, b) = colour(0, false);
+        let bars = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\" stroke-width=\"{FINE}\"");
+        assert!(!text.contains(&bars));
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //!
 //! Cases that differ in height alone share a colour. Where the mixing ratio is varied, plots over
 //! the aspect ratio have one panel, a file of its own, for each ratio, as in the paper. Points are
-//! means over the seeds, or single runs, with bars of one standard error.
+//! means over the seeds, or single runs, with bars of one standard error, curves over time with
+//! bands.
 
 use super::Sweep;
 use super::case::CaseResult;
@@ -11,15 +12,16 @@ use super::chart::{ChartAxis, Line, Plot};
 use super::column_laws::{
     cone_volume_line, height_slopes, peak_time_line, rest_time_lines, run_out_line, run_out_slopes,
 };
-use super::ensemble::ensembles;
+use super::ensemble::{Ensemble, ensembles};
 use super::variation::SEED;
-use crate::measure::{Measure, RunQuantity, contact_shares_law};
+use crate::measure::{Estimate, Measure, RunQuantity, contact_shares_law};
 use crate::physics::units;
 
 /// The varied key that makes the points of a curve.
 const HEIGHT: &str = "height";
 /// The varied key that makes the panels of a figure.
 const MIX: &str = "mix";
+
 /// Every plot of these outcomes.
 pub fn column_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     let figures = Figures { sweep, outcomes };
@@ -27,8 +29,7 @@ pub fn column_plots(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<Plot> {
     plots.extend(figures.panels("run-out-aspect", RunQuantity::RunOut, run_out_slopes));
     plots.extend(figures.panels("height-aspect", RunQuantity::RelativeHeight, height_slopes));
     plots.extend(figures.over_effective());
-    let with_course = outcomes.iter().filter(|own| own.has_course());
-    plots.extend(with_course.map(shares));
+    plots.extend(figures.shares());
     plots
 }
 
@@ -161,43 +162,62 @@ impl Figures<'_> {
     /// Front and energy over time (Figs. 5 to 7): a plot of all heights for each group, or of all
     /// cases where the height is not varied.
     fn courses(&self) -> Vec<Plot> {
-        let with_course = self.outcomes.iter().filter(|own| own.has_course());
-        let all: Vec<&CaseResult> = with_course.collect();
         let keys = self.sweep.variations.iter().map(|v| v.key.as_str());
         let others: Vec<&str> = keys.filter(|key| *key != HEIGHT).collect();
         let (together, hidden) = if self.varies(HEIGHT) {
-            (self.groups(&all, &[HEIGHT]), others)
+            (self.groups(&self.with_course(), &[HEIGHT, SEED]), others)
         } else {
-            (vec![(String::new(), all)], Vec::new())
+            (vec![(String::new(), self.with_course())], vec![SEED])
         };
-        let plot = |(label, members): &(String, Vec<&CaseResult>),
-                    file: &str,
-                    y: &str,
-                    value: SampleValue| {
-            let line = |outcome: &&CaseResult| {
-                let name = or(self.label(outcome, &hidden), "case");
-                Line::results(name, over_time(outcome, value))
+        let both = |(label, members): (String, Vec<&CaseResult>)| {
+            let mut members = ensembles(self.sweep, members);
+            members.sort_by(by_aspect_ratio);
+            let plot = |file: &str, y: ChartAxis, value: SampleValue| {
+                let line = |ensemble: &Ensemble| {
+                    let name = or(self.label(ensemble.first(), &hidden), "case");
+                    Line::means(name, over_time(ensemble, value))
+                };
+                Plot {
+                    file: format!("courses/{}.svg", named(file, &label)),
+                    title: format!("{} {label}", y.label()),
+                    x: ChartAxis::linear("time [s]"),
+                    y,
+                    lines: members.iter().map(line).collect(),
+                }
             };
-            Plot {
-                file: format!("courses/{}.svg", named(file, label)),
-                title: format!("{y} {label}"),
-                x: ChartAxis::linear("time [s]"),
-                y: ChartAxis::linear(y),
-                lines: members.iter().map(line).collect(),
-            }
-        };
-        let both = |group| {
+            let energy_axis = ChartAxis::logarithmic("kinetic energy per grain [g cm²/s²]");
+            let front_axis = ChartAxis::linear("front radius R [mm]");
             [
-                plot(group, "front", "front radius R [mm]", front),
-                plot(
-                    group,
-                    "energy",
-                    "kinetic energy per grain [g cm²/s²]",
-                    energy,
-                ),
+                plot("front", front_axis, front),
+                plot("energy", energy_axis, energy),
             ]
         };
-        together.iter().flat_map(both).collect()
+        together.into_iter().flat_map(both).collect()
+    }
+
+    /// Shares of the pairs of species over time, with those that chance gives (Fig. 10): a plot of
+    /// each case.
+    fn shares(&self) -> Vec<Plot> {
+        let plot = |ensemble: &Ensemble| {
+            let label = self.label(ensemble.first(), &[SEED]);
+            Plot {
+                file: format!("courses/{}.svg", named("contacts", &label)),
+                title: format!("contact shares {label}"),
+                x: ChartAxis::linear("time [s]"),
+                y: ChartAxis::linear("share of the touching pairs"),
+                lines: shares_over_time(ensemble),
+            }
+        };
+        let all = ensembles(self.sweep, self.with_course());
+        all.iter().map(plot).collect()
+    }
+
+    /// The outcomes whose samples are there.
+    fn with_course(&self) -> Vec<&CaseResult> {
+        self.outcomes
+            .iter()
+            .filter(|own| own.has_course())
+            .collect()
     }
 }
 
@@ -218,40 +238,52 @@ fn energy(outcome: &CaseResult, sample: usize) -> f64 {
     (of(Measure::TranslationalEnergy) + of(Measure::RotationalEnergy)) * units::ERG.shown.factor
 }
 
-fn over_time(outcome: &CaseResult, value: SampleValue) -> Vec<(f64, f64)> {
-    let times = outcome.series.time().iter().enumerate();
-    times.map(|(k, time)| (*time, value(outcome, k))).collect()
+fn by_aspect_ratio(one: &Ensemble, other: &Ensemble) -> std::cmp::Ordering {
+    let ratio = |own: &Ensemble| own.mean(RunQuantity::AspectRatio).unwrap_or(0.0);
+    ratio(one).total_cmp(&ratio(other))
 }
 
-/// Shares of the pairs of species over time, with those that chance gives (Fig. 10).
-fn shares(outcome: &CaseResult) -> Plot {
-    let name = &outcome.case.name;
-    let end = outcome.series.time().last().copied().unwrap_or(0.0);
-    let chance = contact_shares_law(outcome.result(RunQuantity::SecondShare).unwrap_or(0.0));
+/// Means over the members at the times at which each of them has a sample.
+fn over_time(ensemble: &Ensemble, value: SampleValue) -> Vec<(f64, Estimate)> {
+    let times = ensemble.first().series.time();
+    let mean = |time: &f64| {
+        let values: Option<Vec<f64>> = ensemble
+            .members
+            .iter()
+            .map(|member| Some(value(member, sample_at(member, *time)?)))
+            .collect();
+        Some((*time, Estimate::of_runs(&values?)))
+    };
+    times.iter().filter_map(mean).collect()
+}
+
+/// The index of the sample at exactly this time, if there is one.
+fn sample_at(outcome: &CaseResult, time: f64) -> Option<usize> {
+    let times = outcome.series.time();
+    times.binary_search_by(|own| own.total_cmp(&time)).ok()
+}
+
+fn shares_over_time(ensemble: &Ensemble) -> Vec<Line> {
     let kinds: [(&str, SampleValue); 3] = [
         ("P11", |o, k| o.series.column(Measure::FirstPairs)[k]),
         ("P12", |o, k| o.series.column(Measure::MixedPairs)[k]),
         ("P22", |o, k| o.series.column(Measure::SecondPairs)[k]),
     ];
-    let mut lines: Vec<Line> = kinds
-        .iter()
-        .map(|(kind, value)| Line::results(*kind, over_time(outcome, *value)))
-        .collect();
+    let curve = |(kind, value): (&str, SampleValue)| Line::means(kind, over_time(ensemble, value));
+    let mut lines: Vec<Line> = kinds.into_iter().map(curve).collect();
+    let last = lines[0].points.last();
+    let end = last.map_or(0.0, |(time, _)| *time);
+    let second = ensemble.mean(RunQuantity::SecondShare).unwrap_or(0.0);
     // One entry in the legend names all three.
     let names = ["by chance (Eq. 4.1)", "", ""];
-    lines.extend(chance.into_iter().zip(names).map(|(share, name)| Line {
+    let chance = contact_shares_law(second).into_iter().zip(names);
+    lines.extend(chance.map(|(share, name)| Line {
         name: name.into(),
         points: vec![(0.0, share), (end, share)],
         is_law: true,
         ..Line::default()
     }));
-    Plot {
-        file: format!("courses/{name}-contacts.svg"),
-        title: format!("contact shares, {name}"),
-        x: ChartAxis::linear("time [s]"),
-        y: ChartAxis::linear("share of the touching pairs"),
-        lines,
-    }
+    lines
 }
 
 /// A file's name with what tells it from the others of its kind.
@@ -404,7 +436,7 @@ mod tests {
         assert_eq!(names(courses), ["height=1cm", "height=5cm", "height=30cm"]);
         let last = courses.lines[0].points[29];
         assert!((last.1 - 11.0 * 0.58).abs() < 1e-12, "in g cm²/s²");
-        let contacts = of(&plots, "courses/0.1_0.2_1cm-contacts.svg");
+        let contacts = of(&plots, "courses/contacts-mix=0.1_mu22=0.2_height=1cm.svg");
         assert_eq!(contacts.lines.len(), 6);
         assert!((contacts.lines[4].points[0].1 - 0.42).abs() < 1e-15);
         for plot in &plots {
@@ -429,6 +461,39 @@ mod tests {
         assert_eq!(names(front), ["mu11=0.1", "mu11=0.4"]);
         // All at one aspect ratio: no slope can be drawn.
         assert_eq!(of(&plots, "run-out-aspect.svg").lines.len(), 2);
+    }
+
+    #[test]
+    fn seeds_over_time_are_a_mean_with_its_error_while_all_of_them_run() {
+        let sweep = sweep(&["height=1cm,5cm", "seed=1,2"]);
+        let mut outcomes = [
+            outcome(&["5cm", "1"], 2.0),
+            outcome(&["1cm", "2"], 0.4),
+            outcome(&["1cm", "1"], 0.4),
+        ];
+        let mut shorter = Series::default();
+        for (step, time) in outcomes[1].series.time()[..20].iter().enumerate() {
+            let mut values = [f64::NAN; Measure::COUNT];
+            values[Measure::FrontRadius as usize] = 0.027 + 0.1 * time;
+            shorter.push(Sample {
+                step: step as u64,
+                time: *time,
+                values,
+            });
+        }
+        outcomes[1].series = shorter;
+        let plots = column_plots(&sweep, &outcomes);
+        let front = of(&plots, "courses/front.svg");
+        assert_eq!(names(front), ["height=1cm", "height=5cm"]);
+        let [both, alone] = &front.lines[..] else {
+            panic!("{:?}", names(front))
+        };
+        assert_eq!((both.points.len(), alone.points.len()), (20, 30));
+        assert!((both.points[0].1 - 26.0).abs() < 1e-12);
+        // 25 and 27 mm: a mean of 26 ± 1.
+        let (_, low, high) = both.bars[0];
+        assert!((low - 25.0).abs() < 1e-12 && (high - 27.0).abs() < 1e-12);
+        assert!(alone.bars.is_empty());
     }
 
     #[test]
