@@ -7,6 +7,8 @@
 /// Fewest independent events whose spread says how well their mean is known. Of five, one standard
 /// error on either side holds the truth in 63 of 100 cases; of ten in 66; of many in 68.
 const FEWEST_EVENTS: usize = 5;
+/// Fewest runs that are known by their spread alone.
+const FEWEST_RUNS: usize = 4;
 
 /// A mean and what is known of its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +85,37 @@ impl Estimate {
         }
     }
 
+    /// The mean over equal runs from different seeds that may state errors of their own; of one run
+    /// it is that run's.
+    ///
+    /// From four runs on the error is that of their spread. Of two or three, which spread by
+    /// chance, the runs' own errors count as well: the variance of one run is the mean of `s²` and
+    /// of the squares of their errors, each weighed by its degrees of freedom.
+    pub fn of_seeds(runs: &[Self]) -> Self {
+        let means: Vec<f64> = runs.iter().map(|run| run.mean).collect();
+        let spread = Self::of_runs(&means);
+        match *runs {
+            [one] => return one,
+            _ if runs.len() >= FEWEST_RUNS => return spread,
+            _ => {}
+        }
+        let count = runs.len() as f64;
+        let of_spread = spread
+            .error
+            .map(|error| (count * error * error, spread.freedom));
+        let own = runs
+            .iter()
+            .filter_map(|run| Some((run.error?.powi(2), run.freedom)));
+        let Some((variance, freedom)) = pooled(of_spread.into_iter().chain(own)) else {
+            return spread;
+        };
+        Self {
+            error: Some((variance / count).sqrt()),
+            freedom,
+            ..spread
+        }
+    }
+
     /// A single run's result with the relative scatter of `others`, means over equal runs of other
     /// cases: their `s²/mean²`, each weighed by its degrees of freedom. As it stands where none of
     /// them has an error.
@@ -93,14 +126,11 @@ impl Estimate {
             let relative = variance / other.mean.powi(2);
             relative.is_finite().then_some((relative, other.freedom))
         });
-        let (sum, freedom) = known.fold((0.0, 0), |(sum, all), (relative, own)| {
-            (sum + relative * own as f64, all + own)
-        });
-        if freedom == 0 {
+        let Some((relative, freedom)) = pooled(known) else {
             return self;
-        }
+        };
         Self {
-            error: Some(self.mean.abs() * (sum / freedom as f64).sqrt()),
+            error: Some(self.mean.abs() * relative.sqrt()),
             samples: 1,
             freedom,
             ..self
@@ -150,6 +180,15 @@ impl Estimate {
             None => format!("standard error from {} independent samples", self.samples),
         }
     }
+}
+
+/// The mean of variances, each weighed by its degrees of freedom, and these together; none of
+/// nothing.
+fn pooled(variances: impl Iterator<Item = (f64, usize)>) -> Option<(f64, usize)> {
+    let (sum, freedom) = variances.fold((0.0, 0), |(sum, all), (variance, own)| {
+        (sum + variance * own as f64, all + own)
+    });
+    (freedom > 0).then(|| (sum / freedom as f64, freedom))
 }
 
 /// Which share of the `values`, in their order, counts as independent: 0 … 1.

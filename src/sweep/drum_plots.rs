@@ -293,7 +293,7 @@ fn profiles(ensembles: &[Ensemble]) -> Vec<Plot> {
 }
 
 /// Velocity downhill [mm/s] over depth [mm], each a mean over the members that flowed there for at
-/// least half of the time that they did at the surface; of a single run with the run's own error.
+/// least half of the time that they did at the surface.
 fn profile(ensemble: &Ensemble) -> Vec<(f64, Estimate)> {
     let members = ensemble.members.iter().map(|member| &member.flow);
     let longest = members.clone().max_by_key(|flow| flow.len());
@@ -304,11 +304,7 @@ fn profile(ensemble: &Ensemble) -> Vec<(f64, Estimate)> {
             (2 * own.samples >= surface.samples).then_some(own)
         });
         let finite: Vec<Estimate> = means.filter(|velocity| velocity.mean.is_finite()).collect();
-        let downhill = match finite[..] {
-            [own] => own,
-            _ => Estimate::of_runs(&finite.iter().map(|own| own.mean).collect::<Vec<_>>()),
-        };
-        (1e3 * depth, downhill.times(-1e3))
+        (1e3 * depth, Estimate::of_seeds(&finite).times(-1e3))
     };
     depths.iter().enumerate().map(at).collect()
 }

@@ -1,7 +1,7 @@
 //! Cases that differ in nothing but their seed: one experiment, repeated.
 //!
 //! In: what became of the cases. Out: their ensembles, and each result of one as a mean with its
-//! standard error: over the seeds, `s/√n`; of a single run, the run's own.
+//! standard error, [`Estimate::of_seeds`].
 
 use super::Sweep;
 use super::case::CaseResult;
@@ -53,21 +53,16 @@ impl<'a> Ensemble<'a> {
     /// there. None for words, and where no member has it.
     pub fn estimate(&self, key: impl Into<ResultKey>) -> Option<Estimate> {
         let key = key.into();
-        let values = self
-            .members
-            .iter()
-            .filter_map(|member| member.results.get(key));
-        let values: Vec<MeasuredValue> = values.collect();
-        match values[..] {
-            [] => None,
-            [value] => value
-                .as_estimate()
-                .or_else(|| Some(Estimate::too_short(value.as_number()?, 1))),
-            _ => {
-                let numbers: Option<Vec<f64>> = values.iter().map(|v| v.as_number()).collect();
-                Some(Estimate::of_runs(&numbers?))
-            }
-        }
+        let members = self.members.iter();
+        let values = members.filter_map(|member| member.results.get(key));
+        let runs: Option<Vec<Estimate>> = values
+            .map(|value| {
+                let alone = || Some(Estimate::too_short(value.as_number()?, 1));
+                value.as_estimate().or_else(alone)
+            })
+            .collect();
+        runs.filter(|runs| !runs.is_empty())
+            .map(|runs| Estimate::of_seeds(&runs))
     }
 
     /// Its results as those of one run, each a mean over the seeds; what no seed changes, and words

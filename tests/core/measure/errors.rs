@@ -248,6 +248,46 @@ fn the_mean_of_events_is_known_by_their_spread() {
     assert_eq!(Estimate::of_runs(&[28.0]).error, None);
 }
 
+/// Two and three runs of the same true mean, each of which states its own error: two means alone
+/// would be known to one degree of freedom.
+#[test]
+fn few_runs_are_known_by_their_own_errors_too() {
+    for count in [2, 3] {
+        let run = |noise: &mut Noise| time_average(&autoregression(noise, HALF_A_MINUTE, 10.0));
+        let seeds = |noise: &mut Noise| {
+            let runs: Vec<Estimate> = (0..count).map(|_| run(noise)).collect();
+            let mean = Estimate::of_seeds(&runs);
+            assert_eq!(mean.freedom, 8 * count + count - 1);
+            mean
+        };
+        let truth = error_of_autoregression(HALF_A_MINUTE, 10.0) / (count as f64).sqrt();
+        let trials = Trials::many(TRIALS, 0.0, seeds);
+        trials.assert_right(truth, 0.05, &format!("{count} runs"));
+    }
+    let of = |mean, error, freedom| Estimate {
+        mean,
+        error,
+        samples: 30,
+        freedom,
+    };
+    // s² is 0.5, to one degree of freedom; the runs' own 0.04 and 0.16, to eight each.
+    let two = Estimate::of_seeds(&[of(28.0, Some(0.2), 8), of(29.0, Some(0.4), 8)]);
+    let variance = (0.5 + 8.0 * 0.04 + 8.0 * 0.16) / 17.0;
+    assert_close(two.error.unwrap(), (variance / 2.0_f64).sqrt(), 1e-12);
+    assert_eq!((two.mean, two.samples, two.freedom), (28.5, 2, 17));
+    // Where none says how well it is known, their spread does; one run is left as it is.
+    let silent = [of(28.0, None, 0), of(29.0, None, 0)];
+    assert_eq!(
+        Estimate::of_seeds(&silent),
+        Estimate::of_runs(&[28.0, 29.0])
+    );
+    assert_eq!(Estimate::of_seeds(&silent[..1]), silent[0]);
+    // Four are known by their spread alone.
+    let four = [1.0, 2.0, 3.0, 4.0].map(|mean| of(mean, Some(9.0), 8));
+    let spread = Estimate::of_runs(&[1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(Estimate::of_seeds(&four), spread);
+}
+
 /// One run of a case beside ten other cases of three runs each, all of which scatter by 2 %.
 #[test]
 fn a_single_run_is_given_the_scatter_of_cases_of_several() {
