@@ -216,10 +216,14 @@ impl Plot {
         (legend, legend.corner(&marks, &curves))
     }
 
-    /// The lines that have a name, each with its number.
+    /// The lines that the legend lists, each with its number: those that have a name, and a place.
     fn named(&self) -> impl Iterator<Item = (usize, &Line)> {
         let lines = self.lines.iter().enumerate();
-        lines.filter(|(_, line)| !line.name.is_empty())
+        lines.filter(|(_, line)| self.is_listed(line))
+    }
+
+    fn is_listed(&self, line: &Line) -> bool {
+        !line.name.is_empty() && self.places(line).next().is_some()
     }
 
     /// Places on the lines between all points.
@@ -282,7 +286,7 @@ impl Plot {
                 let points: Vec<(f64, f64)> = self.places(line).collect();
                 let curve = LineSeries::new(points.clone(), colour.stroke_width(2 * FINE));
                 let drawn = chart.draw_series(curve)?;
-                if !line.name.is_empty() {
+                if self.is_listed(line) {
                     drawn.label(&line.name).legend(move |(x, y)| {
                         let end = x + 18 * FINE.cast_signed();
                         PathElement::new([(x, y), (end, y)], colour.stroke_width(2 * FINE))
@@ -502,6 +506,7 @@ mod tests {
         assert!(some.has_points());
         let none = plot(&[(0.0, 0.0), (1.0, -1.0)]);
         assert!(!none.has_points());
+        assert_eq!(none.named().count(), 0, "no legend names what is not there");
         // Axes without an end would be divided for ever.
         for plot in [some, none] {
             let text = plot.draw().unwrap();
