@@ -16,30 +16,30 @@ pub struct DryDrum {
     pub drop: Estimate,
 }
 
-/// A mean with its standard error [rad], over so many beds of different seeds or, of one bed, over
-/// so many avalanches.
-const fn drop(mean: f64, error: f64, samples: usize) -> Estimate {
+/// A mean with its standard error [rad] over so many beds of different seeds, known to so many
+/// degrees of freedom.
+const fn drop(mean: f64, error: f64, samples: usize, freedom: usize) -> Estimate {
     Estimate {
         mean,
         error: Some(error),
         samples,
-        freedom: samples - 1,
+        freedom,
     }
 }
 
-/// The drums that were run: 16 beds, 4 beds, one bed of 13 avalanches.
+/// The drums that were run: 16 beds, 4 beds, two beds of 23 avalanches together.
 const DRUMS: [DryDrum; 3] = [
     DryDrum {
         radius: 3e-3,
-        drop: drop(0.14795, 0.00605, 16),
+        drop: drop(0.14795, 0.00605, 16, 15),
     },
     DryDrum {
         radius: 2e-3,
-        drop: drop(0.11827, 0.00833, 4),
+        drop: drop(0.11827, 0.00833, 4, 3),
     },
     DryDrum {
         radius: 1.25e-3,
-        drop: drop(0.06186, 0.00783, 13),
+        drop: drop(0.07184, 0.00622, 2, 22),
     },
 ];
 
