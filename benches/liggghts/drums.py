@@ -1,19 +1,24 @@
 #!/usr/bin/env python3
 """Drums in LIGGGHTS beside ours: the same settled beds, in the frame of the drum, measured as our runs are.
 
-    benches/liggghts/drums.py target/release/grainfall out/liggghts --seeds 1..6 --liquids 0,1,7
+    benches/liggghts/drums.py target/release/grainfall out/liggghts --seeds 1..6 --kept docs/results/liggghts.csv
 
 For every bed and liquid this exports the drum (bridges as coded), lets the walls rest as primitives and gravity turn,
 runs `liggghts` on one process, turns its dumps back into the laboratory's frame and imports them; then it runs the same
 drum here. What is done already is left alone, so that it can be called again, and by two at once for different seeds.
-In the end it prints means over the beds with their standard errors, 20 to 50 s, and the differences.
+In the end it prints means over the beds with their standard errors, of the last three fifths of the time, and the differences.
 
 Why the frame of the drum: LIGGGHTS turns neither tangential springs nor rolling torques with a bed that turns as a
 whole (docs/validation.md), and walls as primitives take half the time of meshes. Centrifugal and Coriolis forces, up
 to 0.002 % and 0.3 % of the weight, are left out.
+
+`--kept FILE.csv` takes what a run came to from that file, and adds a row for each run that ends.
 """
 
 import argparse
+import csv
+import fcntl
+import itertools
 import json
 import math
 import shutil
@@ -112,50 +117,79 @@ def run_ours(grainfall: str, folder: Path, case: list[str]) -> None:
 
 
 QUANTITIES = {
-    "surface angle": ("θ [°]", 180 / math.pi, 2),
-    "drop Δθ": ("Δθ [°]", 180 / math.pi, 2),
-    "avalanches": ("drops", 1, 1),
-    "avalanche period": ("time between drops [s]", 1, 2),
-    "granular temperature": ("⟨Tg⟩ [10⁻⁶ m²/s²]", 1e6, 2),
-    "non-rigid share ta/ts": ("ta/ts", 1, 3),
-    "co-rotating non-rigid share ta/ts′": ("ta/ts′", 1, 3),
-    "packing fraction": ("φ", 1, 4),
-    "coordination number": ("Z", 1, 3),
+    # a result of a run: its column in the kept file, its name in tables, its unit in SI's, its digits in tables
+    "surface angle": ("surface angle [°]", "θ [°]", 180 / math.pi, 2),
+    "drop Δθ": ("drop [°]", "Δθ [°]", 180 / math.pi, 2),
+    "avalanches": ("drops", "drops", 1, 1),
+    "avalanche period": ("time between drops [s]", "time between drops [s]", 1, 2),
+    "granular temperature": ("granular temperature [10⁻⁶ m²/s²]", "⟨Tg⟩ [10⁻⁶ m²/s²]", 1e6, 2),
+    "non-rigid share ta/ts": ("ta/ts", "ta/ts", 1, 3),
+    "co-rotating non-rigid share ta/ts′": ("ta/ts′", "ta/ts′", 1, 3),
+    "packing fraction": ("packing fraction", "φ", 1, 4),
+    "coordination number": ("coordination number", "Z", 1, 3),
 }
+PROGRAMS = ("LIGGGHTS 3.8", "Grainfall")
+CASE = ["program", "radius [mm]", "liquid", "seed", "from [s]", "to [s]"]
 
 
-def results(folder: Path) -> list[dict] | None:
+def results(folder: Path) -> dict | None:
     """The results of a run; none where it has not ended."""
     summary = folder / "summary.json"
-    found = json.loads(summary.read_text())["results"] if summary.exists() else None
-    return found and found["entries"]
+    return json.loads(summary.read_text())["results"] if summary.exists() else None
 
 
-def value(folder: Path, quantity: str) -> float:
-    """A result of a run; NaN where it has none."""
-    found = [entry["value"] for entry in results(folder) or [] if entry["name"] == quantity]
-    return math.nan if not found or found[0] is None else found[0]
+def values(folder: Path) -> list[str]:
+    """The results of a run that has ended, in the order of the quantities; empty where it has none."""
+    found = {entry["name"]: entry["value"] for entry in results(folder)["entries"]}
+    numbers = [found.get(name) for name in QUANTITIES]
+    return ["" if a is None else f"{a * q[2]:.6g}" for a, q in zip(numbers, QUANTITIES.values())]
 
 
-def mean_and_error(values: list[float]) -> tuple[float, float]:
+class Kept:
+    """What runs came to, by program, radius [mm], liquid, seed, and time [s] at which it begins to count and ends."""
+
+    def __init__(self, file: Path | None) -> None:
+        self.file, self.rows = file, {}
+        if file is None or not file.exists():
+            return
+        for row in csv.DictReader(file.read_text().splitlines()):
+            numbers = [row[column[0]] for column in QUANTITIES.values()]
+            self.rows[tuple(row[name] for name in CASE)] = numbers
+
+    def add(self, case: tuple[str, ...], numbers: list[str]) -> None:
+        """Adds a run, and writes its row."""
+        self.rows[case] = numbers
+        if self.file is None:
+            return
+        with open(self.file, "a") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            writer = csv.writer(file, lineterminator="\n")
+            if file.tell() == 0:
+                writer.writerow([*CASE, *(column[0] for column in QUANTITIES.values())])
+            writer.writerow([*case, *numbers])
+
+
+def mean_and_error(numbers: list[float]) -> tuple[float, float]:
     """The mean and s/√n."""
-    mean = sum(values) / len(values)
-    square = sum((value - mean) ** 2 for value in values) / (len(values) - 1)
-    return mean, math.sqrt(square / len(values))
+    mean = sum(numbers) / len(numbers)
+    square = sum((number - mean) ** 2 for number in numbers) / (len(numbers) - 1)
+    return mean, math.sqrt(square / len(numbers))
 
 
-def compare(folders: dict[int, list[tuple[Path, Path]]]) -> None:
-    """Prints both programs' means over the beds, and their differences."""
-    for liquid, pairs in folders.items():
-        both = [pair for pair in pairs if all(results(folder) for folder in pair)]
-        if len(both) < 2:
+def compare(kept: Kept, radius: str, liquid: int, seeds: list[int], times: tuple[str, str]) -> None:
+    """Prints both programs' means over the beds that both have, and their differences."""
+    sides = [[kept.rows.get((name, radius, str(liquid), str(seed), *times)) for seed in seeds] for name in PROGRAMS]
+    both = [pair for pair in zip(*sides) if all(pair)]
+    if len(both) < 2:
+        return
+    print(f"\nr = {radius} mm, liquid {liquid}, {len(both)} beds\n\n| | LIGGGHTS | ours | difference |\n|---|---|---|---|")
+    for k, (_, name, _, digits) in enumerate(QUANTITIES.values()):
+        known = [[float(run[k]) for run in side if run[k]] for side in zip(*both)]
+        if min(len(side) for side in known) < 2:
             continue
-        print(f"\nliquid {liquid}, {len(both)} beds\n\n| | LIGGGHTS | ours | difference |\n|---|---|---|---|")
-        for quantity, (name, scale, digits) in QUANTITIES.items():
-            sides = [[scale * value(pair[side], quantity) for pair in both] for side in (0, 1)]
-            (theirs, error), (ours, own_error) = (mean_and_error(side) for side in sides)
-            row = [(theirs, error), (ours, own_error), (ours - theirs, math.hypot(error, own_error))]
-            print(f"| {name} | " + " | ".join(f"{a:.{digits}f} ± {e:.{digits}f}" for a, e in row) + " |")
+        (theirs, error), (ours, own_error) = (mean_and_error(side) for side in known)
+        row = [(theirs, error), (ours, own_error), (ours - theirs, math.hypot(error, own_error))]
+        print(f"| {name} | " + " | ".join(f"{a:.{digits}f} ± {e:.{digits}f}" for a, e in row) + " |")
 
 
 def numbers(text: str) -> list[int]:
@@ -174,22 +208,30 @@ def main() -> None:
     parser.add_argument("--liquids", type=numbers, default=numbers("0,1,7"))
     parser.add_argument("--radius", default="3mm")
     parser.add_argument("--duration", default="50s")
+    parser.add_argument("--kept", type=Path, help="a file that keeps the results: *.csv")
     parser.add_argument("--table", action="store_true", help="only print what is there")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     grainfall = str(Path(options.grainfall).resolve())
-    folders = {liquid: [] for liquid in options.liquids}
-    for seed in options.seeds:
-        for liquid in options.liquids:
-            case = ["--set", f"radius={options.radius}", "--set", f"liquid={liquid}", "--seed", str(seed)]
-            case += ["--duration", options.duration]
-            name = f"radius={options.radius}_liquid={liquid}_seed={seed}"
-            pair = (options.out / name, options.out / f"{name}_ours")
-            folders[liquid].append(pair)
+    kept = Kept(options.kept)
+    radius, duration = options.radius.removesuffix("mm"), float(options.duration.removesuffix("s"))
+    times = (f"{0.4 * duration:g}", f"{duration:g}")
+    for seed, liquid in itertools.product(options.seeds, options.liquids):
+        case = ["--set", f"radius={radius}mm", "--set", f"liquid={liquid}", "--seed", str(seed)]
+        case += ["--duration", f"{duration:g}s"]
+        name = f"radius={radius}mm_liquid={liquid}_seed={seed}"
+        runs = [(run, options.out / name, [*case, "--output-interval", "0.02s"])]
+        runs += [(run_ours, options.out / f"{name}_ours", case)]
+        for program, (compute, folder, arguments) in zip(PROGRAMS, runs):
+            key = (program, radius, str(liquid), str(seed), *times)
+            if key in kept.rows:
+                continue
             if not options.table:
-                run(grainfall, pair[0], [*case, "--output-interval", "0.02s"])
-                run_ours(grainfall, pair[1], case)
-    compare(folders)
+                compute(grainfall, folder, arguments)
+            if results(folder):
+                kept.add(key, values(folder))
+    for liquid in options.liquids:
+        compare(kept, radius, liquid, options.seeds, times)
 
 
 if __name__ == "__main__":
