@@ -176,20 +176,32 @@ def mean_and_error(numbers: list[float]) -> tuple[float, float]:
     return mean, math.sqrt(square / len(numbers))
 
 
-def compare(kept: Kept, radius: str, liquid: int, seeds: list[int], times: tuple[str, str]) -> None:
-    """Prints both programs' means over the beds that both have, and their differences."""
-    sides = [[kept.rows.get((name, radius, str(liquid), str(seed), *times)) for seed in seeds] for name in PROGRAMS]
-    both = [pair for pair in zip(*sides) if all(pair)]
-    if len(both) < 2:
-        return
-    print(f"\nr = {radius} mm, liquid {liquid}, {len(both)} beds\n\n| | LIGGGHTS | ours | difference |\n|---|---|---|---|")
+def both_of(kept: Kept, radius: str, liquid: int, seeds: list[int], times: tuple[str, str]) -> list[tuple]:
+    """What the beds came to that both programs ran, in each of them."""
+    case = [(radius, str(liquid), str(seed), *times) for seed in seeds]
+    sides = [[kept.rows.get((name, *rest)) for rest in case] for name in PROGRAMS]
+    return [pair for pair in zip(*sides) if all(pair)]
+
+
+def compared(pairs: list[tuple], quantity: int, digits: int) -> list[str]:
+    """A quantity's means over the beds, in LIGGGHTS and here, and their difference; dashes for fewer than two beds."""
+    sides = [[float(run[quantity]) for run in side if run[quantity]] for side in zip(*pairs)]
+    if len(sides) < 2 or min(len(side) for side in sides) < 2:
+        return ["–"] * 3
+    (theirs, error), (ours, own_error) = (mean_and_error(side) for side in sides)
+    row = [(theirs, error), (ours, own_error), (ours - theirs, math.hypot(error, own_error))]
+    return [f"{mean:.{digits}f} ± {error:.{digits}f}".replace("-", "−") for mean, error in row]
+
+
+def compare(kept: Kept, radius: str, liquids: list[int], seeds: list[int], times: tuple[str, str]) -> None:
+    """Prints both programs' means over the beds that both have, and their differences, for each liquid."""
+    pairs = {liquid: both_of(kept, radius, liquid, seeds, times) for liquid in liquids}
+    names = {0: "dry", 1: "water", 7: "glycerol"}
+    head = [f"{names.get(liquid, f'n = {liquid}')}: LIGGGHTS | ours | difference" for liquid in liquids]
+    print(f"r = {radius} mm\n\n| | " + " | ".join(head) + " |\n|" + "---|" * (1 + 3 * len(liquids)))
+    print("| beds | " + " | ".join(f"{len(both)} | {len(both)} | " for both in pairs.values()) + " |")
     for k, (_, name, _, digits) in enumerate(QUANTITIES.values()):
-        known = [[float(run[k]) for run in side if run[k]] for side in zip(*both)]
-        if min(len(side) for side in known) < 2:
-            continue
-        (theirs, error), (ours, own_error) = (mean_and_error(side) for side in known)
-        row = [(theirs, error), (ours, own_error), (ours - theirs, math.hypot(error, own_error))]
-        print(f"| {name} | " + " | ".join(f"{a:.{digits}f} ± {e:.{digits}f}" for a, e in row) + " |")
+        print(f"| {name} | " + " | ".join(" | ".join(compared(both, k, digits)) for both in pairs.values()) + " |")
 
 
 def numbers(text: str) -> list[int]:
@@ -230,8 +242,7 @@ def main() -> None:
                 compute(grainfall, folder, arguments)
             if results(folder):
                 kept.add(key, values(folder))
-    for liquid in options.liquids:
-        compare(kept, radius, liquid, options.seeds, times)
+    compare(kept, radius, options.liquids, options.seeds, times)
 
 
 if __name__ == "__main__":
