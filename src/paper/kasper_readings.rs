@@ -2,9 +2,10 @@
 //! time, and what becomes of its statements under each.
 //!
 //! In: what a reading sets, and the drums that it changes. Out: the cases, and tables of what they
-//! came to: the readings, numbers, verdicts on every statement and a score for each reading. Drums
-//! that a reading does not change are those of the paper as printed. Order of the cases: one seed of
-//! all readings first, then more seeds, then finer grains. Nothing is chosen by what it comes to.
+//! came to: the readings and numbers; verdicts on every statement and a score for each that tells.
+//! Drums that a reading does not change are those of the paper as printed. Order of the cases: one seed
+//! of all readings first, which screens them; then more seeds, then finer grains, of those that tell.
+//! Nothing is chosen by how many statements it reaches.
 
 use super::markdown::{head, line};
 use super::plan::{Batch, Paper, PaperTable, Reading};
@@ -53,15 +54,15 @@ type Liquids = [&'static [&'static str]; 2];
 /// The values of `reading` and `radius`, and the liquids that are run with them.
 type Runs = (&'static [&'static str], Liquids);
 
-/// How much a reading is worth running: it moves nothing beyond the scatter of the drums as printed,
-/// it does, or it is what all others are set beside.
-#[derive(Clone, Copy)]
+/// How much a reading is worth running: its drums of one seed lie within the scatter of those as
+/// printed and screen it out, they lie beyond, or it is what all others are set beside.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Weight {
-    Slight,
+    ScreenedOut,
     Tells,
     Printed,
 }
-use Weight::{Printed, Slight, Tells};
+use Weight::{Printed, ScreenedOut, Tells};
 
 /// The `liquids` of a reading of this `weight` in a round of those of the `wanted` one.
 const fn only(wanted: Weight, weight: Weight, liquids: Liquids) -> Liquids {
@@ -83,10 +84,10 @@ macro_rules! readings {
         const R3: Round = [$((&[$name, "3mm"], $liquids)),+];
         const R3_TELL: Round = [$((&[$name, "3mm"], only(Tells, $weight, $liquids))),+];
         const R3_PRINTED: Round = [$((&[$name, "3mm"], only(Printed, $weight, $liquids))),+];
-        const R3_SLIGHT: Round = [$((&[$name, "3mm"], only(Slight, $weight, $liquids))),+];
         const R2_TELL: Round = [$((&[$name, "2mm"], only(Tells, $weight, $liquids))),+];
         const R2_PRINTED: Round = [$((&[$name, "2mm"], only(Printed, $weight, $liquids))),+];
-        const R2_SLIGHT: Round = [$((&[$name, "2mm"], only(Slight, $weight, $liquids))),+];
+        const WEIGHTS: [(&str, Weight); READINGS_COUNT] = [$(($name, $weight)),+];
+        const CHANGED: [(&str, Liquids); READINGS_COUNT] = [$(($name, $liquids)),+];
         const READINGS_COUNT: usize = [$($name),+].len();
     };
 }
@@ -94,12 +95,12 @@ macro_rules! readings {
 readings! {
     (AS_PRINTED, ALL, Printed, "as printed, with the choices of all other tables", []),
     ("as-coded", WET, Tells, "bridges as LIGGGHTS 3.8 computes them: all four of the next", ["bridge-law=as-coded"]),
-    ("shaded-caps", WET, Slight, "bridges hold 6.7 % of both films instead of 5 %", ["bridge-volume=shaded-cap"]),
-    ("half-product-angle", WET, Slight, "two grains' contact angle is half the product: 40° act as 14°", ["pair-angle=half-product"]),
+    ("shaded-caps", WET, ScreenedOut, "bridges hold 6.7 % of both films instead of 5 %", ["bridge-volume=shaded-cap"]),
+    ("half-product-angle", WET, ScreenedOut, "two grains' contact angle is half the product: 40° act as 14°", ["pair-angle=half-product"]),
     ("weak-viscosity", WET, Tells, "viscous forces grow down to 1.01 r* only, not to 0.01 (r_i + r_j)", ["viscous-gap=coded"]),
-    ("open-capillary-gap", WET, Slight, "the capillary force of grains in contact is that at no gap", ["capillary-gap=open"]),
-    ("rupture-at-d0", WET, Slight, "bridges break at d0, forces beyond 0.1 (r_i + r_j) being those there", ["rupture=at-d0"]),
-    ("coulomb-total", WET, Slight, "friction is bounded by the normal force of contact and bridge together", ["coulomb=total"]),
+    ("open-capillary-gap", WET, ScreenedOut, "the capillary force of grains in contact is that at no gap", ["capillary-gap=open"]),
+    ("rupture-at-d0", WET, ScreenedOut, "bridges break at d0, forces beyond 0.1 (r_i + r_j) being those there", ["rupture=at-d0"]),
+    ("coulomb-total", WET, ScreenedOut, "friction is bounded by the normal force of contact and bridge together", ["coulomb=total"]),
     (
         "wet-friction-as-dry", WET, Tells, "wet grains have the dry ones' friction, 0.40 (0.30 at walls)",
         ["wet-friction.glass.glass=0.4", "wet-friction.glass.drum=0.3"]
@@ -117,8 +118,8 @@ readings! {
         "no-rolling-friction", ALL, Tells, "no rolling friction",
         ["rolling-friction.glass.glass=0", "rolling-friction.glass.drum=0"]
     ),
-    ("no-rolling-friction-at-walls", ALL, Slight, "no rolling friction at walls", ["rolling-friction.glass.drum=0"]),
-    ("quarter-step", ALL, Slight, "a quarter of the time step", ["time-step=reference"]),
+    ("no-rolling-friction-at-walls", ALL, ScreenedOut, "no rolling friction at walls", ["rolling-friction.glass.drum=0"]),
+    ("quarter-step", ALL, ScreenedOut, "a quarter of the time step", ["time-step=reference"]),
 }
 
 /// What is run of each reading in a round.
@@ -126,7 +127,7 @@ type Round = [Runs; READINGS_COUNT];
 /// The rounds: part, what is run, which of its liquids, the first and the last seed. Of the drums as
 /// printed there are as many seeds as the other tables have.
 type Seeded = (&'static str, &'static Round, usize, (u64, u64));
-const ROUNDS: [Seeded; 14] = [
+const ROUNDS: [Seeded; 10] = [
     ("r3", &R3, 0, (1, 1)),
     ("r3", &R3_PRINTED, 0, (2, 8)),
     ("r3", &R3_PRINTED, 1, (1, 8)),
@@ -137,10 +138,6 @@ const ROUNDS: [Seeded; 14] = [
     ("r2", &R2_PRINTED, 1, (1, 4)),
     ("r2", &R2_TELL, 0, (1, 2)),
     ("r2", &R2_TELL, 1, (1, 2)),
-    ("r3-rest", &R3_SLIGHT, 0, (2, 4)),
-    ("r3-rest", &R3_SLIGHT, 1, (1, 4)),
-    ("r2-rest", &R2_SLIGHT, 0, (1, 2)),
-    ("r2-rest", &R2_SLIGHT, 1, (1, 2)),
 ];
 
 static BATCHES: [Batch; ROUNDS.len() * READINGS_COUNT] = {
@@ -158,9 +155,28 @@ static BATCHES: [Batch; ROUNDS.len() * READINGS_COUNT] = {
 /// The tables, from the cases that are there.
 fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
     let ensembles = ensembles(sweep, outcomes);
-    let measured: Vec<Measured> = Measured::all(&ensembles);
-    let judged: Vec<&Judged> = measured.iter().map(|own| &own.judged).collect();
-    tables_of(&judged, numbers_table(&measured))
+    let all: Vec<&Ensemble> = ensembles.iter().collect();
+    let measured = Measured::all(&all);
+    let judged = Measured::all(&compared(&that_tell(&all), RADIUS));
+    tables_of(
+        &readings_of(&measured),
+        &readings_of(&judged),
+        numbers_table(&measured),
+    )
+}
+
+fn readings_of<'a>(measured: &'a [Measured]) -> Vec<&'a Judged> {
+    measured.iter().map(|own| &own.judged).collect()
+}
+
+/// Of these ensembles those of readings that are not screened out.
+fn that_tell<'a>(ensembles: &[&'a Ensemble<'a>]) -> Vec<&'a Ensemble<'a>> {
+    let is_screened_out = |own: &Ensemble| {
+        let mut all = WEIGHTS.iter();
+        all.any(|(name, weight)| *weight == ScreenedOut && own.values[0] == *name)
+    };
+    let all = ensembles.iter().copied();
+    all.filter(|own| !is_screened_out(own)).collect()
 }
 
 /// A reading with its drums.
@@ -172,32 +188,28 @@ struct Measured<'a> {
 impl<'a> Measured<'a> {
     /// The readings of which there are drums of their own, and other measures of the drums as
     /// printed.
-    fn all(ensembles: &'a [Ensemble<'a>]) -> Vec<Self> {
-        let ensembles = compared(ensembles, RADIUS);
-        let runs = READINGS.iter().filter_map(|reading| {
-            let drums = drums_of(reading.name, &ensembles)?;
-            Some((reading.name.to_owned(), reading.text.to_owned(), drums))
-        });
-        let measures = OTHER_MEASURES.iter().filter_map(|(name, text, measure)| {
-            let mut drums = drums_of(AS_PRINTED, &ensembles)?;
-            drums
-                .0
-                .iter_mut()
-                .for_each(|drum| drum.measured_by = *measure);
-            Some(((*name).to_owned(), (*text).to_owned(), drums))
+    fn all(ensembles: &[&'a Ensemble<'a>]) -> Vec<Self> {
+        let runs = READINGS.iter();
+        let runs = runs.map(|own| (own.name, own.text, drums_of(own.name, ensembles)));
+        let measures = OTHER_MEASURES.iter().map(|(name, text, measure)| {
+            let mut drums = drums_of(AS_PRINTED, ensembles);
+            let all = drums.iter_mut().flat_map(|drums| &mut drums.0);
+            all.for_each(|drum| drum.measured_by = *measure);
+            (*name, *text, drums)
         });
         let numbered = (0..).zip(runs.chain(measures));
-        let of = |(number, (name, text, drums)): (usize, (String, String, Drums<'a>))| Self {
-            judged: Judged {
+        let of = |(number, (name, text, drums)): (usize, (&str, &str, Option<Drums<'a>>))| {
+            let drums = drums?;
+            let judged = Judged {
                 number,
-                name,
-                text,
+                name: name.to_owned(),
+                text: text.to_owned(),
                 runs: drums.0.iter().map(|own| own.ensemble.members.len()).sum(),
                 statements: drum_statements(&drums),
-            },
-            drums,
+            };
+            Some(Self { judged, drums })
         };
-        numbered.map(of).collect()
+        numbered.filter_map(of).collect()
     }
 }
 
@@ -225,28 +237,29 @@ const OTHER_MEASURES: [(&str, &str, MeasuredBy); 4] = [
     ),
 ];
 
-/// The drums of the reading called `name`: those run under it, and of the liquids with which it is
-/// not run those as printed; none where none of its own is there.
+/// The drums of the reading called `name`, at the radii at which there are some of its own: those run
+/// under it, and of the liquids with which it changes nothing those as printed. None where there are
+/// none of its own.
 fn drums_of<'a>(name: &str, ensembles: &[&'a Ensemble<'a>]) -> Option<Drums<'a>> {
-    let reading_of = |own: &Ensemble| own.values.first().cloned();
-    let is_own = |own: &&&Ensemble| reading_of(own).as_deref() == Some(name);
-    ensembles.iter().find(is_own)?;
-    let is_run = |own: &Ensemble| {
-        let liquid = own.values.last().cloned().unwrap_or_default();
-        let runs = BATCHES
-            .iter()
-            .filter(|batch| batch.values.first() == Some(&name));
-        runs.flat_map(|batch| batch.list)
-            .any(|value| *value == liquid)
+    let is_of = |own: &Ensemble, reading: &str| own.values[0] == reading;
+    let radii: Vec<&str> = ensembles
+        .iter()
+        .filter(|own| is_of(own, name))
+        .map(|own| own.values[RADIUS.start].as_str())
+        .collect();
+    let changed = CHANGED.iter().filter(|(reading, _)| *reading == name);
+    let changed: Vec<&str> = changed.flat_map(|(_, liquids)| liquids.concat()).collect();
+    let is_unchanged = |own: &Ensemble| {
+        let [reading, radius, liquid] = &own.values[..] else {
+            return false;
+        };
+        reading == AS_PRINTED
+            && radii.contains(&radius.as_str())
+            && !changed.contains(&liquid.as_str())
     };
-    let is_unchanged =
-        |own: &&&Ensemble| reading_of(own).as_deref() == Some(AS_PRINTED) && !is_run(own);
-    Some(Drums::of(
-        ensembles
-            .iter()
-            .copied()
-            .filter(|own| is_own(&own) || is_unchanged(&own)),
-    ))
+    let all = ensembles.iter().copied();
+    let drums = all.filter(|own| is_of(own, name) || is_unchanged(own));
+    (!radii.is_empty()).then(|| Drums::of(drums))
 }
 
 /// A result of the drum of one liquid, by its number in Table 1, and what its column is called.
@@ -366,7 +379,7 @@ mod tests {
             _ => None,
         });
         let ensembles = ensembles(&sweep, &outcomes);
-        let measured = Measured::all(&ensembles);
+        let measured = Measured::all(&ensembles.iter().collect::<Vec<_>>());
         let verdict = |name: &str| {
             let own = measured.iter().find(|own| own.judged.name == name).unwrap();
             own.judged
@@ -379,14 +392,14 @@ mod tests {
         assert!(!measured.iter().any(|own| own.judged.name == "solid-fill"));
         let tables = tables(&sweep, &outcomes);
         let text = |name: &str| &tables.iter().find(|own| own.name == name).unwrap().text;
-        let row = "| 1 | 3 | 33.00° ± 0.10° | 39.00° ± 0.10° | – |";
+        let row = "| 8 | 3 | 33.00° ± 0.10° | 39.00° ± 0.10° | – |";
         assert!(text("numbers").contains(row), "{}", text("numbers"));
         let row = "| The wet bed stands higher than the dry one | ✗ | ✓ | ✓ |";
         assert!(text("verdicts").contains(row), "{}", text("verdicts"));
     }
 
     #[test]
-    fn readings_are_compared_at_the_radii_at_which_all_of_them_were_run() {
+    fn readings_that_tell_are_compared_at_the_radii_at_which_all_of_them_were_run() {
         let both = Selection {
             parts: vec!["r3".to_owned(), "r2".to_owned()],
             seeds: Some(1),
@@ -394,24 +407,42 @@ mod tests {
         };
         let job = PaperJob::new(&KASPER2021_READINGS, &both, "nowhere".into(), 1).unwrap();
         let cases = crate::sweep::cases(job.sweep()).unwrap();
-        let rows = |fine: &[&str]| {
+        let radii = |fine: &[&str]| {
             let is_there = |case: &&Case| {
                 let [reading, radius, ..] = &case.values[..] else {
                     return false;
                 };
-                let is_read = [AS_PRINTED, "as-coded"].contains(&reading.as_str());
+                let is_read = [AS_PRINTED, "as-coded", "shaded-caps"].contains(&reading.as_str());
                 is_read && (radius == "3mm" || fine.contains(&reading.as_str()))
             };
             let there = cases.iter().filter(is_there);
             let outcomes: Vec<CaseResult> = there.map(|case| outcome(case, 30.0)).collect();
             let ensembles = ensembles(job.sweep(), &outcomes);
-            let measured = Measured::all(&ensembles);
-            measured.iter().map(Measured::radii).collect::<Vec<_>>()
+            let all: Vec<&Ensemble> = ensembles.iter().collect();
+            let of = |measured: &[Measured]| {
+                let radii = |own: &Measured| (own.judged.number, own.radii());
+                measured.iter().map(radii).collect::<Vec<_>>()
+            };
+            let judged = Measured::all(&compared(&that_tell(&all), RADIUS));
+            (of(&Measured::all(&all)), of(&judged))
         };
-        let coarse = vec![vec![3.0]; 2 + OTHER_MEASURES.len()];
-        assert_eq!(rows(&[AS_PRINTED]), coarse);
-        let all = vec![vec![3.0, 2.0]; 2 + OTHER_MEASURES.len()];
-        assert_eq!(rows(&[AS_PRINTED, "as-coded"]), all);
+        let rows = |readings: &[(usize, &[f64])], measures: &[f64]| {
+            let own = readings.iter().map(|(k, radii)| (*k, radii.to_vec()));
+            let more = (0..OTHER_MEASURES.len()).map(|k| (READINGS.len() + k, measures.to_vec()));
+            own.chain(more).collect::<Vec<_>>()
+        };
+        let (run, judged) = radii(&[AS_PRINTED]);
+        assert_eq!(
+            run,
+            rows(&[(0, &[3.0, 2.0]), (1, &[3.0]), (2, &[3.0])], &[3.0, 2.0])
+        );
+        assert_eq!(judged, rows(&[(0, &[3.0]), (1, &[3.0])], &[3.0]));
+        // What is screened out needs no finer grains.
+        let (_, judged) = radii(&[AS_PRINTED, "as-coded"]);
+        assert_eq!(
+            judged,
+            rows(&[(0, &[3.0, 2.0]), (1, &[3.0, 2.0])], &[3.0, 2.0])
+        );
     }
 
     #[test]
@@ -422,7 +453,7 @@ mod tests {
             _ => None,
         });
         let ensembles = ensembles(&sweep, &outcomes);
-        let measured = Measured::all(&ensembles);
+        let measured = Measured::all(&ensembles.iter().collect::<Vec<_>>());
         let own = &measured[0].judged;
         let [least, most] = own.score();
         assert_eq!(most - least, own.count(Verdict::NotDecided) as f64);
@@ -437,7 +468,7 @@ mod tests {
     fn other_measures_take_other_results_of_the_same_runs() {
         let (sweep, outcomes) = outcomes(|reading, _| (reading == AS_PRINTED).then_some(30.0));
         let ensembles = ensembles(&sweep, &outcomes);
-        let measured = Measured::all(&ensembles);
+        let measured = Measured::all(&ensembles.iter().collect::<Vec<_>>());
         let share = |name: &str| {
             let own = measured.iter().find(|own| own.judged.name == name).unwrap();
             own.number_text(3.0, "1", ResultKey::OfRun(RunQuantity::NonRigidShare))

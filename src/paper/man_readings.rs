@@ -109,9 +109,9 @@ const OTHER_MEASURES: [(&str, &str, ColumnMeasure); 5] = [
 fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
     let ensembles = ensembles(sweep, outcomes);
     let all: Vec<&Ensemble> = ensembles.iter().collect();
-    let measured = Measured::all(&compared(&ensembles, COLUMN), &all);
+    let measured = Measured::all(&compared(&all, COLUMN), &all);
     let judged: Vec<&Judged> = measured.iter().map(|own| &own.judged).collect();
-    tables_of(&judged, numbers_table(&measured))
+    tables_of(&judged, &judged, numbers_table(&measured))
 }
 
 /// A reading with its columns.

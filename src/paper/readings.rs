@@ -48,28 +48,29 @@ impl Judged {
     }
 }
 
-/// The ensembles of the cases, by the values of a range of their keys, with which every reading was
-/// run that was run at all: what is judged by coarse grains alone is set beside coarse grains.
+/// Of these ensembles those, by the values of a range of their keys, with which every reading among
+/// them was run: what is judged by coarse grains alone is set beside coarse grains.
 pub(super) fn compared<'a>(
-    ensembles: &'a [Ensemble<'a>],
+    ensembles: &[&'a Ensemble<'a>],
     keys: std::ops::Range<usize>,
 ) -> Vec<&'a Ensemble<'a>> {
     let has = |reading: &str, case: &[String]| {
         let mut all = ensembles.iter();
         all.any(|own| own.values[0] == reading && own.values[keys.clone()] == *case)
     };
-    let is_of_all = |own: &&Ensemble| {
+    let is_of_all = |own: &&&Ensemble| {
         let mut all = ensembles.iter();
         all.all(|other| has(&other.values[0], &own.values[keys.clone()]))
     };
-    ensembles.iter().filter(is_of_all).collect()
+    ensembles.iter().filter(is_of_all).copied().collect()
 }
 
-/// The tables of these readings, with the one of `numbers` that is the paper's own.
-pub(super) fn tables_of(judged: &[&Judged], numbers: String) -> Vec<PaperTable> {
+/// The tables of all readings that were `run`, and of those of them that are `judged`; with the one
+/// of `numbers` that is the paper's own.
+pub(super) fn tables_of(run: &[&Judged], judged: &[&Judged], numbers: String) -> Vec<PaperTable> {
     let table = |name, title, text| PaperTable { name, title, text };
     vec![
-        table("readings", "Readings", readings_table(judged)),
+        table("readings", "Readings", readings_table(run)),
         table("numbers", "What each comes to", numbers),
         table(
             "verdicts",
@@ -80,10 +81,10 @@ pub(super) fn tables_of(judged: &[&Judged], numbers: String) -> Vec<PaperTable> 
     ]
 }
 
-fn readings_table(judged: &[&Judged]) -> String {
+fn readings_table(run: &[&Judged]) -> String {
     let heads = ["", "reading", "what it reads otherwise", "runs"];
     let mut text = head(&heads.map(str::to_owned));
-    for own in judged {
+    for own in run {
         let cells = [
             own.number.to_string(),
             own.name.clone(),
