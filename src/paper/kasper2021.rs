@@ -29,7 +29,7 @@ pub static KASPER2021: Paper = Paper {
         Batch::new("r1.25", R1_25, &["0", "1", "5", "7"], (1, 1)),
         Batch::new("coded", CODED_R3, &["1", "3", "5", "7"], (1, 4)),
         Batch::new("r3", R3, ALL, (5, 8)),
-        Batch::new("coded", CODED_R2, &["1", "5", "7"], (1, 2)),
+        Batch::new("coded", CODED_R2, &["1", "3", "5", "7"], (1, 2)),
         Batch::new("r2", R2, &["0", "1", "3", "5", "7"], (3, 4)),
         Batch::new("r2", R2, &["2", "4", "6"], (1, 4)),
         Batch::new("r1.25", R1_25, &["0", "1", "5", "7"], (2, 2)),
