@@ -51,8 +51,6 @@ const WET: Liquids = [&["1", "3", "7"], &["5"]];
 const DRY: Liquids = [&["0"], &[]];
 
 type Liquids = [&'static [&'static str]; 2];
-/// The values of `reading` and `radius`, and the liquids that are run with them.
-type Runs = (&'static [&'static str], Liquids);
 
 /// How much a reading is worth running: its drums of one seed lie within the scatter of those as
 /// printed and screen it out, they lie beyond, or it is what all others are set beside.
@@ -64,16 +62,20 @@ enum Weight {
 }
 use Weight::{Printed, ScreenedOut, Tells};
 
-/// The `liquids` of a reading of this `weight` in a round of those of the `wanted` one.
-const fn only(wanted: Weight, weight: Weight, liquids: Liquids) -> Liquids {
-    if wanted as u8 == weight as u8 {
-        liquids
-    } else {
-        [&[], &[]]
-    }
+/// What is run of a reading.
+struct Planned {
+    name: &'static str,
+    weight: Weight,
+    /// The liquids whose drums it changes, of the first rounds and of the later ones.
+    liquids: Liquids,
+    /// The values of `reading` and `radius`, coarse grains first.
+    values: [&'static [&'static str]; PARTS.len()],
 }
 
-/// Makes the list of readings, and what is run of each at either radius.
+/// The parts, by the radii of their grains, coarse ones first.
+const PARTS: [&str; 2] = ["r3", "r2"];
+
+/// Makes the list of readings, and what is run of each.
 macro_rules! readings {
     ($(($name:expr, $liquids:ident, $weight:ident, $text:literal, [$($setting:literal),*]),)+) => {
         static READINGS: &[Reading] = &[$(Reading {
@@ -81,13 +83,12 @@ macro_rules! readings {
             text: $text,
             settings: &[$($setting),*],
         }),+];
-        const R3: Round = [$((&[$name, "3mm"], $liquids)),+];
-        const R3_TELL: Round = [$((&[$name, "3mm"], only(Tells, $weight, $liquids))),+];
-        const R3_PRINTED: Round = [$((&[$name, "3mm"], only(Printed, $weight, $liquids))),+];
-        const R2_TELL: Round = [$((&[$name, "2mm"], only(Tells, $weight, $liquids))),+];
-        const R2_PRINTED: Round = [$((&[$name, "2mm"], only(Printed, $weight, $liquids))),+];
-        const WEIGHTS: [(&str, Weight); READINGS_COUNT] = [$(($name, $weight)),+];
-        const CHANGED: [(&str, Liquids); READINGS_COUNT] = [$(($name, $liquids)),+];
+        static PLANS: [Planned; READINGS_COUNT] = [$(Planned {
+            name: $name,
+            weight: $weight,
+            liquids: $liquids,
+            values: [&[$name, "3mm"], &[$name, "2mm"]],
+        }),+];
         const READINGS_COUNT: usize = [$($name),+].len();
     };
 }
@@ -122,35 +123,45 @@ readings! {
     ("quarter-step", ALL, ScreenedOut, "a quarter of the time step", ["time-step=reference"]),
 }
 
-/// What is run of each reading in a round.
-type Round = [Runs; READINGS_COUNT];
-/// The rounds: part, what is run, which of its liquids, the first and the last seed. Of the drums as
-/// printed there are as many seeds as the other tables have.
-type Seeded = (&'static str, &'static Round, usize, (u64, u64));
-const ROUNDS: [Seeded; 10] = [
-    ("r3", &R3, 0, (1, 1)),
-    ("r3", &R3_PRINTED, 0, (2, 8)),
-    ("r3", &R3_PRINTED, 1, (1, 8)),
-    ("r3", &R3_TELL, 0, (2, 2)),
-    ("r3", &R3_TELL, 0, (3, 4)),
-    ("r3", &R3_TELL, 1, (1, 4)),
-    ("r2", &R2_PRINTED, 0, (1, 4)),
-    ("r2", &R2_PRINTED, 1, (1, 4)),
-    ("r2", &R2_TELL, 0, (1, 2)),
-    ("r2", &R2_TELL, 1, (1, 2)),
+/// A round: which of the parts, of readings of which weight, which of their liquids, the first and the
+/// last seed. Of the drums as printed there are as many seeds as the other tables have.
+type Round = (usize, Weight, usize, (u64, u64));
+const ROUNDS: [Round; 12] = [
+    (0, Printed, 0, (1, 1)),
+    (0, Tells, 0, (1, 1)),
+    (0, ScreenedOut, 0, (1, 1)),
+    (0, Printed, 0, (2, 8)),
+    (0, Printed, 1, (1, 8)),
+    (0, Tells, 0, (2, 2)),
+    (0, Tells, 0, (3, 4)),
+    (0, Tells, 1, (1, 4)),
+    (1, Printed, 0, (1, 4)),
+    (1, Printed, 1, (1, 4)),
+    (1, Tells, 0, (1, 2)),
+    (1, Tells, 1, (1, 2)),
 ];
 
 static BATCHES: [Batch; ROUNDS.len() * READINGS_COUNT] = {
     let mut all = [const { Batch::new("", &[], &[], (1, 1)) }; ROUNDS.len() * READINGS_COUNT];
     let mut k = 0;
     while k < all.len() {
-        let (part, runs, which, seeds) = ROUNDS[k / READINGS_COUNT];
-        let (values, liquids) = runs[k % READINGS_COUNT];
-        all[k] = Batch::new(part, values, liquids[which], seeds);
+        let (part, weight, which, seeds) = ROUNDS[k / READINGS_COUNT];
+        let plan = &PLANS[k % READINGS_COUNT];
+        let liquids: &[&str] = if plan.weight as u8 == weight as u8 {
+            plan.liquids[which]
+        } else {
+            &[]
+        };
+        all[k] = Batch::new(PARTS[part], plan.values[part], liquids, seeds);
         k += 1;
     }
     all
 };
+
+/// What is planned of the reading called `name`.
+fn plan_of(name: &str) -> Option<&'static Planned> {
+    PLANS.iter().find(|plan| plan.name == name)
+}
 
 /// The tables, from the cases that are there.
 fn tables(sweep: &Sweep, outcomes: &[CaseResult]) -> Vec<PaperTable> {
@@ -171,10 +182,8 @@ fn readings_of<'a>(measured: &'a [Measured]) -> Vec<&'a Judged> {
 
 /// Of these ensembles those of readings that are not screened out.
 fn that_tell<'a>(ensembles: &[&'a Ensemble<'a>]) -> Vec<&'a Ensemble<'a>> {
-    let is_screened_out = |own: &Ensemble| {
-        let mut all = WEIGHTS.iter();
-        all.any(|(name, weight)| *weight == ScreenedOut && own.values[0] == *name)
-    };
+    let is_screened_out =
+        |own: &Ensemble| plan_of(&own.values[0]).is_some_and(|plan| plan.weight == ScreenedOut);
     let all = ensembles.iter().copied();
     all.filter(|own| !is_screened_out(own)).collect()
 }
@@ -247,8 +256,7 @@ fn drums_of<'a>(name: &str, ensembles: &[&'a Ensemble<'a>]) -> Option<Drums<'a>>
         .filter(|own| is_of(own, name))
         .map(|own| own.values[RADIUS.start].as_str())
         .collect();
-    let changed = CHANGED.iter().filter(|(reading, _)| *reading == name);
-    let changed: Vec<&str> = changed.flat_map(|(_, liquids)| liquids.concat()).collect();
+    let changed = plan_of(name).map_or(Vec::new(), |plan| plan.liquids.concat());
     let is_unchanged = |own: &Ensemble| {
         let [reading, radius, liquid] = &own.values[..] else {
             return false;
@@ -407,13 +415,16 @@ mod tests {
         };
         let job = PaperJob::new(&KASPER2021_READINGS, &both, "nowhere".into(), 1).unwrap();
         let cases = crate::sweep::cases(job.sweep()).unwrap();
-        let radii = |fine: &[&str]| {
+        let radii = |fine: &[(&str, &[&str])]| {
             let is_there = |case: &&Case| {
-                let [reading, radius, ..] = &case.values[..] else {
+                let [reading, radius, liquid, _] = &case.values[..] else {
                     return false;
                 };
+                let is_fine = |(own, missing): &(&str, &[&str])| {
+                    own == reading && !missing.contains(&liquid.as_str())
+                };
                 let is_read = [AS_PRINTED, "as-coded", "shaded-caps"].contains(&reading.as_str());
-                is_read && (radius == "3mm" || fine.contains(&reading.as_str()))
+                is_read && (radius == "3mm" || fine.iter().any(is_fine))
             };
             let there = cases.iter().filter(is_there);
             let outcomes: Vec<CaseResult> = there.map(|case| outcome(case, 30.0)).collect();
@@ -431,14 +442,17 @@ mod tests {
             let more = (0..OTHER_MEASURES.len()).map(|k| (READINGS.len() + k, measures.to_vec()));
             own.chain(more).collect::<Vec<_>>()
         };
-        let (run, judged) = radii(&[AS_PRINTED]);
+        let (run, judged) = radii(&[(AS_PRINTED, &[])]);
         assert_eq!(
             run,
             rows(&[(0, &[3.0, 2.0]), (1, &[3.0]), (2, &[3.0])], &[3.0, 2.0])
         );
         assert_eq!(judged, rows(&[(0, &[3.0]), (1, &[3.0])], &[3.0]));
+        // Finer grains of which a liquid is missing do not count yet.
+        let (_, judged) = radii(&[(AS_PRINTED, &[]), ("as-coded", &["5"])]);
+        assert_eq!(judged, rows(&[(0, &[3.0]), (1, &[3.0])], &[3.0]));
         // What is screened out needs no finer grains.
-        let (_, judged) = radii(&[AS_PRINTED, "as-coded"]);
+        let (_, judged) = radii(&[(AS_PRINTED, &[]), ("as-coded", &[])]);
         assert_eq!(
             judged,
             rows(&[(0, &[3.0, 2.0]), (1, &[3.0, 2.0])], &[3.0, 2.0])

@@ -49,18 +49,23 @@ impl Judged {
 }
 
 /// Of these ensembles those, by the values of a range of their keys, with which every reading among
-/// them was run: what is judged by coarse grains alone is set beside coarse grains.
+/// them was run, and as wholly as anywhere: by the values of the keys behind those. What is judged by
+/// coarse grains alone is set beside coarse grains.
 pub(super) fn compared<'a>(
     ensembles: &[&'a Ensemble<'a>],
     keys: std::ops::Range<usize>,
 ) -> Vec<&'a Ensemble<'a>> {
-    let has = |reading: &str, case: &[String]| {
+    let is_also_there = |one: &Ensemble, case: &[String]| {
         let mut all = ensembles.iter();
-        all.any(|own| own.values[0] == reading && own.values[keys.clone()] == *case)
+        all.any(|own| {
+            own.values[0] == one.values[0]
+                && own.values[keys.clone()] == *case
+                && own.values[keys.end..] == one.values[keys.end..]
+        })
     };
     let is_of_all = |own: &&&Ensemble| {
         let mut all = ensembles.iter();
-        all.all(|other| has(&other.values[0], &own.values[keys.clone()]))
+        all.all(|other| is_also_there(other, &own.values[keys.clone()]))
     };
     ensembles.iter().filter(is_of_all).copied().collect()
 }
