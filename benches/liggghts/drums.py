@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Drums in LIGGGHTS beside ours: the same settled beds, in the frame of the drum, measured as our runs are.
 
-    benches/liggghts/drums.py target/release/grainfall out/liggghts --seeds 1..6 --kept docs/results/liggghts.csv
+    benches/liggghts/drums.py target/release/grainfall out/liggghts --seeds 1..7 --kept docs/results/liggghts.csv
 
 For every bed and liquid this exports the drum (bridges as coded), lets the walls rest as primitives and gravity turn,
 runs `liggghts` on one process, turns its dumps back into the laboratory's frame and imports them; then it runs the same
