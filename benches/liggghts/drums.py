@@ -216,7 +216,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("grainfall")
     parser.add_argument("out", type=Path)
-    parser.add_argument("--seeds", type=numbers, default=numbers("1..6"))
+    parser.add_argument("--seeds", type=numbers, default=numbers("1..7"))
     parser.add_argument("--liquids", type=numbers, default=numbers("0,1,7"))
     parser.add_argument("--radius", default="3mm")
     parser.add_argument("--duration", default="50s")
