@@ -126,7 +126,7 @@ readings! {
 /// A round: which of the parts, of readings of which weight, which of their liquids, the first and the
 /// last seed. Of the drums as printed there are as many seeds as the other tables have.
 type Round = (usize, Weight, usize, (u64, u64));
-const ROUNDS: [Round; 12] = [
+const ROUNDS: [Round; 14] = [
     (0, Printed, 0, (1, 1)),
     (0, Tells, 0, (1, 1)),
     (0, ScreenedOut, 0, (1, 1)),
@@ -139,6 +139,8 @@ const ROUNDS: [Round; 12] = [
     (1, Printed, 1, (1, 4)),
     (1, Tells, 0, (1, 2)),
     (1, Tells, 1, (1, 2)),
+    (1, Tells, 0, (3, 4)),
+    (1, Tells, 1, (3, 4)),
 ];
 
 static BATCHES: [Batch; ROUNDS.len() * READINGS_COUNT] = {
