@@ -478,7 +478,7 @@ fn interrupted_run_leaves_whole_files() {
         .args(["-INT", &process, &process])
         .status();
     assert!(interrupt.unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(exit_code(&mut child), Some(130));
     let out = place.path("out");
     assert_eq!(names(&out), FILES_OF_A_RUN);
     let summary = summary(&out);
@@ -547,15 +547,43 @@ fn run_that_keeps_checkpoints_goes_on_after_a_stop_to_the_same_bits() {
 /// Waits until `path` exists, a minute at most, while `child` runs.
 #[cfg(unix)]
 pub(crate) fn wait_for(path: &Path, child: &mut Child) {
-    for _ in 0..6000 {
-        if path.exists() {
-            return;
-        }
+    wait_until(child, &path.display().to_string(), || path.exists());
+}
+
+/// Waits until `is_there`, a minute at most, while `child` runs.
+#[cfg(unix)]
+pub(crate) fn wait_until(child: &mut Child, what: &str, is_there: impl Fn() -> bool) {
+    let came = within_a_minute(|| {
         assert!(
             child.try_wait().unwrap().is_none(),
             "the run ended by itself"
         );
+        is_there().then_some(())
+    });
+    assert!(came.is_some(), "{what} never came");
+}
+
+/// What `child` ends with, within a minute.
+#[cfg(unix)]
+pub(crate) fn exit_code(child: &mut Child) -> Option<i32> {
+    let Some(status) = within_a_minute(|| child.try_wait().unwrap()) else {
+        child.kill().unwrap();
+        panic!(
+            "the run does not end: it was asked to, unless what started the tests ignores Ctrl-C"
+        );
+    };
+    status.code()
+}
+
+/// What `found` gives first, asked every 10 ms.
+#[cfg(unix)]
+fn within_a_minute<T>(mut found: impl FnMut() -> Option<T>) -> Option<T> {
+    for _ in 0..6000 {
+        let thing = found();
+        if thing.is_some() {
+            return thing;
+        }
         std::thread::sleep(Duration::from_millis(10));
     }
-    panic!("{} never came", path.display());
+    None
 }

@@ -2,6 +2,8 @@
 //! programs in one folder, wrong input, forged records.
 
 use crate::headless::{Place, names, small_drum, summary, text};
+#[cfg(unix)]
+use crate::headless::{exit_code, wait_for, wait_until};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs;
@@ -362,9 +364,15 @@ fn folder_is_one_programs_at_a_time_and_says_whose() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let mut child = place.start_long_run("grains/grains_000003.vtp");
+    // Files of the run that was killed are there, so the next one's name in the lock is waited for.
+    let mut child = place.start_long_run(".grainfall.lock");
+    let process = child.id().to_string();
+    wait_until(&mut child, "its name in the lock", || {
+        let holder = fs::read_to_string(place.path("out/.grainfall.lock")).unwrap();
+        holder.split_whitespace().nth(1) == Some(process.as_str())
+    });
     signal("-TERM", &child);
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(exit_code(&mut child), Some(130));
 }
 
 #[cfg(unix)]
@@ -408,13 +416,13 @@ fn signals_that_are_ignored_stay_ignored() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    crate::headless::wait_for(&place.path("out/grains/grains_000001.vtp"), &mut child);
+    wait_for(&place.path("out/grains/grains_000001.vtp"), &mut child);
     signal("-INT", &child);
     signal("-HUP", &child);
     std::thread::sleep(Duration::from_millis(300));
     assert!(child.try_wait().unwrap().is_none(), "it goes on");
     signal("-TERM", &child);
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(exit_code(&mut child), Some(130));
 }
 
 /// Long slices: stiff grains, weak gravity.
@@ -434,11 +442,11 @@ fn settling_hears_that_it_is_to_stop() {
     );
     let arguments = ["slow.ron", "--no-render", "--threads", "1", "--out", "out"];
     let mut child = start(&place, &arguments);
-    crate::headless::wait_for(&place.path("out/summary.json"), &mut child);
+    wait_for(&place.path("out/summary.json"), &mut child);
     std::thread::sleep(Duration::from_millis(700));
     let asked = Instant::now();
     signal("-INT", &child);
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(exit_code(&mut child), Some(130));
     let answered = asked.elapsed();
     println!("{answered:?}");
     assert!(answered < Duration::from_secs(2), "{answered:?}");
